@@ -46,10 +46,11 @@ find_python() {
 }
 
 # Prints the path of a Blender 5.2 or later: $BLENDER, PATH, or what scripts/get-blender made.
+# Returns 1 where there is none, 2 where $BLENDER is wrong.
 find_blender() {
     local candidate
     if [[ -n ${BLENDER-} ]]; then
-        is_new_blender "$BLENDER" || fail "BLENDER=$BLENDER is not a Blender 5.2 or later" || return
+        is_new_blender "$BLENDER" || fail "BLENDER=$BLENDER is not a Blender 5.2 or later" || return 2
         echo "$BLENDER"
         return
     fi
@@ -107,8 +108,10 @@ make_venv() {
 
 # Whether Blender's module finds its libraries and a GPU (Mesa's software OpenGL will do).
 has_gpu() {
-    "$venv/bin/python" -c 'import bpy, gpu; gpu.init(); gpu.platform.renderer_get()' \
-        >"$venv/gpu.log" 2>&1
+    {
+        "$venv/bin/python" -c 'import bpy, gpu; gpu.init(); gpu.platform.renderer_get()' \
+            >"$venv/gpu.log" 2>&1
+    } 2>/dev/null # the shell's own word when Blender's module aborts
 }
 
 install_system_libraries() {
