@@ -1,0 +1,1 @@
+"""The graphics device: the only importer of Blender's `gpu` module."""

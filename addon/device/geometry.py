@@ -1,0 +1,57 @@
+"""Meshes on the device: one vertex buffer a mesh, one batch a material slot."""
+
+import zlib
+
+import numpy as np
+
+_GLSL_TYPES = {2: "VEC2", 3: "VEC3", 4: "VEC4"}
+
+
+def attribute_identifier(key):
+    """Return the GLSL name of a mesh attribute such as ``"uv:UVMap"``.
+
+    Blender keeps attribute names in a short buffer, so the name is the kind's letter and a hash.
+    """
+    kind = key.partition(":")[0]
+    return f"{kind[0]}{zlib.crc32(key.encode()):08x}"
+
+
+def attribute_type(components):
+    """Return the GLSL type, in upper case, of an attribute with so many components."""
+    return _GLSL_TYPES[components]
+
+
+class MeshBuffers:
+    """The batches of a `MeshSnapshot`, by material slot."""
+
+    def __init__(self, mesh):
+        import gpu
+
+        vertex_format = gpu.types.GPUVertFormat()
+        columns = {"pos": mesh.positions}
+        columns.update({attribute_identifier(k): v for k, v in mesh.attributes.items()})
+        if mesh.motion:
+            columns["pos_previous"], columns["pos_next"] = mesh.motion
+        for name, values in columns.items():
+            vertex_format.attr_add(id=name, comp_type="F32", len=values.shape[1], fetch_mode="FLOAT")
+        vertices = gpu.types.GPUVertBuf(vertex_format, len(mesh.positions))
+        for name, values in columns.items():
+            vertices.attr_fill(name, np.ascontiguousarray(values, np.float32))
+        self.triangle_count = len(mesh.triangles)
+        self.batches = {}
+        for slot, first, count in mesh.slots:
+            indices = np.ascontiguousarray(mesh.triangles[first : first + count], np.int32)
+            elements = gpu.types.GPUIndexBuf(type="TRIS", seq=indices)
+            batch = gpu.types.GPUBatch(type="TRIS", buf=vertices, elem=elements)
+            self.batches[slot] = (batch, count)
+
+
+def fullscreen_batch():
+    """Return a triangle that covers the whole target; attribute ``pos``."""
+    import gpu
+
+    vertex_format = gpu.types.GPUVertFormat()
+    vertex_format.attr_add(id="pos", comp_type="F32", len=2, fetch_mode="FLOAT")
+    vertices = gpu.types.GPUVertBuf(vertex_format, 3)
+    vertices.attr_fill("pos", np.array([[-1, -1], [3, -1], [-1, 3]], np.float32))
+    return gpu.types.GPUBatch(type="TRIS", buf=vertices)

@@ -1,0 +1,28 @@
+"""From the device back to numpy."""
+
+import numpy as np
+
+
+def read_color(framebuffer, width, height, channels=4, slot=0):
+    """Read a colour target of floats.
+
+    Parameters
+    ----------
+    framebuffer : GPUFrameBuffer
+    width, height : int
+        In pixels.
+    channels : int
+    slot : int
+        Which colour target of the frame buffer.
+
+    Returns
+    -------
+    ndarray of shape (height, width, channels)
+        float32, bottom row first.
+    """
+    import gpu
+
+    pixels = np.empty((height, width, channels), np.float32)
+    buffer = gpu.types.Buffer("FLOAT", pixels.shape, pixels)
+    framebuffer.read_color(0, 0, width, height, channels, slot, "FLOAT", data=buffer)
+    return pixels

@@ -1,0 +1,58 @@
+"""GLSL files: includes resolved once each, and compiler messages mapped back to files.
+
+A shader file may contain ``#include "lib/name.glsl"`` lines, relative to ``gpu_shaders/``. Included
+text appears once, at its first mention.
+"""
+
+import re
+from functools import cache
+from pathlib import Path
+
+from ..errors import ShaderCompileError
+
+SHADER_ROOT = Path(__file__).resolve().parents[2] / "gpu_shaders"
+
+_INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
+
+
+@cache
+def load(path):
+    """Return the text of a shader file with its includes in place.
+
+    Parameters
+    ----------
+    path : str
+        Relative to ``gpu_shaders/``.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ShaderCompileError
+        If the file or one of its includes is missing.
+    """
+    return "\n".join(line for line, _, _ in located_lines(path)) + "\n"
+
+
+def located_lines(path):
+    """Return the lines of `load` with the file and line number that each came from."""
+    return _expand(path, set())
+
+
+def _expand(path, seen):
+    seen.add(path)
+    file = SHADER_ROOT / path
+    try:
+        text = file.read_text(encoding="utf-8")
+    except OSError as error:
+        raise ShaderCompileError(path, f"{file}: {error.strerror}") from error
+    lines = []
+    for number, line in enumerate(text.splitlines(), start=1):
+        match = _INCLUDE.match(line)
+        if not match:
+            lines.append((line, path, number))
+        elif match.group(1) not in seen:
+            lines.extend(_expand(match.group(1), seen))
+    return lines

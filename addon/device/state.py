@@ -1,0 +1,30 @@
+"""Fixed-function state, set in whole named sets so that no pass inherits another's."""
+
+
+def opaque():
+    """Nearest surface wins: depth test and write, no blending."""
+    import gpu
+
+    gpu.state.blend_set("NONE")
+    gpu.state.depth_test_set("LESS_EQUAL")
+    gpu.state.depth_mask_set(True)
+    gpu.state.face_culling_set("NONE")
+
+
+def overwrite():
+    """Every fragment replaces what was there; no depth."""
+    import gpu
+
+    gpu.state.blend_set("NONE")
+    gpu.state.depth_test_set("NONE")
+    gpu.state.depth_mask_set(False)
+    gpu.state.face_culling_set("NONE")
+
+
+def additive():
+    """Sum of all four channels; no depth."""
+    import gpu
+
+    overwrite()
+    # Blender's name for source one, destination one ("ADDITIVE" multiplies by alpha).
+    gpu.state.blend_set("ADDITIVE_PREMULT")

@@ -1,0 +1,73 @@
+"""Render targets: named textures and the frame buffers over them.
+
+Whoever makes targets releases them (``with Targets(...) as targets``); no pass allocates.
+"""
+
+from dataclasses import dataclass
+
+from ..errors import DeviceLimitError
+from .context import max_texture_size
+
+
+@dataclass(frozen=True)
+class TargetSpec:
+    """One target: a name, a texel format, and the depth target that it is drawn with, if any."""
+
+    name: str
+    texel_format: str
+
+
+class Targets:
+    """Textures of one size, by name, and frame buffers over sets of them.
+
+    Parameters
+    ----------
+    width, height : int
+        In pixels.
+    specs : iterable of TargetSpec
+    """
+
+    def __init__(self, width, height, specs):
+        import gpu
+
+        limit = max_texture_size()
+        if max(width, height) > limit:
+            raise DeviceLimitError(
+                f"{limit} pixels a side",
+                f"a picture of {width} x {height} pixels was asked for (render it in parts with a render border)",
+            )
+        self.width = width
+        self.height = height
+        self.textures = {}
+        for spec in specs:
+            self.textures[spec.name] = gpu.types.GPUTexture((width, height), format=spec.texel_format)
+        self._framebuffers = {}
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.release()
+
+    def __getitem__(self, name):
+        """Return the texture called `name`."""
+        return self.textures[name]
+
+    def framebuffer(self, *color, depth=None):
+        """Return the frame buffer over the named colour targets and depth target."""
+        import gpu
+
+        key = (color, depth)
+        framebuffer = self._framebuffers.get(key)
+        if framebuffer is None:
+            framebuffer = gpu.types.GPUFrameBuffer(
+                color_slots=tuple(self.textures[name] for name in color),
+                depth_slot=self.textures[depth] if depth else None,
+            )
+            self._framebuffers[key] = framebuffer
+        return framebuffer
+
+    def release(self):
+        """Give the textures back to the device."""
+        self._framebuffers.clear()
+        self.textures.clear()

@@ -1,0 +1,42 @@
+"""Textures made from arrays."""
+
+import numpy as np
+
+
+def texture_2d(array, texel_format="RGBA32F"):
+    """Upload an array as a 2D texture.
+
+    Parameters
+    ----------
+    array : ndarray of shape (height, width, channels)
+        float32; converted by the device to `texel_format`.
+    texel_format : str
+
+    Returns
+    -------
+    GPUTexture
+    """
+    import gpu
+
+    data = np.ascontiguousarray(array, np.float32)
+    height, width = data.shape[:2]
+    buffer = gpu.types.Buffer("FLOAT", data.size, data.reshape(-1))
+    return gpu.types.GPUTexture((width, height), format=texel_format, data=buffer)
+
+
+def image_texture(image):
+    """Upload an `ImageSnapshot`; 8-bit pixels stay encoded.
+
+    Returns
+    -------
+    GPUTexture
+        Linear filtering, repeating.
+    """
+    pixels = image.pixels
+    if pixels.dtype == np.uint8:
+        texture = texture_2d(pixels.astype(np.float32) / 255.0, "RGBA8")
+    else:
+        texture = texture_2d(pixels, "RGBA32F")
+    texture.filter_mode(True)
+    texture.extend_mode("REPEAT")
+    return texture

@@ -1,0 +1,27 @@
+"""Uniform buffers made from bytes."""
+
+import numpy as np
+
+
+def _buffer(data):
+    import gpu
+
+    values = np.frombuffer(data, np.float32).copy()
+    return gpu.types.Buffer("FLOAT", values.size, values)
+
+
+def uniform_buffer(data):
+    """Upload the bytes of a uniform block.
+
+    Parameters
+    ----------
+    data : bytes
+        A multiple of 16 long.
+
+    Returns
+    -------
+    GPUUniformBuf
+    """
+    import gpu
+
+    return gpu.types.GPUUniformBuf(_buffer(data))

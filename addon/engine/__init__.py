@@ -1,0 +1,1 @@
+"""Planning and rendering a frame."""

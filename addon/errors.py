@@ -1,0 +1,71 @@
+"""Every exception class of the extension.
+
+A message says what is wrong, where, and what to do. Callers at the rim (engine, operators, command
+line) catch `AplanatError` only and show the message in one line.
+"""
+
+
+class AplanatError(Exception):
+    """Base of all errors that Aplanat raises on purpose."""
+
+
+class InputError(AplanatError, ValueError):
+    """A file, an option or a setting that cannot be used. The command line exits with 2."""
+
+
+class FocusError(InputError):
+    """A focus distance, f-number or iris with which no picture can be formed."""
+
+
+class CameraError(InputError):
+    """A camera that is missing or of a kind that the engine does not render."""
+
+
+class SnapshotError(InputError):
+    """Scene data that cannot be rendered, such as coordinates that are not finite."""
+
+
+class OutputError(InputError):
+    """A picture that cannot be written where it was asked for."""
+
+
+class DeviceUnavailableError(AplanatError):
+    """There is no GPU context to draw with."""
+
+
+class DeviceLimitError(AplanatError):
+    """Something larger than the graphics device can hold.
+
+    Parameters
+    ----------
+    limit : str
+        The limit in words, with its value.
+    needed : str
+        What was needed, in words, and what to do.
+    """
+
+    def __init__(self, limit, needed):
+        super().__init__(f"{needed}; this graphics device allows {limit}")
+        self.limit = limit
+        self.needed = needed
+
+
+class ShaderCompileError(AplanatError):
+    """A shader that the driver refused.
+
+    Parameters
+    ----------
+    pass_name : str
+        The pass or variant that was being compiled.
+    log : str
+        The compiler's log with `file:line` locations.
+    """
+
+    def __init__(self, pass_name, log):
+        super().__init__(f"shader of pass '{pass_name}' did not compile: {log}")
+        self.pass_name = pass_name
+        self.log = log
+
+
+class RenderCancelledError(AplanatError):
+    """The user stopped the render."""

@@ -1,0 +1,1 @@
+"""GPU passes: each reads named targets and writes named targets."""

@@ -1,0 +1,34 @@
+"""From the sum of the samples to the picture (methods 1)."""
+
+from ..device import shader_source
+from ..device.shaders import ShaderInfo, compile_shader
+
+_INFO = ShaderInfo(
+    name="aplanat_resolve",
+    vertex=shader_source.load("passes/fullscreen_vert.glsl"),
+    fragment=shader_source.load("passes/resolve_frag.glsl"),
+    attributes=(("VEC2", "pos"),),
+    outputs=(("VEC4", "out_color"),),
+    samplers=(("FLOAT_2D", "sum_tx"),),
+    push_constants=(("FLOAT", "scale"), ("IVEC2", "origin")),
+)
+
+
+def resolve(fullscreen, total, samples, origin=(0, 0)):
+    """Draw the mean of the samples into the bound frame buffer.
+
+    Parameters
+    ----------
+    fullscreen : GPUBatch
+    total : GPUTexture
+        Sum of the samples.
+    samples : int
+    origin : tuple of 2 int
+        Where the picture's lower left pixel goes, in pixels of the frame buffer.
+    """
+    shader = compile_shader(_INFO)
+    shader.bind()
+    shader.uniform_sampler("sum_tx", total)
+    shader.uniform_float("scale", 1.0 / samples)
+    shader.uniform_int("origin", origin)
+    fullscreen.draw(shader)

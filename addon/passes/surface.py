@@ -1,0 +1,203 @@
+"""Drawing the surfaces of a scene for one lens sample (methods 1).
+
+One shader a shape of node tree and set of mesh attributes; draws are sorted by shader, then by
+material, so that a frame changes state as rarely as it can.
+"""
+
+from dataclasses import dataclass
+
+from ..device import shader_source
+from ..device.geometry import attribute_identifier, attribute_type
+from ..device.shaders import ShaderInfo, compile_shader
+from ..device.uniform_block import UniformStruct
+from . import surface_code
+
+VIEW_PARAMS = UniformStruct("shared/view_params.glsl", "ViewParams")
+
+_LIBRARIES = "".join(
+    shader_source.load(path)
+    for path in ("lib/hash_lib.glsl", "lib/color_lib.glsl", "lib/closure_lib.glsl")
+)
+
+
+@dataclass(frozen=True)
+class SurfaceTarget:
+    """What the surfaces are drawn into: the colour picture, data passes, ids.
+
+    Parameters
+    ----------
+    fragment : str
+        Entry point below ``gpu_shaders/``; it may call ``surface_closure()``.
+    outputs : tuple of (str, str)
+        Type and name by colour slot.
+    varyings : tuple of (str, str)
+        What its vertex shader gives beside the usual ones.
+    attributes : tuple of str
+        Mesh attributes that it reads itself, such as ``"normal"``, where the mesh has them.
+    defines : tuple of str
+    """
+
+    fragment: str
+    outputs: tuple[tuple[str, str], ...]
+    varyings: tuple[tuple[str, str], ...] = ()
+    attributes: tuple[str, ...] = ()
+    defines: tuple[str, ...] = ()
+
+
+COLOR = SurfaceTarget("passes/surface_frag.glsl", (("VEC4", "out_color"),))
+
+
+@dataclass(frozen=True)
+class Draw:
+    """One draw call.
+
+    Parameters
+    ----------
+    shader : GPUShader
+    batch : GPUBatch
+    triangles : int
+        Of one instance.
+    first, count : int
+        Rows of the instance table.
+    constants : GPUUniformBuf or None
+    textures : tuple of (str, GPUTexture)
+    transparent : bool
+        The shader reads the sample's index.
+    """
+
+    shader: object
+    batch: object
+    triangles: int
+    first: int
+    count: int
+    constants: object
+    textures: tuple
+    transparent: bool
+
+
+def surface_shader(target, code, mesh_attributes, holdout=False):
+    """Return the compiled shader of a surface on a mesh.
+
+    Parameters
+    ----------
+    target : SurfaceTarget
+    code : SurfaceCode
+    mesh_attributes : dict of str to ndarray
+    holdout : bool
+
+    Returns
+    -------
+    GPUShader
+    """
+    attributes = [("VEC3", "pos")]
+    varyings = [("VEC3", "world_position"), ("FLAT INT", "instance_row"), *target.varyings]
+    forward = []
+    own = tuple(key for key in target.attributes if key in mesh_attributes)
+    for key in dict.fromkeys(code.attributes + own):
+        name = attribute_identifier(key)
+        kind = attribute_type(mesh_attributes[key].shape[1])
+        attributes.append((kind, name))
+        varyings.append((kind, f"v_{name}"))
+        forward.append(f"  v_{name} = {name};")
+    vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
+    vertex += shader_source.load("passes/surface_vert.glsl")
+    fragment = _LIBRARIES
+    if not holdout:
+        fragment += code.source
+    fragment += shader_source.load(target.fragment)
+    struct = f"struct MaterialParams {{ vec4 constants[{len(code.constants)}]; }};\n"
+    uniforms = [("ViewParams", "view_buf")]
+    samplers = [("FLOAT_2D", "instances_tx")]
+    if not holdout:
+        uniforms.append(("MaterialParams", "material_buf"))
+        samplers += [("FLOAT_2D", f"image_{i}_tx") for i in range(len(code.images))]
+    transparent = code.transparent and not holdout
+    defines = [*target.defines, *["HOLDOUT"] * holdout, *["TRANSPARENT"] * transparent]
+    return compile_shader(
+        ShaderInfo(
+            name="aplanat_surface",
+            vertex=vertex,
+            fragment=fragment,
+            typedefs=VIEW_PARAMS.source + struct,
+            attributes=tuple(attributes),
+            varyings=tuple(varyings),
+            outputs=target.outputs,
+            samplers=tuple(samplers),
+            uniforms=tuple(uniforms),
+            push_constants=(
+                ("VEC4", "lens_sample"),
+                ("INT", "instance_base"),
+                ("INT", "sample_index"),
+            ),
+            defines=tuple((name, "1") for name in defines),
+        )
+    )
+
+
+def build_draws(content, buffers, target=COLOR):
+    """List the draw calls of a scene, sorted by state.
+
+    Parameters
+    ----------
+    content : SceneContent
+    buffers : engine.scene_buffers.SceneBuffers
+    target : SurfaceTarget
+
+    Returns
+    -------
+    list of Draw
+    """
+    draws = []
+    shaders = {}
+    srgb = frozenset(uid for uid, image in content.images.items() if image.srgb)
+    for group in content.groups:
+        mesh = content.meshes[group.mesh]
+        for slot, (batch, count) in buffers.meshes[group.mesh].batches.items():
+            material = content.materials[group.materials[slot]]
+            code = surface_code.generate(material.graph, mesh.attributes, srgb)
+            shader = surface_shader(target, code, mesh.attributes, group.holdout)
+            order = shaders.setdefault(id(shader), len(shaders))
+            constants, textures = None, ()
+            transparent = code.transparent and not group.holdout
+            if not group.holdout:
+                constants = buffers.material_constants(material.uid, code)
+                textures = tuple(
+                    (f"image_{i}_tx", buffers.images[uid]) for i, uid in enumerate(code.images)
+                )
+            draw = Draw(shader, batch, count, group.first, group.count, constants, textures, transparent)
+            draws.append(((order, material.uid, group.mesh, slot), draw))
+    draws.sort(key=lambda item: item[0])
+    return [draw for _, draw in draws]
+
+
+def draw_sample(draws, view_buffer, instances, lens_sample, sample_index):
+    """Draw one lens sample into the bound frame buffer.
+
+    Parameters
+    ----------
+    draws : list of Draw
+    view_buffer : GPUUniformBuf
+        `ViewParams`.
+    instances : GPUTexture
+        The instance table.
+    lens_sample : sequence of 4 float
+        Place on the lens in m, jitter in clip units.
+    sample_index : int
+    """
+    current = None
+    for draw in draws:
+        shader = draw.shader
+        if shader is not current:
+            current = shader
+            shader.bind()
+            shader.uniform_block("view_buf", view_buffer)
+            shader.uniform_sampler("instances_tx", instances)
+            shader.uniform_float("lens_sample", lens_sample)
+            if draw.transparent:
+                shader.uniform_int("sample_index", sample_index)
+        if draw.constants is not None:
+            shader.uniform_block("material_buf", draw.constants)
+        for name, texture in draw.textures:
+            shader.uniform_sampler(name, texture)
+        shader.uniform_int("instance_base", draw.first)
+        draw.batch.draw_instanced(shader, instance_count=draw.count)

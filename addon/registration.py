@@ -1,0 +1,18 @@
+"""Registers the Blender-facing modules, in order; unregisters them in the reverse one."""
+
+from .engine import render_engine
+from .ui import properties
+
+_MODULES = (properties, render_engine)
+
+
+def register():
+    """Register all modules."""
+    for module in _MODULES:
+        module.register()
+
+
+def unregister():
+    """Unregister all modules, the last first."""
+    for module in reversed(_MODULES):
+        module.unregister()

@@ -1,0 +1,1 @@
+"""Sample sequences and the thin lens: pure numpy, no Blender."""

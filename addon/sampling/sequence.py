@@ -1,0 +1,58 @@
+"""The sample sequence of a frame: where on the lens, where in the pixel.
+
+Lens: Halton bases (2, 7); pixel: bases (3, 5). Base 11 is kept for the wavelength (methods 2, 8).
+The sequence is shifted by one half in every dimension, which makes its first element the lens'
+centre and the pixel's centre: the first sample of a progressive picture is the pinhole picture.
+"""
+
+import numpy as np
+
+from .halton import halton
+from .iris import iris_points
+from .pixel_filter import filter_offsets
+
+LENS_BASES = (2, 7)
+PIXEL_BASES = (3, 5)
+
+
+def _shift(seed, dimensions, stream):
+    if seed == 0:
+        return 0.5
+    return 0.5 + np.random.default_rng([seed, stream]).random(dimensions)
+
+
+def lens_samples(first, count, iris, seed=0):
+    """Return positions on the iris for samples `first` to `first + count - 1`.
+
+    Parameters
+    ----------
+    first, count : int
+    iris : Iris
+    seed : int
+        0 is the plain sequence; others rotate it on the torus.
+
+    Returns
+    -------
+    ndarray of shape (count, 2)
+        In units of the aperture radius.
+    """
+    return iris_points(halton(first, count, LENS_BASES, _shift(seed, 2, 1)), iris)
+
+
+def pixel_offsets(first, count, kind, width_px, seed=0):
+    """Return sub-pixel positions for samples `first` to `first + count - 1`.
+
+    Parameters
+    ----------
+    first, count : int
+    kind : {'BLACKMAN_HARRIS', 'BOX'}
+    width_px : float
+    seed : int
+
+    Returns
+    -------
+    ndarray of shape (count, 2)
+        Offsets from the pixel's centre, in pixels, x right and y up.
+    """
+    uniform = halton(first, count, PIXEL_BASES, _shift(seed, 2, 2))
+    return filter_offsets(uniform, kind, width_px)

@@ -1,0 +1,120 @@
+"""The thin lens: circle of confusion and its signs (methods 1).
+
+With effective aperture radius `E`, focus distance `d_f` and depth `d` along the axis, a point seen
+from the place `E v` on the lens (v in the unit disk) is displaced in the camera's xy plane by
+`-R(d) v`, `R(d) = E (d_f - d) / d_f`: nothing at the focus plane, mirrored behind it. On the image,
+with the field of view kept while focusing as Blender does, the signed radius in pixels is
+`f_px E (d - d_f) / (d d_f)`: negative in front of the focus plane.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import FocusError
+from .iris import Iris
+
+
+@dataclass(frozen=True)
+class ThinLens:
+    """A thin lens in the units of the scene.
+
+    Parameters
+    ----------
+    aperture_radius : float
+        Effective aperture radius, in m; 0 is a pinhole.
+    focus_distance : float
+        Along the optical axis, in m.
+    iris : Iris
+    """
+
+    aperture_radius: float
+    focus_distance: float
+    iris: Iris = field(default_factory=Iris)
+
+    def __post_init__(self):
+        """Refuse what cannot form a picture."""
+        if not np.isfinite(self.focus_distance) or self.focus_distance <= 0.0:
+            raise FocusError(
+                f"focus distance is {self.focus_distance:g} m; it must be greater than 0"
+                " (move the focus object in front of the camera or set a distance)"
+            )
+        if not np.isfinite(self.aperture_radius) or self.aperture_radius < 0.0:
+            raise FocusError(
+                f"aperture radius is {self.aperture_radius:g} m; it must be finite and not negative"
+            )
+        if not np.isfinite(self.iris.ratio) or self.iris.ratio <= 0.0:
+            raise FocusError(
+                f"aperture ratio is {self.iris.ratio:g}; it must be greater than 0"
+                " (camera > Depth of Field > Aperture > Ratio)"
+            )
+
+
+def aperture_radius(focal_length, f_number):
+    """Effective aperture radius `F / (2 N#)`.
+
+    Parameters
+    ----------
+    focal_length : float
+        In m.
+    f_number : float
+        Focal length over entrance-pupil diameter.
+
+    Returns
+    -------
+    float
+        In m.
+
+    Raises
+    ------
+    FocusError
+        If `f_number` is not a positive finite number.
+    """
+    if not np.isfinite(f_number) or f_number <= 0.0:
+        raise FocusError(f"f-stop is {f_number:g}; it must be greater than 0")
+    return focal_length / (2.0 * f_number)
+
+
+def displacement_radius(depth, lens):
+    """Signed object-space circle of confusion `R(d)`.
+
+    Parameters
+    ----------
+    depth : ndarray of shape (...)
+        Along the optical axis, in m.
+    lens : ThinLens
+
+    Returns
+    -------
+    ndarray of shape (...)
+        In m; positive in front of the focus plane.
+
+    References
+    ----------
+    Jeong, Kim and Lee, CGF 2013, section 3.
+    """
+    return lens.aperture_radius * (lens.focus_distance - depth) / lens.focus_distance
+
+
+def coc_radius_px(depth, lens, focal_length_px):
+    """Signed circle-of-confusion radius in the picture, the field of view kept.
+
+    Parameters
+    ----------
+    depth : ndarray of shape (...)
+        Along the optical axis, in m; positive.
+    lens : ThinLens
+    focal_length_px : float
+        Pixels that a length of 1 m at a depth of 1 m covers.
+
+    Returns
+    -------
+    ndarray of shape (...)
+        In pixels; negative in front of the focus plane.
+
+    References
+    ----------
+    Potmesil and Chakravarty, SIGGRAPH 1981; Blender's camera focuses at a fixed field of view.
+    """
+    focus = lens.focus_distance
+    return focal_length_px * lens.aperture_radius * (depth - focus) / (depth * focus)

@@ -1,0 +1,96 @@
+"""Blender's camera to a `Camera`."""
+
+import math
+
+import numpy as np
+
+from ..errors import CameraError, FocusError
+from ..sampling.iris import Iris
+from ..sampling.thin_lens import ThinLens, aperture_radius
+from .snapshot import Camera
+
+
+def read_camera(depsgraph, camera, film):
+    """Return the scene's camera as Blender frames it.
+
+    Parameters
+    ----------
+    depsgraph : bpy.types.Depsgraph
+    camera : bpy.types.Object or None
+    film : Film
+
+    Returns
+    -------
+    Camera
+
+    Raises
+    ------
+    CameraError
+        If there is no camera or it is panoramic or custom.
+    FocusError
+        If its focus distance or iris cannot form a picture.
+    """
+    if camera is None:
+        raise CameraError("the scene has no camera; add one or set Scene > Camera")
+    camera = camera.evaluated_get(depsgraph)
+    data = camera.data
+    if data.type not in {"PERSP", "ORTHO"}:
+        raise CameraError(
+            f"camera '{camera.name}' is {data.type.lower()}; Aplanat renders perspective and"
+            " orthographic cameras (Camera > Lens > Type)"
+        )
+    render = depsgraph.scene.render
+    projection = camera.calc_matrix_camera(
+        depsgraph,
+        x=film.width,
+        y=film.height,
+        scale_x=render.pixel_aspect_x,
+        scale_y=render.pixel_aspect_y,
+    )
+    world = camera.matrix_world.normalized()
+    orthographic = data.type == "ORTHO"
+    return Camera(
+        view=np.array(world.inverted(), np.float64),
+        projection=np.array(projection, np.float64),
+        lens=read_lens(depsgraph, camera) if data.dof.use_dof else None,
+        orthographic=orthographic,
+    )
+
+
+def read_lens(depsgraph, camera):
+    """Return the thin lens of a camera with depth of field.
+
+    The aperture follows Cycles: focal length over f-number, and 1 m over it where an orthographic
+    camera has no focal length.
+    """
+    data = camera.data
+    dof = data.dof
+    focal_length = 1.0 if data.type == "ORTHO" else data.lens / 1000.0
+    iris = Iris(dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio)
+    return ThinLens(
+        aperture_radius(focal_length, dof.aperture_fstop), focus_distance(depsgraph, camera), iris
+    )
+
+
+def focus_distance(depsgraph, camera):
+    """Return the distance of the focus plane along the optical axis, in m.
+
+    Raises
+    ------
+    FocusError
+        If the focus object lies behind the camera.
+    """
+    dof = camera.data.dof
+    if dof.focus_object is None:
+        return dof.focus_distance
+    target = dof.focus_object.evaluated_get(depsgraph)
+    matrix = target.matrix_world
+    if dof.focus_subtarget and target.pose and dof.focus_subtarget in target.pose.bones:
+        matrix = matrix @ target.pose.bones[dof.focus_subtarget].matrix
+    place = camera.matrix_world.normalized().inverted() @ matrix.translation
+    if place.z >= 0.0 or not math.isfinite(place.z):
+        raise FocusError(
+            f"focus object '{target.name}' is not in front of camera '{camera.name}';"
+            " move it or choose another one"
+        )
+    return -place.z

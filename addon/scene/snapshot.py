@@ -1,0 +1,314 @@
+"""The scene of one frame as frozen values: no Blender object survives in here.
+
+Lengths are in Blender units, which the engine takes as metres as Cycles does; matrices act on
+column vectors; images have their first row at the bottom, as in Blender. Every array is
+read-only by agreement. Large parts (meshes, images, surfaces) carry a `uid`: the same uid means the
+same content, so that buffers on the graphics device are reused and a change is found by comparing
+snapshots.
+"""
+
+import itertools
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..sampling.thin_lens import ThinLens
+from .surface_graph import SurfaceGraph
+
+_uids = itertools.count(1)
+
+
+def next_uid():
+    """Return a number that no other part of this process' snapshots has."""
+    return next(_uids)
+
+
+@dataclass(frozen=True, eq=False)
+class MeshSnapshot:
+    """Triangles with per-vertex attributes, in object space.
+
+    Parameters
+    ----------
+    uid : int
+    name : str
+        For messages.
+    positions : ndarray of shape (V, 3)
+        float32.
+    triangles : ndarray of shape (T, 3)
+        int32 vertex indices, sorted by material slot.
+    slots : tuple of (int, int, int)
+        Material slot, first triangle, number of triangles.
+    attributes : dict of str to ndarray
+        float32 of shape (V, k): ``"normal"`` (k = 3), ``"uv:NAME"`` (2), ``"color:NAME"`` (4, scene
+        linear). An empty NAME is the active one.
+    motion : tuple of two ndarray of shape (V, 3) or None
+        Positions in the previous and the next frame, where the mesh deforms.
+    """
+
+    uid: int
+    name: str
+    positions: np.ndarray
+    triangles: np.ndarray
+    slots: tuple[tuple[int, int, int], ...]
+    attributes: dict[str, np.ndarray] = field(default_factory=dict)
+    motion: tuple[np.ndarray, np.ndarray] | None = None
+
+    @property
+    def bounds(self):
+        """Lower and upper corner, shape (2, 3)."""
+        if len(self.positions) == 0:
+            return np.zeros((2, 3), np.float32)
+        return np.stack([self.positions.min(axis=0), self.positions.max(axis=0)])
+
+
+@dataclass(frozen=True, eq=False)
+class ImageSnapshot:
+    """Pixels of an image, as Blender stores them.
+
+    Parameters
+    ----------
+    uid : int
+    name : str
+    pixels : ndarray of shape (height, width, 4)
+        uint8 in the image's own encoding, or float32 scene linear.
+    srgb : bool
+        The uint8 pixels are sRGB encoded; they are decoded after interpolation, as Cycles does.
+    """
+
+    uid: int
+    name: str
+    pixels: np.ndarray
+    srgb: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class MaterialSnapshot:
+    """A surface.
+
+    Parameters
+    ----------
+    uid : int
+    name : str
+    graph : SurfaceGraph
+    cryptomatte_id : float
+        Hash of the name as the Cryptomatte specification defines it.
+    pass_index : int
+    culls_back : bool
+        Triangles seen from behind are not drawn.
+    """
+
+    uid: int
+    name: str
+    graph: SurfaceGraph
+    cryptomatte_id: float = 0.0
+    pass_index: int = 0
+    culls_back: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class InstanceTable:
+    """One row for each drawn copy of a mesh.
+
+    Parameters
+    ----------
+    world : ndarray of shape (I, 4, 4)
+        float32, object to world.
+    previous_world, next_world : ndarray of shape (I, 4, 4) or None
+        The same in the neighbouring frames, when motion was asked for.
+    cryptomatte_id : ndarray of shape (I,)
+        float32, hash of the object's name.
+    """
+
+    world: np.ndarray
+    cryptomatte_id: np.ndarray
+    previous_world: np.ndarray | None = None
+    next_world: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class InstanceGroup:
+    """A run of rows of the instance table that share mesh, materials and visibility.
+
+    Parameters
+    ----------
+    mesh : int
+        `MeshSnapshot.uid`.
+    materials : tuple of int
+        `MaterialSnapshot.uid` for each slot of the mesh.
+    first, count : int
+        Rows of the instance table.
+    holdout : bool
+        Draws a hole into the picture.
+    """
+
+    mesh: int
+    materials: tuple[int, ...]
+    first: int
+    count: int
+    holdout: bool = False
+
+
+@dataclass(frozen=True)
+class Light:
+    """A light without shadows.
+
+    Parameters
+    ----------
+    kind : {'SUN', 'POINT', 'SPOT'}
+    position : tuple of 3 float
+        In world space; unused for the sun.
+    direction : tuple of 3 float
+        The way light travels from a sun or spot, unit length, in world space.
+    radiance : tuple of 3 float
+        Sun: irradiance on a surface facing it, W/m^2. Point and spot: radiant intensity, W/sr.
+    radius : float
+        Soft size, in m; for a sun the angle of its disk in radians.
+    spot_cosine, spot_blend : float
+        Cosine of the half angle, and the share of the cone that fades.
+    spot_axes : tuple of 3 tuples
+        Rows that rotate and scale world directions into the spot's cone.
+    """
+
+    kind: str
+    position: tuple[float, float, float]
+    direction: tuple[float, float, float]
+    radiance: tuple[float, float, float]
+    radius: float = 0.0
+    spot_cosine: float = -1.0
+    spot_blend: float = 0.0
+    spot_axes: tuple[tuple[float, float, float], ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+
+
+@dataclass(frozen=True)
+class World:
+    """What surrounds the scene: a constant colour, or an equirectangular image times a colour.
+
+    Parameters
+    ----------
+    color : tuple of 3 float
+        Scene linear; multiplies the image.
+    image : int
+        `ImageSnapshot.uid`, 0 for none.
+    rotation : tuple of 3 tuples of 3 float
+        Rows of the matrix that turns a world direction into the image's.
+    """
+
+    color: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    image: int = 0
+    rotation: tuple[tuple[float, float, float], ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """Where the picture is taken from.
+
+    Parameters
+    ----------
+    view : ndarray of shape (4, 4)
+        World to camera space (x right, y up, looking along -z), rigid, float64.
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the whole picture, OpenGL convention.
+    lens : ThinLens or None
+        None is a pinhole.
+    orthographic : bool
+    previous, next : tuple of two ndarray of shape (4, 4) or None
+        View and projection in the neighbouring frames, when motion was asked for.
+    """
+
+    view: np.ndarray
+    projection: np.ndarray
+    lens: ThinLens | None = None
+    orthographic: bool = False
+    previous: tuple[np.ndarray, np.ndarray] | None = None
+    next: tuple[np.ndarray, np.ndarray] | None = None
+
+
+@dataclass(frozen=True)
+class Film:
+    """The raster.
+
+    Parameters
+    ----------
+    width, height : int
+        Of the whole picture, in pixels.
+    region : tuple of 4 int
+        x, y, width, height of the part that is rendered; y from the bottom.
+    transparent : bool
+        The world is left out of the picture.
+    filter_kind : {'BLACKMAN_HARRIS', 'BOX'}
+    filter_width_px : float
+    """
+
+    width: int
+    height: int
+    region: tuple[int, int, int, int]
+    transparent: bool = False
+    filter_kind: str = "BLACKMAN_HARRIS"
+    filter_width_px: float = 1.5
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """How the frame is sampled.
+
+    Parameters
+    ----------
+    method : {'REFERENCE'}
+    lens_samples : int
+    seed : int
+    """
+
+    method: str = "REFERENCE"
+    lens_samples: int = 128
+    seed: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class SceneContent:
+    """What stands in front of the camera.
+
+    The same object means nothing changed: moving the camera keeps it.
+
+    Parameters
+    ----------
+    meshes, images, materials : dict of int to MeshSnapshot, ImageSnapshot, MaterialSnapshot
+        By uid.
+    instances : InstanceTable
+    groups : tuple of InstanceGroup
+    lights : tuple of Light
+    world : World
+    report : tuple of str
+        What cannot be drawn and what is drawn instead, one line each.
+    """
+
+    meshes: dict[int, MeshSnapshot]
+    images: dict[int, ImageSnapshot]
+    materials: dict[int, MaterialSnapshot]
+    instances: InstanceTable
+    groups: tuple[InstanceGroup, ...]
+    lights: tuple[Light, ...] = ()
+    world: World = field(default_factory=World)
+    report: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class SceneSnapshot:
+    """Everything a frame needs.
+
+    Parameters
+    ----------
+    content : SceneContent
+    camera : Camera
+    film : Film
+    sampling : Sampling
+    passes : tuple of str
+        Names as in Blender: ``"Combined"``, ``"Depth"``, ...
+    layer_name : str
+    """
+
+    content: SceneContent
+    camera: Camera
+    film: Film
+    sampling: Sampling
+    passes: tuple[str, ...] = ("Combined",)
+    layer_name: str = ""

@@ -1,0 +1,83 @@
+"""A surface or world shader as a value: the nodes that reach the output, in evaluation order.
+
+The reader of Blender's node trees makes these; `passes.surface_code` turns one into GLSL. Constants
+are kept apart from the shape, so that dragging a slider never compiles a shader.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Constant:
+    """An unlinked input: 1 float or a vector of 3."""
+
+    value: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Link:
+    """An input fed by an earlier node of the graph."""
+
+    node: int
+    output: str
+
+
+@dataclass(frozen=True)
+class ShaderNode:
+    """One node.
+
+    Parameters
+    ----------
+    kind : str
+        Which code to generate, such as ``"emission"``.
+    inputs : tuple of (str, Constant or Link)
+        By socket identifier.
+    settings : tuple of (str, str)
+        Choices that change the code: attribute names, interpolation, blend types.
+    image : int
+        `ImageSnapshot.uid` of the node's image, 0 without one.
+    """
+
+    kind: str
+    inputs: tuple[tuple[str, Constant | Link], ...] = ()
+    settings: tuple[tuple[str, str], ...] = ()
+    image: int = 0
+
+    def input(self, name):
+        """Return the input called `name`."""
+        return dict(self.inputs)[name]
+
+    def setting(self, name, default=""):
+        """Return the setting called `name`."""
+        return dict(self.settings).get(name, default)
+
+
+@dataclass(frozen=True)
+class SurfaceGraph:
+    """Nodes in evaluation order and the closure that is the surface.
+
+    Parameters
+    ----------
+    nodes : tuple of ShaderNode
+        A node's links point to earlier nodes only.
+    surface : Link or None
+        The closure; None is a surface that emits and reflects nothing.
+    """
+
+    nodes: tuple[ShaderNode, ...] = ()
+    surface: Link | None = None
+
+
+def emission_graph(color, strength=1.0):
+    """Return the graph of one Emission node with constant inputs."""
+    node = ShaderNode(
+        "emission",
+        (("Color", Constant(tuple(color))), ("Strength", Constant((float(strength),)))),
+    )
+    return SurfaceGraph((node,), Link(0, "Emission"))
+
+
+# What Blender draws where a surface has no material: a grey diffuse surface.
+DEFAULT_BASE_COLOR = (0.8, 0.8, 0.8)
+# What a missing image looks like in Blender.
+MISSING_IMAGE_COLOR = (1.0, 0.0, 1.0)

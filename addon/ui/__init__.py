@@ -1,0 +1,1 @@
+"""Properties, operators and panels."""
