@@ -1,0 +1,181 @@
+"""What became of a render: error, cancellation, statistics and pictures.
+
+`bpy.ops.render.render` answers ``{'FINISHED'}`` whatever happened inside an engine, so whoever
+starts a render and needs to know listens for its outcome::
+
+    with outcome.listen() as heard:
+        bpy.ops.render.render()
+    if heard.error: ...
+
+The engine fills `outcome.current()`, which belongs to nobody when nobody listens; pictures are
+kept only for a listener that asked for them.
+"""
+
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import AplanatError
+
+
+@dataclass
+class RenderStatistics:
+    """Work and time of a render, summed over its view layers.
+
+    Attributes
+    ----------
+    seconds : dict of str to float
+        By stage: ``extract``, ``plan``, ``upload``, ``draw``, ``resolve``, ``read_back``.
+    lens_samples : int
+        Of all view layers together.
+    draw_calls : int
+    triangles_submitted, triangles_full_detail : int
+        Over all lens samples; the second is what full detail for every sample would have taken.
+    sprites_drawn, sprites_copied : int
+    highlights : dict of str to int
+        ``found``, ``clustered``, ``culled_size``, ``culled_occlusion``, ``culled_cone``,
+        ``masked``, ``splatted``.
+    uploads : dict of str to int
+        Meshes, images, materials and instance tables sent to the device.
+    device : str
+    """
+
+    seconds: dict[str, float] = field(default_factory=dict)
+    lens_samples: int = 0
+    draw_calls: int = 0
+    triangles_submitted: int = 0
+    triangles_full_detail: int = 0
+    sprites_drawn: int = 0
+    sprites_copied: int = 0
+    highlights: dict[str, int] = field(
+        default_factory=lambda: dict.fromkeys(
+            (
+                "found",
+                "clustered",
+                "culled_size",
+                "culled_occlusion",
+                "culled_cone",
+                "masked",
+                "splatted",
+            ),
+            0,
+        )
+    )
+    uploads: dict[str, int] = field(default_factory=dict)
+    device: str = ""
+
+    @contextmanager
+    def timed(self, stage):
+        """Add the duration of a `with` block to a stage."""
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            elapsed = time.perf_counter() - start
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + elapsed
+
+
+@dataclass(frozen=True, eq=False)
+class PassPicture:
+    """One pass of one view layer.
+
+    Parameters
+    ----------
+    channels : str
+        A letter each, as given to `RenderEngine.register_pass`: ``"RGBA"``, ``"X"``, ``"XYZ"``.
+    pixels : ndarray of shape (height, width, len(channels))
+        float32, bottom row first.
+    """
+
+    channels: str
+    pixels: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class LayerPicture:
+    """The passes of one view layer.
+
+    Parameters
+    ----------
+    scene, layer : str
+        Names.
+    region : tuple of 4 int
+        x, y, width, height of the pixels in the whole picture, y from the bottom.
+    size : tuple of 2 int
+        Width and height of the whole picture.
+    passes : dict of str to PassPicture
+        By Blender's name of the pass.
+    metadata : dict of str to str
+        For the picture file, such as Cryptomatte's manifests.
+    """
+
+    scene: str
+    layer: str
+    region: tuple[int, int, int, int]
+    size: tuple[int, int]
+    passes: dict[str, PassPicture]
+    metadata: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass
+class RenderOutcome:
+    """What the engine tells about a render.
+
+    Attributes
+    ----------
+    error : AplanatError or None
+        Why there is no picture.
+    cancelled : bool
+    statistics : RenderStatistics
+    layers : list of LayerPicture
+        Empty unless the listener keeps pictures.
+    report : list of str
+        What could not be drawn and what was drawn instead, each line once.
+    keeps_pictures : bool
+    progress : callable or None
+        Called with the finished share of the view layer, 0 to 1, and a line of text.
+    """
+
+    error: AplanatError | None = None
+    cancelled: bool = False
+    statistics: RenderStatistics = field(default_factory=RenderStatistics)
+    layers: list[LayerPicture] = field(default_factory=list)
+    report: list[str] = field(default_factory=list)
+    keeps_pictures: bool = False
+    progress: object = None
+
+    def note(self, lines):
+        """Add lines to the report that are not there yet."""
+        self.report.extend(line for line in dict.fromkeys(lines) if line not in self.report)
+
+
+_listeners = []
+
+
+@contextmanager
+def listen(keep_pictures=False, progress=None):
+    """Hear of the renders that run inside a `with` block.
+
+    Parameters
+    ----------
+    keep_pictures : bool
+    progress : callable, optional
+        See `RenderOutcome`.
+
+    Yields
+    ------
+    RenderOutcome
+    """
+    heard = RenderOutcome(keeps_pictures=keep_pictures, progress=progress)
+    _listeners.append(heard)
+    try:
+        yield heard
+    finally:
+        _listeners.remove(heard)
+
+
+def current():
+    """Return the outcome that a render must fill: the listener's, else a fresh one."""
+    return _listeners[-1] if _listeners else RenderOutcome()
