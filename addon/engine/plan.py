@@ -84,7 +84,7 @@ def plan_frame(snapshot):
     else:
         points = lens_samples(0, count, lens.iris, sampling.seed)
         positions, focus = points * lens.aperture_radius, lens.focus_distance
-    offsets = pixel_offsets(0, count, film.filter_kind, film.filter_width_px, sampling.seed)
+    offsets = pixel_offsets(0, count, film.filter_kind, film.filter_size_px, sampling.seed)
     return FramePlan(
         width=width,
         height=height,

@@ -1,6 +1,7 @@
 """Pixel filters, importance sampled: a sample is moved inside the filter instead of weighted.
 
-The filter's width is its whole support in pixels, as in Cycles.
+Blender's filter size means the whole support of a box, but half of it for Blackman-Harris, in Cycles
+and EEVEE alike (measured: a point's image through Cycles at size 4 has the variance of support 8).
 """
 
 import numpy as np
@@ -31,7 +32,7 @@ def blackman_harris(x):
     return np.where(np.abs(x) <= 0.5, value, 0.0)
 
 
-def filter_offsets(uniform, kind, width_px):
+def filter_offsets(uniform, kind, size_px):
     """Distribute uniform numbers as a pixel filter does.
 
     Parameters
@@ -39,8 +40,8 @@ def filter_offsets(uniform, kind, width_px):
     uniform : ndarray of shape (..., 2)
         In [0, 1); 0.5 becomes the pixel's centre.
     kind : {'BLACKMAN_HARRIS', 'BOX'}
-    width_px : float
-        Support of the filter, in pixels.
+    size_px : float
+        Blender's filter size, in pixels.
 
     Returns
     -------
@@ -49,8 +50,8 @@ def filter_offsets(uniform, kind, width_px):
     """
     uniform = np.asarray(uniform, dtype=np.float64)
     if kind == "BOX":
-        return (uniform - 0.5) * width_px
+        return (uniform - 0.5) * size_px
     edges = np.linspace(-0.5, 0.5, _TABLE_SIZE + 1)
     density = blackman_harris(0.5 * (edges[1:] + edges[:-1]))
     cumulative = np.concatenate([[0.0], np.cumsum(density)])
-    return np.interp(uniform, cumulative / cumulative[-1], edges) * width_px
+    return np.interp(uniform, cumulative / cumulative[-1], edges) * 2.0 * size_px

@@ -39,14 +39,14 @@ def lens_samples(first, count, iris, seed=0):
     return iris_points(halton(first, count, LENS_BASES, _shift(seed, 2, 1)), iris)
 
 
-def pixel_offsets(first, count, kind, width_px, seed=0):
+def pixel_offsets(first, count, kind, size_px, seed=0):
     """Return sub-pixel positions for samples `first` to `first + count - 1`.
 
     Parameters
     ----------
     first, count : int
     kind : {'BLACKMAN_HARRIS', 'BOX'}
-    width_px : float
+    size_px : float
     seed : int
 
     Returns
@@ -55,4 +55,4 @@ def pixel_offsets(first, count, kind, width_px, seed=0):
         Offsets from the pixel's centre, in pixels, x right and y up.
     """
     uniform = halton(first, count, PIXEL_BASES, _shift(seed, 2, 2))
-    return filter_offsets(uniform, kind, width_px)
+    return filter_offsets(uniform, kind, size_px)

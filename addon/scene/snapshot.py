@@ -236,7 +236,8 @@ class Film:
     transparent : bool
         The world is left out of the picture.
     filter_kind : {'BLACKMAN_HARRIS', 'BOX'}
-    filter_width_px : float
+    filter_size_px : float
+        As Blender's filter size.
     """
 
     width: int
@@ -244,7 +245,7 @@ class Film:
     region: tuple[int, int, int, int]
     transparent: bool = False
     filter_kind: str = "BLACKMAN_HARRIS"
-    filter_width_px: float = 1.5
+    filter_size_px: float = 1.5
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,40 @@
+"""Fixtures of all tests: this process' Blender with Aplanat in it, and the shared material."""
+
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope="session")
+def shared():
+    """The folder of scenes and references beside the checkout."""
+    folder = REPOSITORY.parent / "shared"
+    if not (folder / "scenes").is_dir():
+        pytest.skip("the shared scenes and references are not beside this checkout")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def aplanat_bpy():
+    """The `bpy` module with Aplanat registered, once for the whole run."""
+    import bpy
+
+    import addon
+
+    addon.register()
+    yield bpy
+    addon.unregister()
+
+
+@pytest.fixture
+def empty_scene(aplanat_bpy):
+    """An empty scene with the Standard view transform, 96 x 64 pixels."""
+    bpy = aplanat_bpy
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = 96, 64
+    scene.render.resolution_percentage = 100
+    scene.view_settings.view_transform = "Standard"
+    return scene
