@@ -77,6 +77,40 @@ def emission_graph(color, strength=1.0):
     return SurfaceGraph((node,), Link(0, "Emission"))
 
 
+# Closures whose light depends on the normal.
+LIT_KINDS = frozenset({"diffuse", "glossy", "principled"})
+
+
+def attributes_read(graph):
+    """Return the mesh attributes that a graph may read.
+
+    Parameters
+    ----------
+    graph : SurfaceGraph
+
+    Returns
+    -------
+    frozenset of str
+        ``"normal"``, ``"uv:NAME"`` and ``"color:NAME"``; an empty NAME is the active one. A node
+        that reads an attribute of any kind by its name gives both keys; meshes need only have
+        those that exist.
+    """
+    keys = set()
+    for node in graph.nodes:
+        name = node.setting("name")
+        if node.kind in LIT_KINDS:
+            keys.add("normal")
+        elif node.kind == "uv":
+            keys.add(f"uv:{name}")
+        elif node.kind == "color_attribute":
+            keys.add(f"color:{name}")
+        elif node.kind == "attribute":
+            keys |= {f"uv:{name}", f"color:{name}"}
+        elif node.kind == "image_texture" and "Vector" not in dict(node.inputs):
+            keys.add("uv:")
+    return frozenset(keys)
+
+
 # What Blender draws where a surface has no material: a grey diffuse surface.
 DEFAULT_BASE_COLOR = (0.8, 0.8, 0.8)
 # What a missing image looks like in Blender.
