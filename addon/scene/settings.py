@@ -1,5 +1,7 @@
 """Render settings of a scene to `Film` and `Sampling`."""
 
+from dataclasses import replace
+
 from .snapshot import Film, Sampling
 
 
@@ -28,3 +30,8 @@ def read_sampling(scene):
     """Return how a final render is sampled."""
     settings = scene.aplanat
     return Sampling("REFERENCE", settings.render_samples, settings.seed)
+
+
+def read_preview_sampling(scene):
+    """Return how a viewport is sampled: as the final render, with its own number of samples."""
+    return replace(read_sampling(scene), lens_samples=scene.aplanat.preview_samples)

@@ -15,6 +15,14 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
         max=65536,
         soft_max=4096,
     )
+    preview_samples: IntProperty(
+        name="Viewport",
+        description="Lens samples after which the viewport rests",
+        default=64,
+        min=1,
+        max=65536,
+        soft_max=1024,
+    )
     seed: IntProperty(name="Seed", description="Rotates the sample sequence", default=0, min=0)
     pixel_filter: EnumProperty(
         name="Pixel Filter",
