@@ -1,5 +1,11 @@
 """The GPU context: making sure there is one, and its name."""
 
+import os
+import signal
+import sys
+import time
+import warnings
+
 from ..errors import DeviceUnavailableError
 
 _ADVICE = (
@@ -18,6 +24,10 @@ def ensure_context():
     """
     import gpu
 
+    if not _has_backend() and not _survives_initialisation():
+        raise DeviceUnavailableError(
+            f"no GPU context (Blender finds no graphics driver); {_ADVICE}"
+        )
     try:
         if hasattr(gpu, "init"):
             gpu.init()
@@ -26,6 +36,58 @@ def ensure_context():
         raise DeviceUnavailableError(f"no GPU context ({error}); {_ADVICE}") from error
     if backend in {"NONE", "UNKNOWN"}:
         raise DeviceUnavailableError(f"no GPU context (backend {backend}); {_ADVICE}")
+
+
+def _has_backend():
+    import gpu
+
+    try:
+        return gpu.platform.backend_type_get() not in {"NONE", "UNKNOWN"}
+    except SystemError:
+        return False
+
+
+# Two orders of magnitude above what the slowest software driver took.
+_PROBE_SECONDS = 20.0
+
+
+def _survives_initialisation():
+    """Whether a copy of this process can initialise the GPU.
+
+    Blender dies of a segmentation fault where it finds no driver in the background, so the first
+    attempt is made by a forked child. Only Linux: forking is unsafe elsewhere.
+    """
+    if sys.platform != "linux":
+        return True
+    with warnings.catch_warnings():
+        # The child only initialises the GPU and ends; a deadlock would end at the time limit.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        child = os.fork()
+    if child == 0:
+        _initialise_and_exit()
+    end = time.monotonic() + _PROBE_SECONDS
+    while time.monotonic() < end:
+        done, status = os.waitpid(child, os.WNOHANG)
+        if done:
+            return not os.WIFSIGNALED(status)
+        time.sleep(0.005)
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return True
+
+
+def _initialise_and_exit():
+    import gpu
+
+    try:
+        # Neither a crash report nor the driver's complaints are news for anybody.
+        signal.signal(signal.SIGSEGV, signal.SIG_DFL)
+        null = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null, 1)
+        os.dup2(null, 2)
+        gpu.init()
+    finally:
+        os._exit(0)
 
 
 def device_name():
