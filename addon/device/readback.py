@@ -26,3 +26,11 @@ def read_color(framebuffer, width, height, channels=4, slot=0):
     buffer = gpu.types.Buffer("FLOAT", pixels.shape, pixels)
     framebuffer.read_color(0, 0, width, height, channels, slot, "FLOAT", data=buffer)
     return pixels
+
+
+def wait(framebuffer):
+    """Return when everything that was drawn into a frame buffer is there.
+
+    Reading a pixel is the only way to wait that Blender offers.
+    """
+    framebuffer.read_color(0, 0, 1, 1, 4, 0, "FLOAT")

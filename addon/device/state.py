@@ -1,5 +1,24 @@
 """Fixed-function state, set in whole named sets so that no pass inherits another's."""
 
+from contextlib import contextmanager
+
+
+@contextmanager
+def preserved():
+    """Give back Blender's own state after a `with` block that draws between its drawings."""
+    import gpu
+
+    blend = gpu.state.blend_get()
+    depth_test = gpu.state.depth_test_get()
+    depth_mask = gpu.state.depth_mask_get()
+    try:
+        yield
+    finally:
+        gpu.state.blend_set(blend)
+        gpu.state.depth_test_set(depth_test)
+        gpu.state.depth_mask_set(depth_mask)
+        gpu.state.face_culling_set("NONE")
+
 
 def opaque():
     """Nearest surface wins: depth test and write, no blending."""

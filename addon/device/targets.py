@@ -40,7 +40,9 @@ class Targets:
         self.height = height
         self.textures = {}
         for spec in specs:
-            self.textures[spec.name] = gpu.types.GPUTexture((width, height), format=spec.texel_format)
+            self.textures[spec.name] = gpu.types.GPUTexture(
+                (width, height), format=spec.texel_format
+            )
         self._framebuffers = {}
 
     def __enter__(self):
@@ -66,6 +68,15 @@ class Targets:
             )
             self._framebuffers[key] = framebuffer
         return framebuffer
+
+    def forget_framebuffers(self):
+        """Make the frame buffers anew when they are next asked for.
+
+        They belong to the window whose context was active when they were made, and drawing into
+        them with another window's silently does nothing; textures belong to all windows. So no
+        frame buffer may outlive a stretch of work that is certain to be in one window.
+        """
+        self._framebuffers.clear()
 
     def release(self):
         """Give the textures back to the device."""

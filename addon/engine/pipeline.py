@@ -30,27 +30,51 @@ class FrameRenderer:
     """
 
     def __init__(self, plan, snapshot, buffers):
+        self._buffers = buffers
+        self._fullscreen = geometry.fullscreen_batch()
+        self._content = None
+        self._targets = None
+        self.restart(plan, snapshot)
+
+    def restart(self, plan, snapshot):
+        """Begin a frame anew, with another view or content; what still fits is kept.
+
+        Parameters
+        ----------
+        plan : FramePlan
+        snapshot : SceneSnapshot
+            The buffers must be updated to its content.
+        """
         self.plan = plan
         self.samples_done = 0
         self.draw_calls = 0
         self.triangles = 0
-        self._buffers = buffers
-        self._draws = surface.build_draws(snapshot.content, buffers)
-        self._triangles_per_sample = sum(d.triangles * d.count for d in self._draws)
-        self._fullscreen = geometry.fullscreen_batch()
+        if snapshot.content is not self._content:
+            self._draws = surface.build_draws(snapshot.content, self._buffers)
+            self._triangles_per_sample = sum(d.triangles * d.count for d in self._draws)
+            self._content = snapshot.content
         self._view = uniform_buffer(_view_params(plan))
         world = snapshot.content.world.color
         self._background = (0.0,) * 4 if snapshot.film.transparent else (*world, 1.0)
-        self._targets = Targets(plan.width, plan.height, _TARGETS)
+        size = (plan.width, plan.height)
+        if self._targets is None or (self._targets.width, self._targets.height) != size:
+            self.release()
+            self._targets = Targets(*size, _TARGETS)
+        self._targets.forget_framebuffers()
         with self._targets.framebuffer("sum").bind():
             self._targets.framebuffer("sum").clear(color=(0.0, 0.0, 0.0, 0.0))
 
     def advance(self, samples):
         """Render up to `samples` more lens samples."""
+        self._targets.forget_framebuffers()
         end = min(self.samples_done + samples, self.plan.samples)
         for index in range(self.samples_done, end):
             self._render_sample(index)
         self.samples_done = end
+
+    def wait(self):
+        """Return when the device has drawn everything it was given."""
+        readback.wait(self._targets.framebuffer("sum"))
 
     def _render_sample(self, index):
         plan = self.plan
@@ -71,15 +95,24 @@ class FrameRenderer:
         """Whether every sample has been rendered."""
         return self.samples_done >= self.plan.samples
 
-    def resolve(self, origin=(0, 0)):
-        """Draw the picture so far into the bound frame buffer."""
+    def resolve(self, origin=(0, 0), pixel_size=1):
+        """Draw the picture so far into the bound frame buffer.
+
+        Parameters
+        ----------
+        origin : tuple of 2 int
+            Where its lower left corner goes.
+        pixel_size : int
+            Side of the square that shows one pixel.
+        """
         state.overwrite()
         resolve.resolve(
-            self._fullscreen, self._targets["sum"], max(self.samples_done, 1), origin
+            self._fullscreen, self._targets["sum"], max(self.samples_done, 1), origin, pixel_size
         )
 
     def read_image(self):
         """Return the picture so far, shape (height, width, 4), bottom row first."""
+        self._targets.forget_framebuffers()
         framebuffer = self._targets.framebuffer("image")
         with framebuffer.bind():
             self.resolve()
@@ -87,7 +120,9 @@ class FrameRenderer:
 
     def release(self):
         """Give the targets back to the device."""
-        self._targets.release()
+        if self._targets is not None:
+            self._targets.release()
+            self._targets = None
 
 
 def _view_params(plan):

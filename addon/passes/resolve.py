@@ -10,11 +10,11 @@ _INFO = ShaderInfo(
     attributes=(("VEC2", "pos"),),
     outputs=(("VEC4", "out_color"),),
     samplers=(("FLOAT_2D", "sum_tx"),),
-    push_constants=(("FLOAT", "scale"), ("IVEC2", "origin")),
+    push_constants=(("FLOAT", "scale"), ("IVEC2", "origin"), ("INT", "pixel_size")),
 )
 
 
-def resolve(fullscreen, total, samples, origin=(0, 0)):
+def resolve(fullscreen, total, samples, origin=(0, 0), pixel_size=1):
     """Draw the mean of the samples into the bound frame buffer.
 
     Parameters
@@ -25,10 +25,13 @@ def resolve(fullscreen, total, samples, origin=(0, 0)):
     samples : int
     origin : tuple of 2 int
         Where the picture's lower left pixel goes, in pixels of the frame buffer.
+    pixel_size : int
+        Side of the square of the frame buffer that shows one pixel of the picture.
     """
     shader = compile_shader(_INFO)
     shader.bind()
     shader.uniform_sampler("sum_tx", total)
     shader.uniform_float("scale", 1.0 / samples)
     shader.uniform_int("origin", origin)
+    shader.uniform_int("pixel_size", pixel_size)
     fullscreen.draw(shader)

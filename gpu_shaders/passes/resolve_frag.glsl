@@ -1,7 +1,9 @@
-// The picture: the sum of the samples over their number, placed at an offset in the target.
-// Inputs: sum_tx; scale (1 / samples); origin (lower left corner in the target, px).
+// The picture: the sum of the samples over their number, placed at an offset in the target,
+// each pixel as a square of pixel_size.
+// Inputs: sum_tx; scale (1 / samples); origin (lower left corner in the target, px);
+// pixel_size.
 // Outputs: premultiplied scene-linear colour. Source: methods 1.
 void main()
 {
-  out_color = texelFetch(sum_tx, ivec2(gl_FragCoord.xy) - origin, 0) * scale;
+  out_color = texelFetch(sum_tx, (ivec2(gl_FragCoord.xy) - origin) / pixel_size, 0) * scale;
 }
