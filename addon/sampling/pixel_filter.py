@@ -1,7 +1,8 @@
 """Pixel filters, importance sampled: a sample is moved inside the filter instead of weighted.
 
-Blender's filter size means the whole support of a box, but half of it for Blackman-Harris, in Cycles
-and EEVEE alike (measured: a point's image through Cycles at size 4 has the variance of support 8).
+Blender's filter size means the whole support of a box, but half of it for Blackman-Harris, in
+Cycles and EEVEE alike (measured: a point's image through Cycles at size 4 has the variance of
+support 8).
 """
 
 import numpy as np

@@ -1,0 +1,46 @@
+import numpy as np
+import pytest
+
+from addon.sampling.iris import Iris
+from addon.sampling.pixel_filter import blackman_harris, filter_offsets
+from addon.sampling.sequence import lens_samples, pixel_offsets
+
+
+def test_the_first_sample_is_the_pinhole_at_the_pixel_s_centre():
+    assert np.array_equal(lens_samples(0, 1, Iris()), [[0.0, 0.0]])
+    assert np.allclose(pixel_offsets(0, 1, "BLACKMAN_HARRIS", 1.5), 0.0, atol=1e-3)
+
+
+def test_a_continued_sequence_is_the_same_as_one_drawn_at_once():
+    iris = Iris(5, 0.2, 1.3)
+    parts = [lens_samples(0, 10, iris, 3), lens_samples(10, 22, iris, 3)]
+    assert np.array_equal(np.concatenate(parts), lens_samples(0, 32, iris, 3))
+
+
+def test_seeds_give_different_sequences_and_the_same_seed_the_same():
+    assert np.array_equal(lens_samples(0, 8, Iris(), 7), lens_samples(0, 8, Iris(), 7))
+    assert not np.array_equal(lens_samples(0, 8, Iris(), 7), lens_samples(0, 8, Iris(), 8))
+
+
+def test_lens_and_pixel_positions_are_not_correlated():
+    lens = lens_samples(0, 2048, Iris())
+    pixel = pixel_offsets(0, 2048, "BOX", 1.0)
+    correlation = np.corrcoef(np.concatenate([lens, pixel], axis=1).T)
+    # 1/sqrt(2048) = 0.022 for independent noise.
+    assert np.abs(correlation - np.eye(4)).max() < 0.03
+
+
+def test_a_box_spreads_over_exactly_its_size():
+    offsets = filter_offsets(np.random.default_rng(1).random((10000, 2)), "BOX", 2.0)
+    assert offsets.min() >= -1.0 and offsets.max() <= 1.0
+    assert offsets.std() == pytest.approx(2.0 / np.sqrt(12), rel=0.01)
+
+
+def test_blackman_harris_offsets_have_the_window_s_variance():
+    x = np.linspace(-0.5, 0.5, 20001)
+    window = blackman_harris(x)
+    variance = (window * x**2).sum() / window.sum()
+    uniform = (np.arange(20000) + 0.5) / 20000
+    offsets = filter_offsets(np.stack([uniform, uniform], axis=-1), "BLACKMAN_HARRIS", 1.5)
+    # The support is twice the size.
+    assert offsets.var() == pytest.approx(variance * 3.0**2, rel=1e-3)

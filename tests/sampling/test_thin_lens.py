@@ -1,0 +1,54 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from addon.errors import FocusError
+from addon.sampling.iris import Iris
+from addon.sampling.thin_lens import ThinLens, aperture_radius, coc_radius_px, displacement_radius
+
+LENS = ThinLens(0.025, 5.0)
+
+
+def test_a_50_mm_lens_at_f_2_has_a_radius_of_12_5_mm():
+    assert aperture_radius(0.05, 2.0) == pytest.approx(0.0125)
+
+
+def test_nothing_is_displaced_at_the_focus_plane_and_all_of_the_aperture_at_the_lens():
+    assert displacement_radius(5.0, LENS) == 0.0
+    assert displacement_radius(0.0, LENS) == LENS.aperture_radius
+    assert displacement_radius(10.0, LENS) == -LENS.aperture_radius
+
+
+def test_coc_is_negative_in_front_of_the_focus_and_bounded_behind_it():
+    coc = coc_radius_px(np.array([1.0, 5.0, 1e9]), LENS, 1000.0)
+    assert coc[0] < 0 and coc[1] == 0
+    assert coc[2] == pytest.approx(1000.0 * 0.025 / 5.0)
+
+
+@given(st.floats(0.1, 1e4), st.floats(0.1, 1e4))
+def test_picture_and_object_space_circles_agree(depth, focus):
+    lens = ThinLens(0.03, focus)
+    picture = coc_radius_px(depth, lens, 800.0)
+    assert picture == pytest.approx(
+        -800.0 / depth * displacement_radius(depth, lens), rel=1e-9, abs=1e-9
+    )
+
+
+@pytest.mark.parametrize("focus", [0.0, -1.0, math.nan, math.inf])
+def test_an_impossible_focus_distance_is_refused(focus):
+    with pytest.raises(FocusError, match="focus distance"):
+        ThinLens(0.02, focus)
+
+
+@pytest.mark.parametrize("f_number", [0.0, -2.0, math.nan, math.inf])
+def test_an_impossible_f_number_is_refused(f_number):
+    with pytest.raises(FocusError, match="f-stop"):
+        aperture_radius(0.05, f_number)
+
+
+def test_an_impossible_iris_ratio_is_refused():
+    with pytest.raises(FocusError, match="ratio"):
+        ThinLens(0.02, 5.0, Iris(ratio=0.0))
