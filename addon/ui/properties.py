@@ -1,18 +1,34 @@
 """What Aplanat adds to Blender's data-blocks: one property group each."""
 
 import bpy
-from bpy.props import EnumProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty
+
+# Also what the command line accepts.
+MAX_SAMPLES = 65536
 
 
 class AplanatSceneSettings(bpy.types.PropertyGroup):
     """How a scene is sampled."""
 
+    method: EnumProperty(
+        name="Method",
+        description="How the picture is put together from views through the lens",
+        items=(
+            (
+                "REFERENCE",
+                "Reference",
+                "Draw everything in full detail for every lens sample: exact, the slowest",
+            ),
+        ),
+        default="REFERENCE",
+    )
     render_samples: IntProperty(
         name="Render",
-        description="Lens samples of the final render",
+        description="Places on the lens from which the final render sees the scene. More make"
+        " blurred parts smoother; the amount of blur stays the same",
         default=256,
         min=1,
-        max=65536,
+        max=MAX_SAMPLES,
         soft_max=4096,
     )
     preview_samples: IntProperty(
@@ -20,22 +36,58 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
         description="Lens samples after which the viewport rests",
         default=64,
         min=1,
-        max=65536,
+        max=MAX_SAMPLES,
         soft_max=1024,
     )
-    seed: IntProperty(name="Seed", description="Rotates the sample sequence", default=0, min=0)
+    seed: IntProperty(
+        name="Seed",
+        description="Chooses another pattern of samples; the same seed gives the same picture",
+        default=0,
+        min=0,
+    )
     pixel_filter: EnumProperty(
         name="Pixel Filter",
-        description="How samples are gathered into a pixel; the width is the scene's filter size",
+        description="How samples are gathered into a pixel",
         items=(
             ("BLACKMAN_HARRIS", "Blackman-Harris", "Smooth edges without ringing"),
-            ("BOX", "Box", "Every sample counts for the pixel it falls into"),
+            ("BOX", "Box", "Every place of the pixel counts the same"),
         ),
         default="BLACKMAN_HARRIS",
     )
+    chunk_milliseconds: IntProperty(
+        name="Chunk",
+        description="How long a final render may draw before it lets the window answer, in"
+        " milliseconds. Longer renders a little faster; shorter keeps Blender more responsive",
+        default=100,
+        min=10,
+        max=2000,
+        soft_max=500,
+    )
 
 
-CLASSES = (AplanatSceneSettings,)
+def _update_passes(_group, context):
+    context.view_layer.update_render_passes()
+
+
+class AplanatViewLayerSettings(bpy.types.PropertyGroup):
+    """Passes that only Aplanat has."""
+
+    use_pass_coc: BoolProperty(
+        name="Circle of Confusion",
+        description="Radius of the blur disk of the point in each pixel's centre, in pixels;"
+        " negative in front of the focus plane",
+        default=False,
+        update=_update_passes,
+    )
+    use_pass_focus_matte: BoolProperty(
+        name="Focus Matte",
+        description="1 where the blur is smaller than a pixel, falling to 0 where it is larger",
+        default=False,
+        update=_update_passes,
+    )
+
+
+CLASSES = (AplanatSceneSettings, AplanatViewLayerSettings)
 
 _register, _unregister = bpy.utils.register_classes_factory(CLASSES)
 
@@ -44,9 +96,11 @@ def register():
     """Register the groups and hang them on Blender's data-blocks."""
     _register()
     bpy.types.Scene.aplanat = PointerProperty(type=AplanatSceneSettings)
+    bpy.types.ViewLayer.aplanat = PointerProperty(type=AplanatViewLayerSettings)
 
 
 def unregister():
     """Undo `register`."""
+    del bpy.types.ViewLayer.aplanat
     del bpy.types.Scene.aplanat
     _unregister()
