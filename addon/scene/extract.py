@@ -5,7 +5,7 @@ import numpy as np
 from .camera import read_camera
 from .materials import MaterialReader
 from .meshes import read_mesh
-from .settings import read_film, read_sampling
+from .settings import read_film, read_passes, read_sampling
 from .snapshot import InstanceGroup, InstanceTable, SceneContent, SceneSnapshot, World
 
 
@@ -33,7 +33,9 @@ class SceneExtractor:
             camera=read_camera(depsgraph, scene.camera, film),
             film=film,
             sampling=read_sampling(scene),
+            passes=read_passes(depsgraph.view_layer),
             layer_name=depsgraph.view_layer.name,
+            alpha_threshold=depsgraph.view_layer.pass_alpha_threshold,
         )
 
     def extract_content(self, depsgraph):

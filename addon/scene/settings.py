@@ -35,3 +35,36 @@ def read_sampling(scene):
 def read_preview_sampling(scene):
     """Return how a viewport is sampled: as the final render, with its own number of samples."""
     return replace(read_sampling(scene), lens_samples=scene.aplanat.preview_samples)
+
+
+def read_passes(view_layer):
+    """Return the names of the passes that a view layer asks for.
+
+    Parameters
+    ----------
+    view_layer : bpy.types.ViewLayer
+        Blender's own switches are read, and ours of `view_layer.aplanat`.
+
+    Returns
+    -------
+    tuple of str
+        As in Blender; Combined is always the first.
+    """
+    own = view_layer.aplanat
+    switches = (
+        ("Depth", view_layer.use_pass_z),
+        ("Normal", view_layer.use_pass_normal),
+        ("Position", view_layer.use_pass_position),
+        ("Vector", view_layer.use_pass_vector),
+        ("CoC", own.use_pass_coc),
+        ("Focus Matte", own.use_pass_focus_matte),
+    )
+    names = ["Combined", *(name for name, wanted in switches if wanted)]
+    # Two ranks a pass.
+    passes = (view_layer.pass_cryptomatte_depth + 1) // 2
+    for kind, wanted in (
+        ("CryptoObject", view_layer.use_pass_cryptomatte_object),
+        ("CryptoMaterial", view_layer.use_pass_cryptomatte_material),
+    ):
+        names += [f"{kind}{i:02d}" for i in range(passes if wanted else 0)]
+    return tuple(names)

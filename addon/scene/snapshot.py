@@ -117,12 +117,15 @@ class InstanceTable:
         The same in the neighbouring frames, when motion was asked for.
     cryptomatte_id : ndarray of shape (I,)
         float32, hash of the object's name.
+    names : tuple of str
+        Of the objects, one a row, for Cryptomatte's manifest; empty when that was not asked for.
     """
 
     world: np.ndarray
     cryptomatte_id: np.ndarray
     previous_world: np.ndarray | None = None
     next_world: np.ndarray | None = None
+    names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -305,6 +308,8 @@ class SceneSnapshot:
     passes : tuple of str
         Names as in Blender: ``"Combined"``, ``"Depth"``, ...
     layer_name : str
+    alpha_threshold : float
+        Opacity below which a surface is left out of Depth, Normal and their like.
     """
 
     content: SceneContent
@@ -313,3 +318,4 @@ class SceneSnapshot:
     sampling: Sampling
     passes: tuple[str, ...] = ("Combined",)
     layer_name: str = ""
+    alpha_threshold: float = 0.5

@@ -1,0 +1,123 @@
+"""The passes of a picture: what they are called, what they hold, and who makes them.
+
+Blender names the sockets of the compositor, the render result and the parts of a multilayer EXR
+after this table, and asks for the passes of a view layer through `register`.
+
+- **Combined** is the picture through the lens.
+- **Depth, Normal, Position, Vector, CoC** describe what a pinhole at the lens' centre sees in the
+  middle of each pixel: unblurred, without pixel filter. Depth runs along the optical axis and is
+  1e10 where nothing is; Position and Normal are in world space, the normal turned towards the
+  camera; Vector holds the movement since the previous frame and to the next in pixels, with
+  Cycles' signs. CoC is the signed radius of the circle of confusion in pixels, negative in front of
+  the focus plane.
+- **Focus Matte** and the **Cryptomattes** are seen through the lens, so that they fit the blurred
+  edges of Combined. Focus Matte is the share of a pixel that sharp surfaces fill; see
+  `plan.sharp_radius`.
+"""
+
+import re
+from dataclasses import dataclass
+
+_CRYPTOMATTE = re.compile(r"Crypto(Object|Material)\d\d")
+
+
+@dataclass(frozen=True)
+class RenderPass:
+    """One pass.
+
+    Parameters
+    ----------
+    name : str
+        Blender's name where Blender has one.
+    channels : str
+        A letter each.
+    kind : {'COLOR', 'VALUE', 'VECTOR'}
+        How the compositor reads it.
+    maker : {'COLOR', 'DATA', 'MATTE', 'CRYPTOMATTE'}
+        `COLOR`: the sum of the lens samples. `DATA`: one pinhole pass. `MATTE` and `CRYPTOMATTE`:
+        gathered beside the lens samples.
+    """
+
+    name: str
+    channels: str
+    kind: str
+    maker: str
+
+
+_TABLE = {
+    render_pass.name: render_pass
+    for render_pass in (
+        RenderPass("Combined", "RGBA", "COLOR", "COLOR"),
+        RenderPass("Depth", "Z", "VALUE", "DATA"),
+        RenderPass("Normal", "XYZ", "VECTOR", "DATA"),
+        RenderPass("Position", "XYZ", "VECTOR", "DATA"),
+        RenderPass("Vector", "XYZW", "VECTOR", "DATA"),
+        RenderPass("CoC", "X", "VALUE", "DATA"),
+        RenderPass("Focus Matte", "X", "VALUE", "MATTE"),
+    )
+}
+
+
+def render_pass(name):
+    """Return the pass called `name`.
+
+    Raises
+    ------
+    KeyError
+        If Aplanat makes no such pass.
+    """
+    if _CRYPTOMATTE.fullmatch(name):
+        return RenderPass(name, "RGBA", "COLOR", "CRYPTOMATTE")
+    return _TABLE[name]
+
+
+def made_by(names, *makers):
+    """Return those of the named passes that one of the makers makes, in order."""
+    return tuple(name for name in names if render_pass(name).maker in makers)
+
+
+def cryptomatte_kinds(names):
+    """Return how many passes each kind of Cryptomatte has among the named ones.
+
+    Returns
+    -------
+    dict of str to int
+        Keys ``"CryptoObject"`` and ``"CryptoMaterial"``, where present.
+    """
+    counts = {}
+    for name in made_by(names, "CRYPTOMATTE"):
+        counts[name[:-2]] = counts.get(name[:-2], 0) + 1
+    return counts
+
+
+def register(engine, scene, view_layer, names):
+    """Tell Blender which passes a view layer will have.
+
+    Parameters
+    ----------
+    engine : bpy.types.RenderEngine
+    scene : bpy.types.Scene
+    view_layer : bpy.types.ViewLayer
+    names : sequence of str
+        As `scene.settings.read_passes` gives them.
+    """
+    for entry in map(render_pass, names):
+        engine.register_pass(
+            scene, view_layer, entry.name, len(entry.channels), entry.channels, entry.kind
+        )
+
+
+def fill_layer(layer, pictures):
+    """Copy pictures into a layer of a render result.
+
+    Parameters
+    ----------
+    layer : bpy.types.RenderLayer
+    pictures : dict of str to ndarray of shape (height, width, channels)
+        float32, bottom row first, by pass; those that the layer lacks are left out.
+    """
+    for name, picture in pictures.items():
+        # Blender drops a pass between registering and rendering when a script changes the layer.
+        target = layer.passes.get(name)
+        if target is not None:
+            target.rect.foreach_set(picture.reshape(-1))
