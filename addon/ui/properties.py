@@ -97,12 +97,10 @@ def register():
     _register()
     bpy.types.Scene.aplanat = PointerProperty(type=AplanatSceneSettings)
     bpy.types.ViewLayer.aplanat = PointerProperty(type=AplanatViewLayerSettings)
-    bpy.types.ViewLayer.aplanat = PointerProperty(type=AplanatViewLayerSettings)
 
 
 def unregister():
     """Undo `register`."""
-    del bpy.types.ViewLayer.aplanat
     del bpy.types.ViewLayer.aplanat
     del bpy.types.Scene.aplanat
     _unregister()
