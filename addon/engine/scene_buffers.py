@@ -37,9 +37,14 @@ class SceneBuffers:
 
     def update(self, content):
         """Upload what is new in a `SceneContent` and release what it lacks."""
+        for _ in self.update_steps(content):
+            pass
+
+    def update_steps(self, content):
+        """Do what `update` does in steps; left half done, the next call completes it."""
         if content is self._content:
             return
-        self._content = content
+        self._content = None
         for uid in self.meshes.keys() - content.meshes.keys():
             del self.meshes[uid]
         for uid in self.images.keys() - content.images.keys():
@@ -50,14 +55,17 @@ class SceneBuffers:
             if uid not in self.meshes:
                 self.meshes[uid] = MeshBuffers(mesh)
                 self.uploads["meshes"] += 1
+                yield
         for uid, image in content.images.items():
             if uid not in self.images:
                 self.images[uid] = image_texture(image)
                 self.uploads["images"] += 1
+                yield
         if self._instance_table is not content.instances:
             self.instances = texture_2d(instance_texels(content.instances))
             self._instance_table = content.instances
             self.uploads["instance_tables"] += 1
+        self._content = content
 
     def material_constants(self, uid, code):
         """Return the uniform block of a material, uploading it at its first use."""

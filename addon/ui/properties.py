@@ -58,7 +58,7 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
         name="Chunk",
         description="How long a final render may draw before it lets the window answer, in"
         " milliseconds. Longer renders a little faster; shorter keeps Blender more responsive",
-        default=100,
+        default=50,
         min=10,
         max=2000,
         soft_max=500,
