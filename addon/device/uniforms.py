@@ -25,3 +25,13 @@ def uniform_buffer(data):
     import gpu
 
     return gpu.types.GPUUniformBuf(_buffer(data))
+
+
+def bind_resource(shader, name, resource):
+    """Bind a uniform block or a texture, whichever `resource` is, to the bound shader."""
+    import gpu
+
+    if isinstance(resource, gpu.types.GPUUniformBuf):
+        shader.uniform_block(name, resource)
+    else:
+        shader.uniform_sampler(name, resource)

@@ -10,6 +10,7 @@ from ..device import shader_source
 from ..device.geometry import attribute_identifier, attribute_type
 from ..device.shaders import ShaderInfo, compile_shader
 from ..device.uniform_block import UniformStruct
+from ..device.uniforms import bind_resource
 from . import surface_code
 
 VIEW_PARAMS = UniformStruct("shared/view_params.glsl", "ViewParams")
@@ -35,6 +36,14 @@ class SurfaceTarget:
     attributes : tuple of str
         Mesh attributes that it reads itself, such as ``"normal"``, where the mesh has them.
     defines : tuple of str
+    structs : str
+        Declarations of its own uniform blocks.
+    uniforms, samplers : tuple of (str, str)
+        Its own ones, bound once a shader through `draw_sample`'s `bindings`.
+    names_material : bool
+        Its fragment shader reads the push constant `material_id`.
+    shades : bool
+        It calls ``surface_closure()`` for every surface, not only for transparent ones.
     """
 
     fragment: str
@@ -42,9 +51,22 @@ class SurfaceTarget:
     varyings: tuple[tuple[str, str], ...] = ()
     attributes: tuple[str, ...] = ()
     defines: tuple[str, ...] = ()
+    structs: str = ""
+    uniforms: tuple[tuple[str, str], ...] = ()
+    samplers: tuple[tuple[str, str], ...] = ()
+    names_material: bool = False
+    shades: bool = True
 
 
 COLOR = SurfaceTarget("passes/surface_frag.glsl", (("VEC4", "out_color"),))
+
+# The same, with what the mattes are gathered from beside it.
+COLOR_AND_MATTES = SurfaceTarget(
+    "passes/surface_frag.glsl",
+    (("VEC4", "out_color"), ("VEC4", "out_mattes")),
+    defines=("MATTES",),
+    names_material=True,
+)
 
 
 @dataclass(frozen=True)
@@ -63,6 +85,8 @@ class Draw:
     textures : tuple of (str, GPUTexture)
     transparent : bool
         The shader reads the sample's index.
+    material_id : float or None
+        Cryptomatte id, where the shader reads it.
     """
 
     shader: object
@@ -73,6 +97,7 @@ class Draw:
     constants: object
     textures: tuple
     transparent: bool
+    material_id: float | None = None
 
 
 def surface_shader(target, code, mesh_attributes, holdout=False):
@@ -92,8 +117,10 @@ def surface_shader(target, code, mesh_attributes, holdout=False):
     attributes = [("VEC3", "pos")]
     varyings = [("VEC3", "world_position"), ("FLAT INT", "instance_row"), *target.varyings]
     forward = []
+    transparent = code.transparent and not holdout
+    shades = not holdout and (target.shades or transparent)
     own = tuple(key for key in target.attributes if key in mesh_attributes)
-    for key in dict.fromkeys(code.attributes + own):
+    for key in dict.fromkeys((code.attributes if shades else ()) + own):
         name = attribute_identifier(key)
         kind = attribute_type(mesh_attributes[key].shape[1])
         attributes.append((kind, name))
@@ -102,33 +129,31 @@ def surface_shader(target, code, mesh_attributes, holdout=False):
     vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
     vertex += shader_source.load("passes/surface_vert.glsl")
     fragment = _LIBRARIES
-    if not holdout:
+    structs = VIEW_PARAMS.source + target.structs
+    uniforms = [("ViewParams", "view_buf"), *target.uniforms]
+    samplers = [("FLOAT_2D", "instances_tx"), *target.samplers]
+    push_constants = [("VEC4", "lens_sample"), ("INT", "instance_base"), ("INT", "sample_index")]
+    if shades:
         fragment += code.source
-    fragment += shader_source.load(target.fragment)
-    struct = f"struct MaterialParams {{ vec4 constants[{len(code.constants)}]; }};\n"
-    uniforms = [("ViewParams", "view_buf")]
-    samplers = [("FLOAT_2D", "instances_tx")]
-    if not holdout:
+        structs += f"struct MaterialParams {{ vec4 constants[{len(code.constants)}]; }};\n"
         uniforms.append(("MaterialParams", "material_buf"))
         samplers += [("FLOAT_2D", f"image_{i}_tx") for i in range(len(code.images))]
-    transparent = code.transparent and not holdout
+    if target.names_material and not holdout:
+        push_constants.append(("FLOAT", "material_id"))
+    fragment += shader_source.load(target.fragment)
     defines = [*target.defines, *["HOLDOUT"] * holdout, *["TRANSPARENT"] * transparent]
     return compile_shader(
         ShaderInfo(
             name="aplanat_surface",
             vertex=vertex,
             fragment=fragment,
-            typedefs=VIEW_PARAMS.source + struct,
+            typedefs=structs,
             attributes=tuple(attributes),
             varyings=tuple(varyings),
             outputs=target.outputs,
             samplers=tuple(samplers),
             uniforms=tuple(uniforms),
-            push_constants=(
-                ("VEC4", "lens_sample"),
-                ("INT", "instance_base"),
-                ("INT", "sample_index"),
-            ),
+            push_constants=tuple(push_constants),
             defines=tuple((name, "1") for name in defines),
         )
     )
@@ -159,18 +184,29 @@ def build_draws(content, buffers, target=COLOR):
             order = shaders.setdefault(id(shader), len(shaders))
             constants, textures = None, ()
             transparent = code.transparent and not group.holdout
-            if not group.holdout:
+            if not group.holdout and (target.shades or transparent):
                 constants = buffers.material_constants(material.uid, code)
                 textures = tuple(
                     (f"image_{i}_tx", buffers.images[uid]) for i, uid in enumerate(code.images)
                 )
-            draw = Draw(shader, batch, count, group.first, group.count, constants, textures, transparent)
+            draw = Draw(
+                shader,
+                batch,
+                count,
+                group.first,
+                group.count,
+                constants,
+                textures,
+                # The data passes decide by a threshold, not by chance.
+                transparent and target.shades,
+                material.cryptomatte_id if target.names_material and not group.holdout else None,
+            )
             draws.append(((order, material.uid, group.mesh, slot), draw))
     draws.sort(key=lambda item: item[0])
     return [draw for _, draw in draws]
 
 
-def draw_sample(draws, view_buffer, instances, lens_sample, sample_index):
+def draw_sample(draws, view_buffer, instances, lens_sample, sample_index, bindings=()):
     """Draw one lens sample into the bound frame buffer.
 
     Parameters
@@ -183,6 +219,8 @@ def draw_sample(draws, view_buffer, instances, lens_sample, sample_index):
     lens_sample : sequence of 4 float
         Place on the lens in m, jitter in clip units.
     sample_index : int
+    bindings : iterable of (str, GPUUniformBuf or GPUTexture)
+        Of the target's own uniform blocks and samplers.
     """
     current = None
     for draw in draws:
@@ -195,6 +233,10 @@ def draw_sample(draws, view_buffer, instances, lens_sample, sample_index):
             shader.uniform_float("lens_sample", lens_sample)
             if draw.transparent:
                 shader.uniform_int("sample_index", sample_index)
+            for name, resource in bindings:
+                bind_resource(shader, name, resource)
+        if draw.material_id is not None:
+            shader.uniform_float("material_id", draw.material_id)
         if draw.constants is not None:
             shader.uniform_block("material_buf", draw.constants)
         for name, texture in draw.textures:

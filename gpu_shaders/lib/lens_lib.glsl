@@ -9,4 +9,19 @@ vec3 lens_displace(vec3 eye, vec2 lens_xy, float focus_distance)
   return vec3(eye.xy - lens_xy * (focus_distance + eye.z) / focus_distance, eye.z);
 }
 
+// Signed radius of the circle of confusion in pixels, negative in front of the focus plane.
+// `lens` as in ViewParams; depth along the axis, m.
+float coc_radius_px(float depth, vec4 lens)
+{
+  float defocus = lens.z * (depth - lens.x) / lens.x;
+  return (lens.y > 0.5) ? defocus : defocus / depth;
+}
+
+// Share of a point's light that falls inside the largest circle that counts as sharp.
+float focus_share(float coc_px, float sharp_px)
+{
+  float ratio = sharp_px / max(abs(coc_px), sharp_px);
+  return ratio * ratio;
+}
+
 #endif

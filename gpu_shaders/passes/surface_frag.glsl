@@ -1,19 +1,29 @@
 // Shades a surface for one lens sample; transparency is decided by chance, so that the average over
 // the samples is exact whatever the order of the surfaces.
 // Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads.
-// Outputs: premultiplied scene-linear colour.
+// Outputs: premultiplied scene-linear colour; with MATTES also Cryptomatte ids of object (x) and
+// material (y), and the share of sharpness (w).
 // Source: methods 1; stochastic transparency after Enderton et al., I3D 2010.
+
+#ifdef MATTES
+#include "lib/instance_lib.glsl"
+#include "lib/lens_lib.glsl"
+#endif
 
 void main()
 {
 #ifdef HOLDOUT
   out_color = vec4(0.0);
+#ifdef MATTES
+  out_mattes = vec4(0.0);
+#endif
 #else
   Closure closure = surface_closure();
 #ifdef TRANSPARENT
   float through = clamp(dot(closure.transmittance, vec3(1.0 / 3.0)), 0.0, 1.0);
   if (through > 0.0) {
-    uint seed = hash_combine(hash_uint(uint(gl_FragCoord.x)), uint(gl_FragCoord.y));
+    uvec2 pixel = uvec2(gl_FragCoord.xy) + uvec2(view_buf.film.zw);
+    uint seed = hash_combine(hash_uint(pixel.x), pixel.y);
     seed = hash_combine(seed, uint(instance_row));
     seed = hash_combine(seed, uint(gl_PrimitiveID));
     seed = hash_combine(seed, uint(sample_index));
@@ -24,5 +34,11 @@ void main()
   }
 #endif
   out_color = vec4(closure.radiance, 1.0);
+#ifdef MATTES
+  float depth = -(view_buf.view * vec4(world_position, 1.0)).z;
+  float object_id = texelFetch(instances_tx, instance_texel(instance_row, 3), 0).x;
+  float sharp = focus_share(coc_radius_px(depth, view_buf.lens), view_buf.lens.w);
+  out_mattes = vec4(object_id, material_id, 0.0, sharp);
+#endif
 #endif
 }
