@@ -1,9 +1,10 @@
 """Registers the Blender-facing modules, in order; unregisters them in the reverse one."""
 
+from .cli import blender_command
 from .engine import render_engine
 from .ui import properties
 
-_MODULES = (properties, render_engine)
+_MODULES = (properties, render_engine, blender_command)
 
 
 def register():

@@ -1,0 +1,276 @@
+"""The words of the command line and what they may be; no Blender.
+
+Every refusal is an `InputError` of one line.
+"""
+
+import argparse
+import math
+import re
+from pathlib import Path
+
+from ..errors import InputError
+from .version import version
+
+# Bounds of Blender's own properties.
+MIN_SIDE, MAX_SIDE = 4, 65536
+MAX_SAMPLES = 65536
+MAX_SEED = 2**31 - 1
+MAX_FILTER_PX = 500.0
+MAX_FRAME = 1048574
+
+ENDINGS = (".exr", ".png")
+
+_LATER = {
+    "lens": "0.2 (real lenses)",
+    "capture": "0.6 (depth layers)",
+    "refocus": "0.6 (depth layers)",
+    "--lens": "0.2 (real lenses)",
+    "--method adaptive": "0.3 (fast defocus)",
+    "--subsamples": "0.3 (fast defocus)",
+    "--method layered": "0.6 (depth layers)",
+    "--layers": "0.6 (depth layers)",
+}
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise InputError(f"{message} (see `{self.prog} --help`)")
+
+
+def parse(words, program="aplanat"):
+    """Read the words of a command.
+
+    Parameters
+    ----------
+    words : list of str
+    program : str
+        How the command is called, for messages.
+
+    Returns
+    -------
+    argparse.Namespace
+        With ``command``, ``render`` or ``bench``, and its options.
+
+    Raises
+    ------
+    InputError
+        If they do not make a command that this version knows.
+    SystemExit
+        After printing the help or the version.
+    """
+    if words and words[0] in _LATER:
+        raise _not_yet(f"{program} {words[0]}", words[0])
+    arguments = _parser(program).parse_args(words)
+    if arguments.command is None:
+        raise InputError(f"no command given (see `{program} --help`)")
+    if arguments.command == "render":
+        _check_render(arguments)
+    return arguments
+
+
+def wants_json(words):
+    """Whether `--json` was asked for, even if the rest makes no command."""
+    return "--json" in words
+
+
+def _not_yet(what, key):
+    return InputError(f"{what} is not in version {version()}; it comes with release {_LATER[key]}")
+
+
+def _check_render(arguments):
+    if arguments.method in {"adaptive", "layered"}:
+        key = f"--method {arguments.method}"
+        raise _not_yet(key, key)
+    for key in ("lens", "subsamples", "layers"):
+        if getattr(arguments, key) is not None:
+            raise _not_yet(f"--{key}", f"--{key}")
+    several = arguments.frames is not None and arguments.frames[0] != arguments.frames[1]
+    for path in arguments.output:
+        if several and "#" not in path.name:
+            raise InputError(
+                f"-o {path}: several frames need #### in the file's name for the frame number"
+            )
+    if len(set(arguments.output)) < len(arguments.output):
+        raise InputError(f"-o {arguments.output[0]} is given twice; give two different names")
+
+
+def _whole_number(low, high):
+    def read(text):
+        try:
+            value = int(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number") from None
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"{value} is not between {low} and {high}")
+        return value
+
+    return read
+
+
+def _positive_number(high=math.inf):
+    def read(text):
+        try:
+            value = float(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
+        if not (math.isfinite(value) and 0.0 < value <= high):
+            bound = "" if high == math.inf else f" and at most {high:g}"
+            raise argparse.ArgumentTypeError(f"{text} must be greater than 0{bound}")
+        return value
+
+    return read
+
+
+_frame = _whole_number(-MAX_FRAME, MAX_FRAME)
+
+
+def _frame_range(text):
+    match = re.fullmatch(r"(-?\d+)\.\.(-?\d+)", text)
+    if not match:
+        raise argparse.ArgumentTypeError(f"'{text}' is not FIRST..LAST, such as 1..24")
+    first, last = _frame(match[1]), _frame(match[2])
+    if first > last:
+        raise argparse.ArgumentTypeError(f"{text}: the first frame comes after the last")
+    return first, last
+
+
+def _resolution(text):
+    match = re.fullmatch(r"(\d+)[xX](\d+)", text)
+    if not match:
+        raise argparse.ArgumentTypeError(f"'{text}' is not WIDTHxHEIGHT, such as 1920x1080")
+    size = int(match[1]), int(match[2])
+    if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):
+        raise argparse.ArgumentTypeError(
+            f"{text}: each side must be between {MIN_SIDE} and {MAX_SIDE} pixels"
+        )
+    return size
+
+
+def _focus(text):
+    try:
+        distance = float(text)
+    except ValueError:
+        return text
+    if not (math.isfinite(distance) and distance > 0.0):
+        raise argparse.ArgumentTypeError(f"focus distance {text} must be greater than 0")
+    return distance
+
+
+def _picture(text):
+    path = Path(text)
+    if path.suffix.lower() not in ENDINGS:
+        raise argparse.ArgumentTypeError(f"'{text}' must end in .exr or .png")
+    return path
+
+
+def _parser(program):
+    parser = _Parser(
+        prog=program,
+        description="Aplanat renders Blender scenes through a camera lens.",
+        epilog="Exit code: 0 success, 2 unusable arguments or input, 1 failure.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"aplanat {version()}")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
+    _add_render(commands)
+    _add_bench(commands)
+    return parser
+
+
+def _add_render(commands):
+    parser = commands.add_parser(
+        "render",
+        help="render frames of a .blend file",
+        description="Renders frames of a .blend file. What is not given is taken from the file;"
+        " the file itself is never changed.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("scene", metavar="SCENE.blend", type=Path)
+    add = parser.add_argument
+    add(
+        "-o",
+        "--output",
+        metavar="OUT",
+        type=_picture,
+        action="append",
+        default=[],
+        help="picture file: .exr (multilayer, float, scene linear, all passes) or .png (as"
+        " displayed); #### becomes the frame number; may be given twice. Default: the scene's own"
+        " output path and format",
+    )
+    frames = parser.add_mutually_exclusive_group()
+    frames.add_argument("--frame", metavar="N", type=_frame, help="default: the file's current one")
+    frames.add_argument("--frames", metavar="A..B", type=_frame_range, help="first and last frame")
+    add("--camera", metavar="NAME", help="camera object to render from")
+    add("--resolution", metavar="WxH", type=_resolution, help="in pixels, at 100 %%")
+    add("--method", choices=("reference", "adaptive", "layered"), help="default: the scene's")
+    add("--samples", metavar="N", type=_whole_number(1, MAX_SAMPLES), help="lens samples")
+    add("--subsamples", metavar="S", type=_whole_number(0, 64), help=argparse.SUPPRESS)
+    add("--layers", metavar="K", type=_whole_number(1, 64), help=argparse.SUPPRESS)
+    add("--seed", metavar="N", type=_whole_number(0, MAX_SEED), help="pattern of samples")
+    add("--filter", choices=("box", "blackman-harris"), help="pixel filter")
+    add(
+        "--filter-size",
+        metavar="PX",
+        type=_positive_number(MAX_FILTER_PX),
+        help="width of the pixel filter, in pixels",
+    )
+    add("--no-bokeh", action="store_true", help="without separate highlights")
+    add("--no-chromatic", action="store_true", help="without chromatic aberration")
+    add("--lens", metavar="ID|FILE", help=argparse.SUPPRESS)
+    add(
+        "--fstop",
+        metavar="X",
+        type=_positive_number(),
+        help="f-number; turns depth of field on",
+    )
+    add(
+        "--focus",
+        metavar="DISTANCE|OBJECT",
+        type=_focus,
+        help="distance in m or object to focus on; turns depth of field on",
+    )
+    add("--stats", metavar="FILE", type=Path, help="write statistics as JSON")
+    _add_output_options(parser)
+
+
+def _add_bench(commands):
+    parser = commands.add_parser(
+        "bench",
+        help="measure cost and quality",
+        description="Renders scenes with and without depth of field and compares the cost of a"
+        " lens sample with that of a pinhole pass, and the pictures with references.",
+        allow_abbrev=False,
+    )
+    add = parser.add_argument
+    add(
+        "--scene",
+        metavar="FILE|NAME",
+        action="append",
+        default=[],
+        help=".blend file, or the name of a shared test scene (default: toys); may be repeated",
+    )
+    add("-o", "--output", metavar="FILE", type=Path, help="write the result as JSON")
+    add(
+        "--samples",
+        metavar="N",
+        type=_whole_number(1, MAX_SAMPLES),
+        help="lens samples (default 512; 2048 for christmas_tree)",
+    )
+    add("--resolution", metavar="WxH", type=_resolution, default=(480, 270), help="default 480x270")
+    add(
+        "--reference",
+        metavar="FILE.exr",
+        type=Path,
+        help="picture to compare a single scene with; shared scenes know theirs",
+    )
+    add("--look", choices=("flat", "lit"), default="flat", help="of shared scenes (default flat)")
+    add("--pictures", metavar="FOLDER", type=Path, help="also write the pictures, as .exr")
+    _add_output_options(parser)
+
+
+def _add_output_options(parser):
+    parser.add_argument("--json", action="store_true", help="print one JSON object on stdout")
+    parser.add_argument(
+        "--verbose", action="store_true", help="show Blender's own messages on stderr"
+    )

@@ -1,0 +1,109 @@
+"""Running a command: words in, exit code out.
+
+0 is success, 2 unusable arguments or input, 1 any other failure. A refusal is one line on stderr;
+with ``--json`` the answer on stdout is one object in either case.
+"""
+
+import re
+import sys
+import traceback
+
+from ..errors import AplanatError, DeviceLimitError, DeviceUnavailableError, InputError
+from . import arguments as words_of
+from .console import Console
+from .json_file import json_text
+
+_REFUSALS = (InputError, DeviceUnavailableError, DeviceLimitError)
+
+
+def main(words, program="aplanat"):
+    """Run a command in a Blender where Aplanat is registered.
+
+    Parameters
+    ----------
+    words : list of str
+    program : str
+        How the command is called.
+
+    Returns
+    -------
+    int
+        The exit code. Stdout and stderr are as before.
+    """
+    return _run(words, program, lambda: None, lambda console: console.close())
+
+
+def run_process():
+    """Run the command of `sys.argv` as this process, and end it.
+
+    Stdout and stderr stay with the command to the end: what Blender still prints while it ends
+    belongs to nobody.
+    """
+    sys.exit(_run(sys.argv[1:], "aplanat", _register, lambda console: None))
+
+
+def run_in_blender(words):
+    """Run a command of ``blender --command aplanat``; stdout stays with it to the end.
+
+    Returns
+    -------
+    int
+    """
+    return _run(words, "aplanat", lambda: None, lambda console: None)
+
+
+def _run(words, program, prepare, finish):
+    try:
+        arguments = words_of.parse(words, program)
+    except SystemExit as done:
+        return done.code or 0
+    except InputError as error:
+        print(f"{program}: {error}", file=sys.stderr)
+        if words_of.wants_json(words):
+            print(json_text(_errors(error)))
+        return 2
+    console = Console(arguments.verbose)
+    try:
+        return _carry_out(arguments, console, prepare)
+    finally:
+        finish(console)
+
+
+def _register():
+    from .. import register
+
+    register()
+
+
+def _carry_out(arguments, console, prepare):
+    try:
+        prepare()
+        if arguments.command == "render":
+            from .render import render as run
+        else:
+            from .bench import bench as run
+        answer = run(arguments, console)
+    except AplanatError as error:
+        console.say(str(error))
+        if not isinstance(error, _REFUSALS):
+            console.show_chatter()
+        if arguments.json:
+            console.answer(json_text(_errors(error)))
+        return 2 if isinstance(error, _REFUSALS) else 1
+    except Exception as error:
+        # Not foreseen: everything that helps to find the cause is shown.
+        console.say(f"failed: {error!r}")
+        console.err.write("".join(traceback.format_exception(error)))
+        console.show_chatter()
+        if arguments.json:
+            console.answer(json_text(_errors(error)))
+        return 1
+    if arguments.json:
+        console.answer(json_text(answer))
+    return 0
+
+
+def _errors(error):
+    name = type(error).__name__.removesuffix("Error")
+    code = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
+    return {"errors": [{"code": code, "message": " ".join(str(error).split())}], "warnings": []}

@@ -1,0 +1,180 @@
+"""Loading a .blend file and putting the options of the command line in force.
+
+The loaded scene is changed in memory and never saved.
+"""
+
+import math
+import os
+from pathlib import Path
+
+import bpy
+
+from ..engine.render_engine import ENGINE_ID
+from ..errors import CameraError, FocusError, InputError
+
+# What a pixel takes at the same time, generously: targets of the device, read-back, Blender's
+# result and the picture file.
+_BYTES_PER_PIXEL = 160
+
+
+def load_scene(path):
+    """Open a .blend file and return its scene.
+
+    Parameters
+    ----------
+    path : Path
+
+    Raises
+    ------
+    InputError
+        If there is no such file or Blender cannot read it.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(f"scene file '{path}' does not exist; check the path")
+    if not os.access(path, os.R_OK):
+        raise InputError(f"scene file '{path}' cannot be read; check its permissions")
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False)
+    except RuntimeError as error:
+        # Blender's reports come as lines that start with "Error: ".
+        reason = str(error).strip().splitlines()[0].removeprefix("Error: ")
+        raise InputError(
+            f"scene file '{path}' is not a readable .blend file ({reason}); save it again with"
+            " Blender"
+        ) from error
+    return bpy.context.scene
+
+
+def apply_options(scene, arguments):
+    """Put the options of `render` in force.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+    arguments : argparse.Namespace
+
+    Raises
+    ------
+    InputError
+        If one of them does not fit the scene.
+    """
+    render, settings = scene.render, scene.aplanat
+    render.engine = ENGINE_ID
+    if arguments.resolution:
+        render.resolution_x, render.resolution_y = arguments.resolution
+        render.resolution_percentage = 100
+    if arguments.method:
+        settings.method = arguments.method.upper()
+    if arguments.samples:
+        settings.render_samples = arguments.samples
+    if arguments.seed is not None:
+        settings.seed = arguments.seed
+    if arguments.filter:
+        settings.pixel_filter = arguments.filter.upper().replace("-", "_")
+    if arguments.filter_size:
+        render.filter_size = arguments.filter_size
+    if arguments.camera:
+        _use_camera(scene, arguments.camera)
+    if scene.camera is None:
+        raise CameraError(f"scene '{scene.name}' has no camera; add one, or name one with --camera")
+    if arguments.fstop or arguments.focus is not None:
+        _use_lens_options(scene, arguments)
+    check_size(scene)
+
+
+def check_size(scene):
+    """Refuse pictures that no memory of this machine could hold.
+
+    Raises
+    ------
+    InputError
+    """
+    render = scene.render
+    width = render.resolution_x * render.resolution_percentage // 100
+    height = render.resolution_y * render.resolution_percentage // 100
+    memory = _physical_memory()
+    needed = width * height * _BYTES_PER_PIXEL
+    if memory and needed > memory:
+        raise InputError(
+            f"a picture of {width} x {height} pixels needs about {math.ceil(needed / 2**30)} GB of"
+            f" memory and this machine has {memory // 2**30}; choose a smaller resolution"
+        )
+
+
+def check_lens(scene, arguments):
+    """Make sure that the options of the lens are in force in the evaluated scene.
+
+    Raises
+    ------
+    InputError
+        If the scene's animation overrules them.
+    """
+    camera = scene.camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    dof = camera.data.dof
+    values = [(arguments.fstop, dof.aperture_fstop, "--fstop")]
+    if isinstance(arguments.focus, float):
+        values.append((arguments.focus, dof.focus_distance, "--focus"))
+    for wanted, found, option in values:
+        if wanted and not math.isclose(wanted, found, rel_tol=1e-5):
+            raise InputError(
+                f"{option} {wanted:g}: camera '{camera.name}' keeps {found:g}, which its animation"
+                " or a driver sets; remove that from the file"
+            )
+
+
+def _use_camera(scene, name):
+    camera = scene.objects.get(name)
+    if camera is None or camera.type != "CAMERA":
+        names = ", ".join(sorted(f"'{o.name}'" for o in scene.objects if o.type == "CAMERA"))
+        raise CameraError(
+            f"--camera {name}: scene '{scene.name}' has no such camera; it has {names or 'none'}"
+        )
+    scene.camera = camera
+    # A marker would switch to another camera at its frame.
+    for marker in scene.timeline_markers:
+        marker.camera = None
+
+
+def _use_lens_options(scene, arguments):
+    data = scene.camera.data
+    dof = data.dof
+    dof.use_dof = True
+    if arguments.fstop:
+        _stop_animation(data, "dof.aperture_fstop")
+        dof.aperture_fstop = arguments.fstop
+    if isinstance(arguments.focus, float):
+        _stop_animation(data, "dof.focus_distance")
+        dof.focus_object = None
+        dof.focus_distance = arguments.focus
+    elif arguments.focus is not None:
+        target = scene.objects.get(arguments.focus)
+        if target is None:
+            raise FocusError(
+                f"--focus {arguments.focus}: scene '{scene.name}' has no object of this name;"
+                " give a distance in m or the name of an object"
+            )
+        dof.focus_object = target
+        dof.focus_subtarget = ""
+
+
+def _stop_animation(data, path):
+    animation = data.animation_data
+    if animation is None:
+        return
+    curves = [*animation.drivers]
+    if animation.action and animation.action_slot:
+        for layer in animation.action.layers:
+            for strip in layer.strips:
+                bag = strip.channelbag(animation.action_slot)
+                curves.extend(bag.fcurves if bag else ())
+    for curve in curves:
+        if curve.data_path == path:
+            curve.mute = True
+
+
+def _physical_memory():
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return 0

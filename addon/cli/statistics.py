@@ -1,0 +1,123 @@
+"""What `--stats` and `--json` tell; the keys are described in docs/command-line.md."""
+
+import sys
+
+import bpy
+
+from .version import version
+
+
+def settings_in_force(scene, arguments=None):
+    """Return every setting that shapes a frame.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+        At the frame in question.
+    arguments : argparse.Namespace, optional
+        Of `render`.
+
+    Returns
+    -------
+    dict
+    """
+    render, own = scene.render, scene.aplanat
+    camera = scene.camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    data = camera.data
+    dof = data.dof
+    focus = dof.focus_object
+    return {
+        "method": own.method.lower(),
+        "samples": own.render_samples,
+        "seed": own.seed,
+        "filter": own.pixel_filter.lower().replace("_", "-"),
+        "filter_size_px": render.filter_size,
+        "resolution": [
+            render.resolution_x * render.resolution_percentage // 100,
+            render.resolution_y * render.resolution_percentage // 100,
+        ],
+        "border": (
+            [render.border_min_x, render.border_min_y, render.border_max_x, render.border_max_y]
+            if render.use_border
+            else None
+        ),
+        "crop_to_border": render.use_border and render.use_crop_to_border,
+        "film_transparent": render.film_transparent,
+        "simplify": render.use_simplify,
+        "scene": scene.name,
+        "view_layers": [layer.name for layer in scene.view_layers if layer.use],
+        "compositing": bool(render.use_compositing and scene.compositing_node_group),
+        "camera": camera.name,
+        "camera_type": data.type.lower(),
+        "focal_length_mm": data.lens if data.type == "PERSP" else None,
+        "sensor_mm": [data.sensor_width, data.sensor_height],
+        "sensor_fit": data.sensor_fit.lower(),
+        "shift": [data.shift_x, data.shift_y],
+        "clip_m": [data.clip_start, data.clip_end],
+        "depth_of_field": dof.use_dof,
+        "fstop": dof.aperture_fstop,
+        "focus_object": focus.name if focus else None,
+        "focus_distance_m": None if focus else dof.focus_distance,
+        "aperture_blades": dof.aperture_blades,
+        "aperture_rotation": dof.aperture_rotation,
+        "aperture_ratio": dof.aperture_ratio,
+        "view_transform": scene.view_settings.view_transform,
+        "no_bokeh": bool(arguments and arguments.no_bokeh),
+        "no_chromatic": bool(arguments and arguments.no_chromatic),
+    }
+
+
+def work(statistics):
+    """Return a render's `RenderStatistics` as numbers for JSON."""
+    found = statistics.highlights
+    return {
+        "seconds": {stage: round(seconds, 6) for stage, seconds in statistics.seconds.items()},
+        "lens_samples": statistics.lens_samples,
+        "draw_calls": statistics.draw_calls,
+        "triangles_submitted": statistics.triangles_submitted,
+        "triangles_full_detail": statistics.triangles_full_detail,
+        "sprites_drawn": statistics.sprites_drawn,
+        "sprites_copied": statistics.sprites_copied,
+        "highlights_found": found["found"],
+        "highlights_clustered": found["clustered"],
+        "highlights_culled": {
+            "size": found["culled_size"],
+            "occlusion": found["culled_occlusion"],
+            "cone": found["culled_cone"],
+        },
+        "highlights_masked": found["masked"],
+        "highlights_splatted": found["splatted"],
+        "uploads": dict(statistics.uploads),
+    }
+
+
+def total_work(parts):
+    """Add the work of several frames, key by key."""
+    total = {}
+    for part in parts:
+        for key, value in part.items():
+            if isinstance(value, dict):
+                total[key] = total_work([total.get(key, {}), value])
+            else:
+                total[key] = total.get(key, 0) + value
+    return total
+
+
+def machine(statistics):
+    """Return what rendered: versions, device and the process' peak memory."""
+    return {
+        "aplanat": version(),
+        "blender": bpy.app.version_string,
+        "gpu": statistics.device,
+        "peak_memory_bytes": peak_memory(),
+    }
+
+
+def peak_memory():
+    """Return the largest memory this process ever had in bytes; None where nobody tells."""
+    try:
+        import resource
+    except ImportError:
+        return None
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else peak * 1024
