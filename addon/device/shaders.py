@@ -4,6 +4,7 @@ A freed shader's address can be reused and the new one is then never bound, so n
 removed here; the number of shaders is bounded by the number of shapes of node trees.
 """
 
+import atexit
 import io
 import re
 from contextlib import redirect_stderr
@@ -13,6 +14,8 @@ from ..errors import ShaderCompileError
 from . import shader_source
 
 _cache = {}
+# The device goes before Python does when the process ends; no shader may outlive it.
+atexit.register(_cache.clear)
 
 
 @dataclass(frozen=True)
