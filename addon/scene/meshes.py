@@ -1,16 +1,108 @@
 """Evaluated Blender meshes to `MeshSnapshot`."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..errors import SnapshotError
 from .snapshot import MeshSnapshot, next_uid
+from .vertex_split import VertexSplit, split_all, split_vertices
+
+# Which member of an attribute's elements holds the value, and how many numbers that is.
+_VALUE_MEMBERS = {
+    "FLOAT": ("value", 1),
+    "INT": ("value", 1),
+    "INT8": ("value", 1),
+    "BOOLEAN": ("value", 1),
+    "FLOAT2": ("vector", 2),
+    "FLOAT_VECTOR": ("vector", 3),
+    "FLOAT_COLOR": ("color", 4),
+    # "color" is scene linear; "color_srgb" would be as stored.
+    "BYTE_COLOR": ("color", 4),
+}
+_UV_TYPES = {"FLOAT2"}
+_COLOR_TYPES = set(_VALUE_MEMBERS) - _UV_TYPES
 
 
-def read_mesh(mesh):
-    """Copy an evaluated mesh.
+@dataclass(frozen=True, eq=False)
+class MeshReading:
+    """What was read of a mesh.
 
-    Corner attributes that agree at a vertex stay one vertex; vertices are split only where UVs or
-    normals differ.
+    Parameters
+    ----------
+    snapshot : MeshSnapshot
+    split : VertexSplit
+        How its vertices came about; `read_moved_positions` needs it.
+    notes : tuple of str
+        Lines for the report.
+    """
+
+    snapshot: MeshSnapshot
+    split: VertexSplit
+    notes: tuple[str, ...] = ()
+
+
+def read_mesh(mesh, keys, owner):
+    """Copy an evaluated mesh with the attributes that its surfaces read.
+
+    Parameters
+    ----------
+    mesh : bpy.types.Mesh
+    keys : iterable of str
+        As in `MeshSnapshot.attributes`. Those that the mesh lacks are left out.
+    owner : str
+        Name of an object that shows the mesh, for messages.
+
+    Returns
+    -------
+    MeshReading
+
+    Raises
+    ------
+    SnapshotError
+        If a coordinate is not finite.
+    """
+    positions = _read_positions(mesh, owner)
+    corner_vertices = _read_corner_vertices(mesh)
+    slots, triangle_corners = _sorted_by_slot(mesh, _triangle_corners(mesh))
+    vertex_values, corner_values, notes = {}, {}, []
+    flat = False
+    for key in sorted(keys):
+        kind, _, name = key.partition(":")
+        if kind == "normal":
+            flat = mesh.normals_domain == "FACE"
+            values, domain = _read_normals(mesh)
+        else:
+            attribute = _find_attribute(mesh, kind, name)
+            if attribute is None:
+                continue
+            values, domain = _read_attribute(mesh, attribute, kind)
+        if not np.isfinite(values).all():
+            notes.append(
+                f"object '{owner}': attribute '{key}' of mesh '{mesh.name}' has values that are"
+                " not finite; drawn as 0"
+            )
+            values = np.nan_to_num(values, copy=False, nan=0.0, posinf=0.0, neginf=0.0)
+        (vertex_values if domain == "POINT" else corner_values)[key] = values
+    if flat:
+        split = split_all(corner_vertices)
+    else:
+        split = split_vertices(corner_vertices, len(positions), list(corner_values.values()))
+    attributes = {key: split.of_vertices(values) for key, values in vertex_values.items()}
+    attributes |= {key: split.of_corners(values) for key, values in corner_values.items()}
+    snapshot = MeshSnapshot(
+        uid=next_uid(),
+        name=mesh.name,
+        positions=split.of_vertices(positions),
+        triangles=np.take(split.index, triangle_corners),
+        slots=slots,
+        attributes=attributes,
+    )
+    return MeshReading(snapshot, split, tuple(notes))
+
+
+def used_slots(mesh):
+    """Return the material slots that faces of a mesh use, in ascending order.
 
     Parameters
     ----------
@@ -18,125 +110,182 @@ def read_mesh(mesh):
 
     Returns
     -------
-    MeshSnapshot
-
-    Raises
-    ------
-    SnapshotError
-        If a coordinate is not finite.
+    tuple of int
     """
+    indices = _material_indices(mesh)
+    if indices is None:
+        return (0,) if len(mesh.polygons) else ()
+    return tuple(np.flatnonzero(np.bincount(indices)).tolist())
+
+
+def read_moved_positions(mesh, reading, owner):
+    """Read where the vertices of a mesh are in another frame.
+
+    Parameters
+    ----------
+    mesh : bpy.types.Mesh
+        The mesh in the other frame.
+    reading : MeshReading
+        The mesh as it was read in the frame that is rendered.
+    owner : str
+
+    Returns
+    -------
+    ndarray of shape (V, 3) or None
+        None if the mesh has another topology there.
+    """
+    split = reading.split
+    if len(mesh.loops) != len(split.index):
+        return None
+    corner_vertices = _read_corner_vertices(mesh)
+    if len(corner_vertices) and not np.array_equal(
+        np.take(split.vertices, split.index), corner_vertices
+    ):
+        return None
+    positions = _read_positions(mesh, owner)
+    if split.unsplit:
+        return positions if len(positions) == len(split.vertices) else None
+    if len(split.vertices) and split.vertices.max() >= len(positions):
+        return None
+    return split.of_vertices(positions)
+
+
+def same_content(a, b):
+    """Whether two `MeshSnapshot` would draw the same, bit by bit."""
+    if (
+        a.slots != b.slots
+        or a.name != b.name
+        or a.attributes.keys() != b.attributes.keys()
+        or (a.motion is None) != (b.motion is None)
+    ):
+        return False
+    pairs = [(a.positions, b.positions), (a.triangles, b.triangles)]
+    pairs += [(values, b.attributes[key]) for key, values in a.attributes.items()]
+    if a.motion is not None:
+        pairs += zip(a.motion, b.motion, strict=True)
+    return all(np.array_equal(x, y) for x, y in pairs)
+
+
+def _read_positions(mesh, owner):
     positions = np.empty((len(mesh.vertices), 3), np.float32)
     if len(positions):
         mesh.attributes["position"].data.foreach_get("vector", positions.reshape(-1))
     if not np.isfinite(positions).all():
         bad = int(np.flatnonzero(~np.isfinite(positions).all(axis=1))[0])
         raise SnapshotError(
-            f"mesh '{mesh.name}': vertex {bad} has coordinates that are not finite;"
-            " remove the vertex or the modifier that made it"
+            f"object '{owner}': vertex {bad} of mesh '{mesh.name}' has coordinates that are not"
+            " finite; remove the vertex, or the modifier that made it"
         )
+    return positions
+
+
+def _read_corner_vertices(mesh):
     corner_vertices = np.empty(len(mesh.loops), np.int32)
     if len(corner_vertices):
         mesh.attributes[".corner_vert"].data.foreach_get("value", corner_vertices)
-    corners = _triangle_corners(mesh)
-    slots, corners = _sorted_by_slot(mesh, corners)
-    vertex_values, corner_values = {}, {}
-    for attribute in mesh.color_attributes:
-        target = vertex_values if attribute.domain == "POINT" else corner_values
-        values = np.empty((len(attribute.data), 4), np.float32)
-        attribute.data.foreach_get("color", values.reshape(-1))
-        target[f"color:{attribute.name}"] = values
-    for layer in mesh.uv_layers:
-        values = np.empty((len(mesh.loops), 2), np.float32)
-        layer.uv.foreach_get("vector", values.reshape(-1))
-        corner_values[f"uv:{layer.name}"] = values
-    source, index = split_vertices(corner_vertices, len(positions), corner_values)
-    attributes = {}
-    for key, values in vertex_values.items():
-        attributes[key] = np.take(values, source.vertices, axis=0)
-    for key, values in corner_values.items():
-        attributes[key] = np.take(values, source.corners, axis=0)
-    active = next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
-    if active is not None:
-        attributes["uv:"] = attributes[f"uv:{active}"]
-    return MeshSnapshot(
-        uid=next_uid(),
-        name=mesh.name,
-        positions=np.take(positions, source.vertices, axis=0),
-        triangles=np.take(index, corners),
-        slots=slots,
-        attributes=attributes,
-    )
+    return corner_vertices
 
 
-class _Source:
-    def __init__(self, vertices, corners):
-        self.vertices = vertices
-        self.corners = corners
+def _read_normals(mesh):
+    if mesh.normals_domain == "POINT":
+        source, domain = mesh.vertex_normals, "POINT"
+    else:
+        source, domain = mesh.corner_normals, "CORNER"
+    normals = np.empty((len(source), 3), np.float32)
+    if len(normals):
+        source.foreach_get("vector", normals.reshape(-1))
+    return normals, domain
 
 
-def split_vertices(corner_vertices, vertex_count, corner_values):
-    """Find the fewest vertices that carry every corner's values.
+def _find_attribute(mesh, kind, name):
+    if kind == "uv":
+        if not name:
+            layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
+            name = layer.name if layer else ""
+        types = _UV_TYPES
+    else:
+        if not name:
+            index = mesh.color_attributes.render_color_index
+            inside = 0 <= index < len(mesh.color_attributes)
+            name = mesh.color_attributes[index].name if inside else ""
+        types = _COLOR_TYPES
+    attribute = mesh.attributes.get(name) if name else None
+    if attribute is None or attribute.data_type not in types or attribute.domain == "EDGE":
+        return None
+    return attribute
 
-    Parameters
-    ----------
-    corner_vertices : ndarray of shape (C,)
-    vertex_count : int
-    corner_values : dict of str to ndarray of shape (C, k)
 
-    Returns
-    -------
-    source : object
-        ``vertices`` and ``corners``: where each new vertex takes its vertex and corner values.
-    index : ndarray of shape (C,)
-        int32, each corner's new vertex.
-    """
-    count = len(corner_vertices)
-    first = np.zeros(vertex_count, np.int32)
-    first[corner_vertices] = np.arange(count, dtype=np.int32)
-    differs = np.zeros(count, bool)
-    for values in corner_values.values():
-        differs |= (values != np.take(values, np.take(first, corner_vertices), axis=0)).any(axis=1)
-    extra = np.flatnonzero(differs)
-    index = corner_vertices.copy()
-    corners = first
-    vertices = np.arange(vertex_count, dtype=np.int32)
-    if len(extra):
-        keys = np.column_stack(
-            [corner_vertices[extra].astype(np.int32)]
-            + [v[extra].view(np.int32) for v in corner_values.values()]
-        )
-        _, unique, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-        corners = np.concatenate([first, extra[unique].astype(np.int32)])
-        vertices = np.concatenate([vertices, corner_vertices[extra[unique]]])
-        index[extra] = vertex_count + inverse.reshape(-1)
-    return _Source(vertices, corners), index
+def _read_attribute(mesh, attribute, kind):
+    member, components = _VALUE_MEMBERS[attribute.data_type]
+    count = len(attribute.data)
+    # Only float32 and the stored type are copied in one piece; numpy converts the others.
+    stored = {"INT": np.int32, "INT8": np.int8, "BOOLEAN": bool}.get(attribute.data_type)
+    values = np.empty((count, components), stored or np.float32)
+    if count:
+        attribute.data.foreach_get(member, values.reshape(-1))
+    values = values.astype(np.float32, copy=False)
+    if kind == "color" and components != 4:
+        # As shader nodes see it: a number is grey, a vector is a colour.
+        opaque = np.ones((count, 4), np.float32)
+        opaque[:, :3] = values
+        values = opaque
+    domain = attribute.domain
+    if domain == "FACE":
+        values = np.repeat(values, _polygon_sizes(mesh), axis=0)
+        domain = "CORNER"
+    return values, domain
+
+
+def _polygon_sizes(mesh):
+    sizes = np.empty(len(mesh.polygons), np.int32)
+    if len(sizes):
+        mesh.polygons.foreach_get("loop_total", sizes)
+    return sizes
+
+
+def _all_triangles(mesh):
+    return len(mesh.loops) == 3 * len(mesh.polygons) and bool((_polygon_sizes(mesh) == 3).all())
 
 
 def _triangle_corners(mesh):
-    if len(mesh.loops) == 3 * len(mesh.polygons):
-        sizes = np.empty(len(mesh.polygons), np.int32)
-        mesh.polygons.foreach_get("loop_total", sizes)
-        if (sizes == 3).all():
-            return np.arange(len(mesh.loops), dtype=np.int32).reshape(-1, 3)
+    if _all_triangles(mesh):
+        return np.arange(len(mesh.loops), dtype=np.int32).reshape(-1, 3)
     mesh.calc_loop_triangles()
     corners = np.empty((len(mesh.loop_triangles), 3), np.int32)
-    mesh.loop_triangles.foreach_get("loops", corners.reshape(-1))
+    if len(corners):
+        mesh.loop_triangles.foreach_get("loops", corners.reshape(-1))
     return corners
 
 
-def _sorted_by_slot(mesh, corners):
+def _material_indices(mesh):
+    """Return the material slot of each polygon, as Blender stores it: 16 bits, never negative."""
     attribute = mesh.attributes.get("material_index")
-    if attribute is None or len(corners) == 0:
-        return ((0, 0, len(corners)),) if len(corners) else (), corners
-    per_polygon = np.empty(len(mesh.polygons), np.int32)
-    attribute.data.foreach_get("value", per_polygon)
+    if attribute is None or attribute.domain != "FACE" or attribute.data_type != "INT":
+        return None
+    indices = np.empty(len(mesh.polygons), np.int32)
+    if len(indices):
+        attribute.data.foreach_get("value", indices)
+    return np.clip(indices, 0, 0x7FFF).astype(np.uint16)
+
+
+def _sorted_by_slot(mesh, corners):
+    if len(corners) == 0:
+        return (), corners
+    per_polygon = _material_indices(mesh)
+    if per_polygon is None:
+        return ((0, 0, len(corners)),), corners
     if len(corners) == len(per_polygon):
         material = per_polygon
     else:
         polygon = np.empty(len(corners), np.int32)
         mesh.loop_triangles.foreach_get("polygon_index", polygon)
         material = np.take(per_polygon, polygon)
+    counts = np.bincount(material)
+    used = np.flatnonzero(counts)
+    ends = np.cumsum(counts)
+    slots = tuple((int(s), int(ends[s] - counts[s]), int(counts[s])) for s in used)
+    if len(used) == 1:
+        return slots, corners
+    # A stable sort of 16-bit integers is a radix sort.
     order = np.argsort(material, kind="stable")
-    values, first, counts = np.unique(material[order], return_index=True, return_counts=True)
-    slots = tuple(zip(values.tolist(), first.tolist(), counts.tolist(), strict=True))
     return slots, np.take(corners, order, axis=0)

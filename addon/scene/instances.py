@@ -1,0 +1,284 @@
+"""Blender's evaluated objects to a list of drawn copies of meshes.
+
+Which objects are drawn follows Cycles: an instance must be visible to the camera itself and through
+its instancer; holdout and indirect-only collections act on the instancer's place in the view layer.
+"""
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import SnapshotError
+
+# Object types with a surface or substance of their own that the engine has no way to draw, and how
+# to tell an empty one.
+_UNDRAWN = {
+    "CURVES": ("hair curves", lambda data: len(data.curves)),
+    "POINTCLOUD": ("a point cloud", lambda data: len(data.points)),
+    "VOLUME": ("a volume", lambda data: True),
+    "GREASEPENCIL": ("grease pencil", lambda data: len(data.layers)),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class MeshSource:
+    """A mesh of the evaluated scene, to be read while that scene is not evaluated again.
+
+    Parameters
+    ----------
+    key : object
+        Names this state of the mesh for the life of the process: Blender numbers each evaluated
+        mesh afresh, so an edited mesh, another frame or a state after undo has another key, also
+        where it occupies the same memory. Meshes without number have a key of their own each time.
+    mesh : bpy.types.Mesh
+    edited : bpy.types.Object or None
+        The object whose edit mode holds the mesh.
+    owner : str
+        Name of the first object that shows it.
+    """
+
+    key: object
+    mesh: object
+    edited: object
+    owner: str
+
+    @contextmanager
+    def opened(self, depsgraph):
+        """Give the mesh with all its elements, valid inside a `with` block."""
+        if self.edited is None:
+            yield self.mesh
+            return
+        # In edit mode the evaluated mesh is a wrapper that may have no elements of its own.
+        evaluated = self.edited.evaluated_get(depsgraph)
+        try:
+            yield evaluated.to_mesh()
+        finally:
+            evaluated.to_mesh_clear()
+
+
+@dataclass(frozen=True)
+class Look:
+    """What tells instances apart that cannot be drawn together.
+
+    Parameters
+    ----------
+    mesh : object
+        `MeshSource.key`.
+    slots : int
+        Which of `InstanceList.slots`.
+    holdout : bool
+    """
+
+    mesh: object
+    slots: int
+    holdout: bool
+
+
+@dataclass(eq=False)
+class InstanceList:
+    """Everything that is drawn.
+
+    Attributes
+    ----------
+    sources : dict of object to MeshSource
+        By key.
+    owners : dict of object to set of int
+        For each mesh the session numbers of the data-blocks it was made from.
+    slots : list of tuple of bpy.types.Material or None
+        Different assignments of materials to slots.
+    looks : list of Look
+        One an instance.
+    names : list of str
+        Of the object, one an instance.
+    world : ndarray of shape (I, 4, 4)
+        float32.
+    places : list of tuple
+        What an instance is called in every frame; only if asked for.
+    report : tuple of str
+    """
+
+    sources: dict = field(default_factory=dict)
+    owners: dict = field(default_factory=dict)
+    slots: list = field(default_factory=list)
+    looks: list = field(default_factory=list)
+    names: list = field(default_factory=list)
+    world: np.ndarray = None
+    places: list = field(default_factory=list)
+    report: tuple = ()
+
+
+def read_instances(depsgraph, space=None, with_places=False):
+    """List the copies of meshes that the camera may see.
+
+    Parameters
+    ----------
+    depsgraph : bpy.types.Depsgraph
+    space : bpy.types.SpaceView3D or None
+        The 3D view whose local view and collections apply.
+    with_places : bool
+        Fill `InstanceList.places`.
+
+    Returns
+    -------
+    InstanceList
+
+    Raises
+    ------
+    SnapshotError
+        If an object's transform is not finite.
+    """
+    reader = _Reader(depsgraph, space)
+    out = reader.out
+    matrices = []
+    for instance in depsgraph.object_instances:
+        found = reader.read(instance)
+        if found is None:
+            continue
+        look, name = found
+        out.looks.append(look)
+        out.names.append(name)
+        # Blender fills the same matrix again for the next instance.
+        matrices.append(instance.matrix_world.copy())
+        if with_places:
+            out.places.append(place(instance))
+    out.world = np.array(matrices, np.float32).reshape(-1, 4, 4)
+    finite = np.isfinite(out.world).all(axis=(1, 2))
+    if not finite.all():
+        name = out.names[int(np.flatnonzero(~finite)[0])]
+        raise SnapshotError(
+            f"object '{name}': its transform has numbers that are not finite; clear its location,"
+            " rotation and scale, or remove the constraint or driver that made them"
+        )
+    out.report = reader.report()
+    return out
+
+
+def place(instance):
+    """Return what identifies an instance in every frame.
+
+    Parameters
+    ----------
+    instance : bpy.types.DepsgraphObjectInstance
+
+    Returns
+    -------
+    tuple
+    """
+    number = instance.object.original.session_uid
+    if not instance.is_instance:
+        return (number,)
+    return (number, instance.parent.original.session_uid, *instance.persistent_id)
+
+
+class _Reader:
+    def __init__(self, depsgraph, space):
+        self.out = InstanceList()
+        self._view_layer = depsgraph.view_layer
+        self._override = depsgraph.view_layer_eval.material_override
+        self._space = space
+        self._own_flags = {}
+        self._place_flags = {}
+        self._slot_keys = {}
+        self._slot_numbers = {}
+        self._undrawn = {}
+
+    def read(self, instance):
+        """Return look and name of an instance that is drawn, else None."""
+        obj = instance.object
+        if self._space is not None and not obj.visible_in_viewport_get(self._space):
+            return None
+        original = obj.original
+        parent = instance.parent.original if instance.is_instance else original
+        visible, catches_shadow = self._flags(original)
+        holdout, indirect_only, parent_visible = self._flags_of_place(parent)
+        if not visible or not parent_visible or (indirect_only and not holdout):
+            return None
+        name = obj.name
+        if instance.show_particles:
+            self._note_hair(obj, name)
+        if not instance.show_self:
+            return None
+        kind = obj.type
+        if kind != "MESH":
+            undrawn = _UNDRAWN.get(kind)
+            if undrawn and undrawn[1](obj.data):
+                self._note(name, f"{undrawn[0]} cannot be drawn; left out")
+            return None
+        if catches_shadow:
+            self._note(name, "a shadow catcher is drawn as any other surface")
+        data = obj.data
+        key = self._source(obj, original, parent, data, name)
+        return Look(key, self._slots(obj, original, key), holdout), name
+
+    def _flags(self, original):
+        number = original.session_uid
+        flags = self._own_flags.get(number)
+        if flags is None:
+            flags = (original.visible_camera, original.is_shadow_catcher)
+            self._own_flags[number] = flags
+        return flags
+
+    def _flags_of_place(self, parent):
+        number = parent.session_uid
+        flags = self._place_flags.get(number)
+        if flags is None:
+            flags = (
+                parent.holdout_get(view_layer=self._view_layer),
+                parent.indirect_only_get(view_layer=self._view_layer),
+                parent.visible_camera,
+            )
+            self._place_flags[number] = flags
+        return flags
+
+    def _source(self, obj, original, parent, data, name):
+        out = self.out
+        key = data.session_uid or ("unnumbered", data.as_pointer())
+        source = out.sources.get(key)
+        if source is None:
+            edited = original if data.is_editmode else None
+            source = out.sources[key] = MeshSource(key, data, edited, name)
+            out.owners[key] = set()
+        owners = out.owners[key]
+        owners.add(original.session_uid)
+        owners.add(parent.session_uid)
+        if original.data is not None:
+            owners.add(original.data.session_uid)
+        return key
+
+    def _slots(self, obj, original, mesh_key):
+        # Objects made by geometry nodes share their instancer's name, not its slots.
+        key = (original.session_uid, mesh_key)
+        number = self._slot_keys.get(key)
+        if number is None:
+            if self._override is not None:
+                materials = (self._override,)
+            else:
+                materials = tuple(slot.material for slot in obj.material_slots) or (None,)
+            identity = tuple(m.original.session_uid if m else 0 for m in materials)
+            number = self._slot_numbers.setdefault(identity, len(self.out.slots))
+            if number == len(self.out.slots):
+                self.out.slots.append(materials)
+            self._slot_keys[key] = number
+        return number
+
+    def _note_hair(self, obj, name):
+        for modifier in obj.modifiers:
+            if modifier.type != "PARTICLE_SYSTEM":
+                continue
+            settings = modifier.particle_system.settings
+            if settings.type == "HAIR" and settings.render_type == "PATH":
+                self._note(name, f"particle hair '{settings.name}' cannot be drawn; left out")
+            elif settings.render_type in {"HALO", "LINE"}:
+                shape = settings.render_type.lower()
+                self._note(name, f"particles drawn as {shape} cannot be drawn; left out")
+
+    def _note(self, name, what):
+        self._undrawn[name, what] = self._undrawn.get((name, what), 0) + 1
+
+    def report(self):
+        """Return one line for each object and reason, however many copies there are."""
+        return tuple(
+            f"object '{name}': {what}" + (f" ({count} copies)" if count > 1 else "")
+            for (name, what), count in self._undrawn.items()
+        )
