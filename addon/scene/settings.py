@@ -2,28 +2,67 @@
 
 from dataclasses import replace
 
+import numpy as np
+
+from ..errors import InputError
 from .snapshot import Film, Sampling
+
+# 16384 squared: the largest texture of today's graphics devices; 4 GB a target.
+MAX_PIXELS = 2**28
 
 
 def read_film(scene):
-    """Return the raster of a scene's final render."""
+    """Return the raster of a scene's final render, rounded as Blender does.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+
+    Returns
+    -------
+    Film
+
+    Raises
+    ------
+    InputError
+        If the picture or its render region has no pixels, or more than `MAX_PIXELS`.
+    """
     render = scene.render
-    width = max(1, render.resolution_x * render.resolution_percentage // 100)
-    height = max(1, render.resolution_y * render.resolution_percentage // 100)
+    width = render.resolution_x * render.resolution_percentage // 100
+    height = render.resolution_y * render.resolution_percentage // 100
+    if width < 1 or height < 1:
+        raise InputError(
+            f"scene '{scene.name}': {render.resolution_percentage} % of {render.resolution_x} x"
+            f" {render.resolution_y} pixels is less than one; raise the resolution or its scale"
+        )
     region = (0, 0, width, height)
     if render.use_border:
-        x0, x1 = int(render.border_min_x * width), int(render.border_max_x * width)
-        y0, y1 = int(render.border_min_y * height), int(render.border_max_y * height)
+        x0, x1 = _pixel(render.border_min_x, width), _pixel(render.border_max_x, width)
+        y0, y1 = _pixel(render.border_min_y, height), _pixel(render.border_max_y, height)
         region = (x0, y0, x1 - x0, y1 - y0)
-    settings = scene.aplanat
+        if x1 <= x0 or y1 <= y0:
+            raise InputError(
+                f"scene '{scene.name}': the render region is {x1 - x0} x {y1 - y0} pixels; draw a"
+                " larger one, or switch Render Region off"
+            )
+    if region[2] * region[3] > MAX_PIXELS:
+        raise InputError(
+            f"scene '{scene.name}': {region[2]} x {region[3]} pixels are more than"
+            f" {MAX_PIXELS:,}; lower the resolution or render it in regions"
+        )
     return Film(
         width,
         height,
         region,
         render.film_transparent,
-        settings.pixel_filter,
+        scene.aplanat.pixel_filter,
         render.filter_size,
     )
+
+
+def _pixel(fraction, size):
+    """Return the pixel at a border's edge: Blender multiplies in single precision, rounds down."""
+    return int(np.float32(fraction) * np.float32(size))
 
 
 def read_sampling(scene):
