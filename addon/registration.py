@@ -2,9 +2,16 @@
 
 from .cli import blender_command
 from .engine import render_engine
-from .ui import properties
+from .ui import blender_panels, panels, properties, sampling_presets
 
-_MODULES = (properties, render_engine, blender_command)
+_MODULES = (
+    properties,
+    render_engine,
+    blender_panels,
+    sampling_presets,
+    panels,
+    blender_command,
+)
 
 
 def register():

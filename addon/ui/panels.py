@@ -1,0 +1,169 @@
+"""The panels of the properties editor."""
+
+import bpy
+
+from ..engine.render_engine import ENGINE_ID
+from .sampling_presets import APLANAT_PT_sampling_presets
+
+_GEOMETRY = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
+
+
+class _EnginePanel:
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    COMPAT_ENGINES = frozenset({ENGINE_ID})
+
+    @classmethod
+    def poll(cls, context):
+        """Whether Aplanat is the render engine."""
+        return context.engine in cls.COMPAT_ENGINES
+
+    def _column(self):
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout.column()
+
+
+class APLANAT_RENDER_PT_sampling(_EnginePanel, bpy.types.Panel):
+    """How the lens and the pixels are sampled."""
+
+    bl_label = "Sampling"
+    bl_context = "render"
+    bl_order = -20
+
+    def draw_header_preset(self, _context):
+        """Draw the button of the presets."""
+        APLANAT_PT_sampling_presets.draw_panel_header(self.layout)
+
+    def draw(self, context):
+        """Draw the settings of the scene."""
+        settings = context.scene.aplanat
+        column = self._column()
+        column.prop(settings, "method")
+        samples = column.column(align=True)
+        samples.prop(settings, "preview_samples", text="Lens Samples Viewport")
+        samples.prop(settings, "render_samples", text="Render")
+        column.prop(settings, "seed")
+        pixel = column.column()
+        pixel.prop(settings, "pixel_filter")
+        pixel.prop(context.scene.render, "filter_size", text="Width")
+
+
+class APLANAT_RENDER_PT_film(_EnginePanel, bpy.types.Panel):
+    """What the picture is taken on."""
+
+    bl_label = "Film"
+    bl_context = "render"
+    bl_order = -19
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw the settings of the scene."""
+        self._column().prop(context.scene.render, "film_transparent", text="Transparent")
+
+
+class APLANAT_RENDER_PT_performance(_EnginePanel, bpy.types.Panel):
+    """What has no influence on the picture."""
+
+    bl_label = "Performance"
+    bl_context = "render"
+    bl_order = -18
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw the settings of the scene."""
+        column = self._column()
+        column.prop(context.scene.aplanat, "chunk_milliseconds")
+        render = context.scene.render
+        compositor = column.column()
+        compositor.prop(render, "compositor_device", text="Compositor")
+        compositor.prop(render, "compositor_precision", text="Precision")
+
+
+class APLANAT_VIEWLAYER_PT_data(_EnginePanel, bpy.types.Panel):
+    """Passes that describe the scene."""
+
+    bl_label = "Data"
+    bl_context = "view_layer"
+    bl_parent_id = "VIEWLAYER_PT_layer_passes"
+
+    def draw(self, context):
+        """Draw Blender's switches and ours."""
+        layer = context.view_layer
+        column = self._column()
+        include = column.column(heading="Include")
+        include.prop(layer, "use_pass_z", text="Depth")
+        include.prop(layer, "use_pass_normal", text="Normal")
+        include.prop(layer, "use_pass_position", text="Position")
+        include.prop(layer, "use_pass_vector", text="Vector")
+        lens = column.column(heading="Lens")
+        lens.prop(layer.aplanat, "use_pass_coc")
+        lens.prop(layer.aplanat, "use_pass_focus_matte")
+
+
+class APLANAT_VIEWLAYER_PT_cryptomatte(_EnginePanel, bpy.types.Panel):
+    """Mattes by name."""
+
+    bl_label = "Cryptomatte"
+    bl_context = "view_layer"
+    bl_parent_id = "VIEWLAYER_PT_layer_passes"
+
+    def draw(self, context):
+        """Draw Blender's switches."""
+        layer = context.view_layer
+        column = self._column()
+        include = column.column(heading="Include")
+        include.prop(layer, "use_pass_cryptomatte_object", text="Object")
+        include.prop(layer, "use_pass_cryptomatte_material", text="Material")
+        levels = column.column()
+        levels.active = layer.use_pass_cryptomatte_object or layer.use_pass_cryptomatte_material
+        levels.prop(layer, "pass_cryptomatte_depth", text="Levels")
+
+
+class APLANAT_OBJECT_PT_ray_visibility(_EnginePanel, bpy.types.Panel):
+    """Whether the camera sees an object."""
+
+    bl_label = "Ray Visibility"
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+
+    @classmethod
+    def poll(cls, context):
+        """Whether the active object has a surface."""
+        obj = context.object
+        return super().poll(context) and obj is not None and obj.type in _GEOMETRY
+
+    def draw(self, context):
+        """Draw Blender's switch."""
+        self._column().prop(context.object, "visible_camera", text="Camera")
+
+
+class APLANAT_MATERIAL_PT_settings(_EnginePanel, bpy.types.Panel):
+    """What a material has beside its surface."""
+
+    bl_label = "Settings"
+    bl_context = "material"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Whether there is a material for surfaces."""
+        material = context.material
+        return super().poll(context) and material is not None and not material.grease_pencil
+
+    def draw(self, context):
+        """Draw Blender's settings."""
+        self._column().prop(context.material, "use_backface_culling")
+
+
+CLASSES = (
+    APLANAT_RENDER_PT_sampling,
+    APLANAT_RENDER_PT_film,
+    APLANAT_RENDER_PT_performance,
+    APLANAT_VIEWLAYER_PT_data,
+    APLANAT_VIEWLAYER_PT_cryptomatte,
+    APLANAT_OBJECT_PT_ray_visibility,
+    APLANAT_MATERIAL_PT_settings,
+)
+
+register, unregister = bpy.utils.register_classes_factory(CLASSES)
