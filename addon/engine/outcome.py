@@ -17,8 +17,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import AplanatError
-
 
 @dataclass
 class RenderStatistics:
@@ -125,8 +123,8 @@ class RenderOutcome:
 
     Attributes
     ----------
-    error : AplanatError or None
-        Why there is no picture.
+    error : Exception or None
+        Why there is no picture: an `AplanatError`, or another one if Aplanat itself failed.
     cancelled : bool
     statistics : RenderStatistics
     layers : list of LayerPicture
@@ -138,7 +136,7 @@ class RenderOutcome:
         Called with the finished share of the view layer, 0 to 1, and a line of text.
     """
 
-    error: AplanatError | None = None
+    error: Exception | None = None
     cancelled: bool = False
     statistics: RenderStatistics = field(default_factory=RenderStatistics)
     layers: list[LayerPicture] = field(default_factory=list)

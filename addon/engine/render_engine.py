@@ -2,13 +2,8 @@
 
 import bpy
 
-from ..device import context
-from ..errors import AplanatError
-from ..scene.extract import SceneExtractor
-from . import outcome
-from .pipeline import FrameRenderer
-from .plan import plan_frame
-from .scene_buffers import SceneBuffers
+from ..errors import AplanatError, RenderCancelledError
+from . import final_render, gpu_thread, outcome
 
 ENGINE_ID = "APLANAT"
 
@@ -20,6 +15,8 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
     bl_label = "Aplanat"
     bl_use_preview = False
     bl_use_postprocess = True
+    bl_use_eevee_viewport = True
+    bl_use_shading_nodes_custom = False
     # In the background the render thread owns the GPU context; in the user interface it must not,
     # or Blender freezes until the render ends.
     bl_use_gpu_context = bpy.app.background
@@ -28,49 +25,33 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
         """Render one view layer."""
         heard = outcome.current()
         try:
-            self._render(depsgraph, heard)
+            final_render.render_view_layer(self, depsgraph, heard)
+        except RenderCancelledError:
+            heard.cancelled = True
         except AplanatError as error:
             heard.error = error
             self.error_set(str(error))
             self.report({"ERROR"}, str(error))
-
-    def _render(self, depsgraph, heard):
-        context.ensure_context()
-        statistics = heard.statistics
-        statistics.device = context.device_name()
-        with statistics.timed("extract"):
-            snapshot = SceneExtractor().extract(depsgraph)
-        heard.note(snapshot.content.report)
-        with statistics.timed("upload"):
-            buffers = SceneBuffers()
-            buffers.update(snapshot.content)
-        with statistics.timed("plan"):
-            renderer = FrameRenderer(plan_frame(snapshot), snapshot, buffers)
-        with statistics.timed("draw"):
-            renderer.advance(renderer.plan.samples)
-        with statistics.timed("read_back"):
-            image = renderer.read_image()
-        statistics.lens_samples += renderer.samples_done
-        statistics.draw_calls += renderer.draw_calls
-        statistics.triangles_submitted += renderer.triangles
-        statistics.triangles_full_detail += renderer.triangles
-        x, y, width, height = snapshot.film.region
-        result = self.begin_result(0, 0, width, height, layer=snapshot.layer_name)
-        try:
-            result.layers[0].passes["Combined"].rect.foreach_set(image.reshape(-1))
-        finally:
-            self.end_result(result)
-        if heard.keeps_pictures:
-            heard.layers.append(
-                outcome.LayerPicture(
-                    scene=depsgraph.scene.name,
-                    layer=snapshot.layer_name,
-                    region=(x, y, width, height),
-                    size=(snapshot.film.width, snapshot.film.height),
-                    passes={"Combined": outcome.PassPicture("RGBA", image)},
-                )
-            )
-        renderer.release()
+        except Exception as error:
+            # Blender prints the traceback and goes on as if there were a picture: whoever started
+            # the render must still hear that there is none.
+            heard.error = error
+            self.error_set(f"Aplanat failed, see the console: {error}")
+            raise
 
 
-register, unregister = bpy.utils.register_classes_factory((AplanatRenderEngine,))
+_register, _unregister = bpy.utils.register_classes_factory((AplanatRenderEngine,))
+
+
+def register():
+    """Register the engine and have the main thread look for its work."""
+    _register()
+    if not bpy.app.background:
+        bpy.app.timers.register(gpu_thread.work_off_one_job, persistent=True)
+
+
+def unregister():
+    """Undo `register`."""
+    if bpy.app.timers.is_registered(gpu_thread.work_off_one_job):
+        bpy.app.timers.unregister(gpu_thread.work_off_one_job)
+    _unregister()

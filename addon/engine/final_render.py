@@ -1,0 +1,150 @@
+"""A final render: one view layer, from Blender's scene to its render result.
+
+The same code runs in the background and in the user interface; `gpu_thread` decides where the GPU
+work is done. The thread that renders reads the scene, talks to Blender's render job and hands the
+GPU work on in pieces.
+"""
+
+import time
+from contextlib import contextmanager
+from functools import partial
+
+import bpy
+
+from ..device import context
+from ..scene.extract import SceneExtractor
+from .gpu_thread import gpu_of_render
+from .outcome import LayerPicture, PassPicture
+from .pacing import Pacer
+from .pipeline import FrameRenderer
+from .plan import plan_frame
+from .render_passes import fill_layer, render_pass
+from .scene_buffers import SceneBuffers
+
+# The picture is shown twice a second while it converges, unless that takes a tenth of the time.
+_SHOW_SECONDS = 0.5
+_SHOW_SHARE = 0.1
+
+# What an animation has reported so far.
+_reported = set()
+
+
+def render_view_layer(engine, depsgraph, heard):
+    """Render the view layer of a dependency graph into its render result.
+
+    Parameters
+    ----------
+    engine : bpy.types.RenderEngine
+    depsgraph : bpy.types.Depsgraph
+    heard : RenderOutcome
+        Told what became of the render.
+
+    Raises
+    ------
+    AplanatError
+        `RenderCancelledError` if the user stopped the render.
+    """
+    statistics = heard.statistics
+    with statistics.timed("extract"):
+        snapshot = SceneExtractor().extract(depsgraph)
+    _show_report(engine, heard, snapshot.content.report)
+    with statistics.timed("plan"):
+        plan = plan_frame(snapshot)
+    slice_seconds = depsgraph.scene.aplanat.chunk_milliseconds / 1000.0
+    with gpu_of_render(engine.test_break, slice_seconds, bpy.app.background) as gpu:
+        statistics.device = gpu.call(_open_device)
+        with statistics.timed("upload"):
+            renderer = gpu.run(_prepare(plan, snapshot, statistics))
+        try:
+            with _result(engine, snapshot) as result:
+                _draw(engine, gpu, renderer, result, heard)
+                pictures = _finish(engine, gpu, renderer, result, heard)
+        finally:
+            statistics.lens_samples += renderer.samples_done
+            statistics.draw_calls += renderer.draw_calls
+            statistics.triangles_submitted += renderer.triangles
+            statistics.triangles_full_detail += renderer.triangles
+            gpu.release(renderer.release)
+    if heard.keeps_pictures:
+        heard.layers.append(_layer_picture(depsgraph.scene, snapshot, pictures))
+
+
+def _show_report(engine, heard, lines):
+    heard.note(lines)
+    if not engine.is_animation:
+        _reported.clear()
+    for line in lines:
+        if line not in _reported:
+            engine.report({"WARNING"}, line)
+    _reported.update(lines)
+
+
+def _open_device():
+    context.ensure_context()
+    return context.device_name()
+
+
+def _prepare(plan, snapshot, statistics):
+    buffers = SceneBuffers()
+    yield from buffers.update_steps(snapshot.content)
+    renderer = FrameRenderer(plan, snapshot, buffers)
+    for kind, count in buffers.uploads.items():
+        statistics.uploads[kind] = statistics.uploads.get(kind, 0) + count
+    return renderer
+
+
+@contextmanager
+def _result(engine, snapshot):
+    _, _, width, height = snapshot.film.region
+    result = engine.begin_result(0, 0, width, height, layer=snapshot.layer_name)
+    try:
+        yield result
+    finally:
+        # What was drawn before the user stopped the render stays to be seen.
+        engine.end_result(result)
+
+
+def _draw(engine, gpu, renderer, result, heard):
+    pacer = Pacer(gpu.slice_seconds)
+    start = shown = time.perf_counter()
+    pause = _SHOW_SECONDS
+    while not renderer.finished():
+        with heard.statistics.timed("draw"):
+            gpu.call(partial(pacer.advance, renderer))
+        now = time.perf_counter()
+        _show_progress(engine, heard, renderer, now - start)
+        if now - shown > pause and not renderer.finished():
+            fill_layer(result.layers[0], {"Combined": gpu.call(renderer.read_image)})
+            engine.update_result(result)
+            shown = time.perf_counter()
+            pause = max(_SHOW_SECONDS, (shown - now) / _SHOW_SHARE)
+
+
+def _show_progress(engine, heard, renderer, seconds):
+    done, total = renderer.samples_done, renderer.plan.samples
+    text = f"Sample {done}/{total} | {seconds:.1f} s"
+    engine.update_progress(done / total)
+    engine.update_stats("", text)
+    if heard.progress is not None:
+        heard.progress(done / total, text)
+
+
+def _finish(engine, gpu, renderer, result, heard):
+    with heard.statistics.timed("read_back"):
+        pictures = {"Combined": gpu.call(renderer.read_image)}
+    fill_layer(result.layers[0], pictures)
+    return pictures
+
+
+def _layer_picture(scene, snapshot, pictures):
+    film = snapshot.film
+    return LayerPicture(
+        scene=scene.name,
+        layer=snapshot.layer_name,
+        region=film.region,
+        size=(film.width, film.height),
+        passes={
+            name: PassPicture(render_pass(name).channels, pixels)
+            for name, pixels in pictures.items()
+        },
+    )

@@ -1,0 +1,209 @@
+"""Where the GPU work of a final render runs.
+
+In the background the thread that renders owns the GPU and works there. In the user interface it
+must not own it, or Blender freezes until the render ends: there the work is cut into slices of
+some 50 ms, and Blender's main thread, which owns the windows' GPU contexts, takes one slice each
+time round its event loop (a timer) while the render thread waits.
+
+Work is an iterator whose steps are short; what a generator returns comes back. Above this module
+both ways look the same.
+"""
+
+import queue
+import threading
+import time
+from concurrent.futures import Future, wait
+
+from ..errors import RenderCancelledError
+
+# How often a waiting render asks whether it was stopped.
+_POLL_SECONDS = 0.05
+# How long the main thread may take to begin a last piece of work.
+_FAREWELL_SECONDS = 1.0
+_IDLE_SECONDS = 0.1
+
+_jobs = queue.SimpleQueue()
+_renders = 0
+_renders_lock = threading.Lock()
+
+
+class _Slices:
+    """Steps of work that are carried out a slice at a time."""
+
+    def __init__(self, steps, seconds):
+        self._steps = steps
+        self._seconds = seconds
+        self.result = None
+
+    def advance(self):
+        """Work for one slice; return whether all is done."""
+        end = time.perf_counter() + self._seconds
+        while True:
+            try:
+                next(self._steps)
+            except StopIteration as stop:
+                self.result = stop.value
+                return True
+            if time.perf_counter() >= end:
+                return False
+
+    def close(self):
+        self._steps.close()
+
+
+class OwnThreadGpu:
+    """Runs GPU work in the calling thread.
+
+    Parameters
+    ----------
+    should_stop : callable
+        Returns whether the user stopped the render; asked after every piece of work.
+    slice_seconds : float
+        How long a piece of work may take.
+    """
+
+    def __init__(self, should_stop, slice_seconds):
+        self._should_stop = should_stop
+        self.slice_seconds = slice_seconds
+
+    def __enter__(self):
+        """Begin to render."""
+        return self
+
+    def __exit__(self, *exception):
+        """End to render."""
+
+    def call(self, work):
+        """Return what a function returns that takes about as long as a slice.
+
+        Raises
+        ------
+        RenderCancelledError
+            If the render was stopped.
+        """
+        result = work()
+        self._raise_if_stopped()
+        return result
+
+    def run(self, steps):
+        """Carry out all steps of a generator, slice by slice.
+
+        Parameters
+        ----------
+        steps : generator
+            Of steps that are short against a slice.
+
+        Returns
+        -------
+        object
+            What the generator returns.
+
+        Raises
+        ------
+        RenderCancelledError
+            If the render was stopped; the generator has been closed.
+        """
+        slices = _Slices(steps, self.slice_seconds)
+        try:
+            while not self.call(slices.advance):
+                pass
+        finally:
+            self.release(slices.close)
+        return slices.result
+
+    def release(self, work):
+        """Call a function that gives something back; stopped or not, it is called."""
+        work()
+
+    def _raise_if_stopped(self):
+        if self._should_stop():
+            raise RenderCancelledError("the render was stopped")
+
+
+class MainThreadGpu(OwnThreadGpu):
+    """Has Blender's main thread do the GPU work."""
+
+    def __enter__(self):
+        """Have the main thread look for work without delay."""
+        _count_renders(+1)
+        return self
+
+    def __exit__(self, *exception):
+        """Let the main thread look for work at leisure."""
+        _count_renders(-1)
+
+    def call(self, work):
+        """Return what a function returns that takes about as long as a slice; see above."""
+        job = _submit(work)
+        while not wait([job], _POLL_SECONDS).done:
+            # Work that has begun is waited for; it cannot be taken back.
+            if self._should_stop() and job.cancel():
+                break
+        self._raise_if_stopped()
+        return job.result()
+
+    def release(self, work):
+        """Call a function that gives something back; stopped or not, it is called."""
+        job = _submit(work)
+        wait([job], _FAREWELL_SECONDS)
+        if job.cancel():
+            # The main thread is waiting for this render to end (Blender quits, a file opens).
+            # The device takes memory back from any thread.
+            work()
+        else:
+            job.result()
+
+
+def gpu_of_render(should_stop, slice_seconds, in_background):
+    """Return what runs the GPU work of a render that was started in this thread.
+
+    Parameters
+    ----------
+    should_stop : callable
+        Returns whether the user stopped the render.
+    slice_seconds : float
+        How long a piece of work may take.
+    in_background : bool
+        Blender has no user interface.
+
+    Returns
+    -------
+    OwnThreadGpu or MainThreadGpu
+    """
+    # A script's render without its own thread blocks the main thread, which owns the GPU.
+    if in_background or threading.current_thread() is threading.main_thread():
+        return OwnThreadGpu(should_stop, slice_seconds)
+    return MainThreadGpu(should_stop, slice_seconds)
+
+
+def work_off_one_job():
+    """Carry out one waiting job; Blender's main thread calls this as a timer.
+
+    Returns
+    -------
+    float
+        Seconds until it wants to be called again.
+    """
+    try:
+        job, work = _jobs.get_nowait()
+    except queue.Empty:
+        return 0.0 if _renders else _IDLE_SECONDS
+    if job.set_running_or_notify_cancel():
+        try:
+            job.set_result(work())
+        # Whatever goes wrong belongs to the thread that waits, which raises it again.
+        except BaseException as error:
+            job.set_exception(error)
+    return 0.0
+
+
+def _submit(work):
+    job = Future()
+    _jobs.put((job, work))
+    return job
+
+
+def _count_renders(change):
+    global _renders
+    with _renders_lock:
+        _renders += change
