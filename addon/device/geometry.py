@@ -4,6 +4,8 @@ import zlib
 
 import numpy as np
 
+from . import census
+
 _GLSL_TYPES = {2: "VEC2", 3: "VEC3", 4: "VEC4"}
 
 
@@ -22,7 +24,17 @@ def attribute_type(components):
 
 
 class MeshBuffers:
-    """The batches of a `MeshSnapshot`, by material slot."""
+    """The batches of a `MeshSnapshot`, by material slot.
+
+    Attributes
+    ----------
+    batches : dict of int to (GPUBatch, int)
+        Batch and number of triangles, by slot.
+    triangle_count : int
+    bounds : ndarray of shape (2, 3)
+        Lower and upper corner in object space.
+    bytes : int
+    """
 
     def __init__(self, mesh):
         import gpu
@@ -33,16 +45,24 @@ class MeshBuffers:
         if mesh.motion:
             columns["pos_previous"], columns["pos_next"] = mesh.motion
         for name, values in columns.items():
-            vertex_format.attr_add(id=name, comp_type="F32", len=values.shape[1], fetch_mode="FLOAT")
+            vertex_format.attr_add(
+                id=name, comp_type="F32", len=values.shape[1], fetch_mode="FLOAT"
+            )
         vertices = gpu.types.GPUVertBuf(vertex_format, len(mesh.positions))
         for name, values in columns.items():
             vertices.attr_fill(name, np.ascontiguousarray(values, np.float32))
+        vertex_bytes = 4 * sum(values.size for values in columns.values())
+        census.record("vertex_buffer", vertices, vertex_bytes)
         self.triangle_count = len(mesh.triangles)
+        self.bounds = mesh.bounds
+        self.bytes = vertex_bytes + 4 * mesh.triangles.size
         self.batches = {}
         for slot, first, count in mesh.slots:
             indices = np.ascontiguousarray(mesh.triangles[first : first + count], np.int32)
             elements = gpu.types.GPUIndexBuf(type="TRIS", seq=indices)
+            census.record("index_buffer", elements, indices.nbytes)
             batch = gpu.types.GPUBatch(type="TRIS", buf=vertices, elem=elements)
+            census.record("batch", batch)
             self.batches[slot] = (batch, count)
 
 
@@ -54,4 +74,5 @@ def fullscreen_batch():
     vertex_format.attr_add(id="pos", comp_type="F32", len=2, fetch_mode="FLOAT")
     vertices = gpu.types.GPUVertBuf(vertex_format, 3)
     vertices.attr_fill("pos", np.array([[-1, -1], [3, -1], [-1, 3]], np.float32))
-    return gpu.types.GPUBatch(type="TRIS", buf=vertices)
+    census.record("vertex_buffer", vertices, 24)
+    return census.record("batch", gpu.types.GPUBatch(type="TRIS", buf=vertices))

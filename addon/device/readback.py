@@ -24,7 +24,9 @@ def read_color(framebuffer, width, height, channels=4, slot=0):
 
     pixels = np.empty((height, width, channels), np.float32)
     buffer = gpu.types.Buffer("FLOAT", pixels.shape, pixels)
-    framebuffer.read_color(0, 0, width, height, channels, slot, "FLOAT", data=buffer)
+    # Blender learns the size of a frame buffer when it is bound.
+    with framebuffer.bind():
+        framebuffer.read_color(0, 0, width, height, channels, slot, "FLOAT", data=buffer)
     return pixels
 
 
@@ -33,4 +35,5 @@ def wait(framebuffer):
 
     Reading a pixel is the only way to wait that Blender offers.
     """
-    framebuffer.read_color(0, 0, 1, 1, 4, 0, "FLOAT")
+    with framebuffer.bind():
+        framebuffer.read_color(0, 0, 1, 1, 4, 0, "FLOAT")

@@ -7,6 +7,7 @@ removed here; the number of shaders is bounded by the number of shapes of node t
 import atexit
 import io
 import re
+import time
 from contextlib import redirect_stderr
 from dataclasses import dataclass, field
 
@@ -14,6 +15,7 @@ from ..errors import ShaderCompileError
 from . import shader_source
 
 _cache = {}
+_seconds = [0.0]
 # The device goes before Python does when the process ends; no shader may outlive it.
 atexit.register(_cache.clear)
 
@@ -70,13 +72,27 @@ def compile_shader(info):
     """
     shader = _cache.get(info)
     if shader is None:
+        start = time.perf_counter()
         shader = _cache[info] = _compile(info)
+        _seconds[0] += time.perf_counter() - start
     return shader
 
 
 def compiled_count():
     """Return how many shaders this process has compiled."""
     return len(_cache)
+
+
+def compile_seconds():
+    """Return how long this process has compiled shaders, in s."""
+    return _seconds[0]
+
+
+def dispatch(shader, groups_x, groups_y, groups_z=1):
+    """Run a compute shader; what it wrote can be read by the next draw or dispatch."""
+    import gpu
+
+    gpu.compute.dispatch(shader, groups_x, groups_y, groups_z)
 
 
 def _compile(info):

@@ -6,15 +6,25 @@ Whoever makes targets releases them (``with Targets(...) as targets``); no pass 
 from dataclasses import dataclass
 
 from ..errors import DeviceLimitError
+from . import census
 from .context import max_texture_size
 
 
 @dataclass(frozen=True)
 class TargetSpec:
-    """One target: a name, a texel format, and the depth target that it is drawn with, if any."""
+    """One target.
+
+    Parameters
+    ----------
+    name : str
+    texel_format : str
+    layers : int
+        Of an array texture; 0 is a plain one.
+    """
 
     name: str
     texel_format: str
+    layers: int = 0
 
 
 class Targets:
@@ -28,32 +38,51 @@ class Targets:
     """
 
     def __init__(self, width, height, specs):
-        import gpu
-
         limit = max_texture_size()
         if max(width, height) > limit:
             raise DeviceLimitError(
                 f"{limit} pixels a side",
-                f"a picture of {width} x {height} pixels was asked for (render it in parts with a render border)",
+                f"a picture of {width} x {height} pixels was asked for"
+                " (render it in parts with a render border)",
             )
         self.width = width
         self.height = height
+        self.bytes = 0
         self.textures = {}
-        for spec in specs:
-            self.textures[spec.name] = gpu.types.GPUTexture(
-                (width, height), format=spec.texel_format
-            )
         self._framebuffers = {}
+        for spec in specs:
+            self.add(spec)
 
     def __enter__(self):
+        """Return itself; `release` follows at the end of the `with` block."""
         return self
 
     def __exit__(self, *exception):
+        """Release the textures."""
         self.release()
 
     def __getitem__(self, name):
         """Return the texture called `name`."""
         return self.textures[name]
+
+    def __contains__(self, name):
+        """Whether there is a texture called `name`."""
+        return name in self.textures
+
+    def add(self, spec):
+        """Make one more texture."""
+        import gpu
+
+        size = census.texture_bytes(self.width, self.height, spec.texel_format, spec.layers)
+        texture = gpu.types.GPUTexture(
+            (self.width, self.height), layers=spec.layers, format=spec.texel_format
+        )
+        self.textures[spec.name] = census.record("texture", texture, size)
+        self.bytes += size
+
+    def clear(self, name, value):
+        """Fill the colour texture called `name` with a vector of 4."""
+        self.textures[name].clear(format="FLOAT", value=value)
 
     def framebuffer(self, *color, depth=None):
         """Return the frame buffer over the named colour targets and depth target."""
@@ -66,7 +95,7 @@ class Targets:
                 color_slots=tuple(self.textures[name] for name in color),
                 depth_slot=self.textures[depth] if depth else None,
             )
-            self._framebuffers[key] = framebuffer
+            self._framebuffers[key] = census.record("framebuffer", framebuffer)
         return framebuffer
 
     def forget_framebuffers(self):
@@ -82,3 +111,4 @@ class Targets:
         """Give the textures back to the device."""
         self._framebuffers.clear()
         self.textures.clear()
+        self.bytes = 0

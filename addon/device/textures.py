@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from . import census
+
 
 def texture_2d(array, texel_format="RGBA32F"):
     """Upload an array as a 2D texture.
@@ -21,7 +23,8 @@ def texture_2d(array, texel_format="RGBA32F"):
     data = np.ascontiguousarray(array, np.float32)
     height, width = data.shape[:2]
     buffer = gpu.types.Buffer("FLOAT", data.size, data.reshape(-1))
-    return gpu.types.GPUTexture((width, height), format=texel_format, data=buffer)
+    texture = gpu.types.GPUTexture((width, height), format=texel_format, data=buffer)
+    return census.record("texture", texture, census.texture_bytes(width, height, texel_format))
 
 
 def image_texture(image):

@@ -64,7 +64,9 @@ class UniformStruct:
         offset = 0
         for type_name, name, length in _MEMBER.findall(body):
             if type_name not in _TYPES:
-                raise ShaderCompileError(self.path, f"{self.name}.{name}: type {type_name} has no packer")
+                raise ShaderCompileError(
+                    self.path, f"{self.name}.{name}: type {type_name} has no packer"
+                )
             alignment, size, _, _ = _TYPES[type_name]
             count = int(length or 0)
             if count:

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from . import census
+
 
 def _buffer(data):
     import gpu
@@ -24,7 +26,7 @@ def uniform_buffer(data):
     """
     import gpu
 
-    return gpu.types.GPUUniformBuf(_buffer(data))
+    return census.record("uniform_buffer", gpu.types.GPUUniformBuf(_buffer(data)), len(data))
 
 
 def bind_resource(shader, name, resource):

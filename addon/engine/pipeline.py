@@ -1,21 +1,28 @@
 """The ordered passes of a frame, sample by sample.
 
-Only the sum of the samples outlives a sample, so memory does not depend on their number.
+Only the sums of the samples and the Cryptomatte tables outlive a sample, so memory does not depend
+on their number.
 """
+
+from dataclasses import replace
 
 import numpy as np
 
 from ..device import geometry, readback, state
 from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
-from ..passes import accumulate, resolve, surface
+from ..passes import accumulate, cryptomatte, data, resolve, surface
+from . import culling, render_passes
 
-_TARGETS = (
+_COLOR_TARGETS = (
     TargetSpec("sample", "RGBA32F"),
     TargetSpec("sample_depth", "DEPTH_COMPONENT32F"),
     TargetSpec("sum", "RGBA32F"),
     TargetSpec("image", "RGBA32F"),
 )
+
+# Samples that may wait in the device's queue: the queue's memory, too, is bounded.
+_SAMPLES_IN_FLIGHT = 32
 
 
 class FrameRenderer:
@@ -27,12 +34,20 @@ class FrameRenderer:
     snapshot : SceneSnapshot
     buffers : SceneBuffers
         Updated to the snapshot's content.
+
+    Attributes
+    ----------
+    samples_done : int
+    draw_calls : int
+    triangles, triangles_full_detail : int
+        Submitted so far, and what every instance for every sample would have taken.
     """
 
     def __init__(self, plan, snapshot, buffers):
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
         self._content = None
+        self._mattes = False
         self._targets = None
         self.restart(plan, snapshot)
 
@@ -49,20 +64,64 @@ class FrameRenderer:
         self.samples_done = 0
         self.draw_calls = 0
         self.triangles = 0
-        if snapshot.content is not self._content:
-            self._draws = surface.build_draws(snapshot.content, self._buffers)
-            self._triangles_per_sample = sum(d.triangles * d.count for d in self._draws)
-            self._content = snapshot.content
+        self.triangles_full_detail = 0
+        self._cryptomattes = render_passes.cryptomatte_kinds(plan.passes)
+        mattes = bool(render_passes.made_by(plan.passes, "MATTE", "CRYPTOMATTE"))
+        if snapshot.content is not self._content or mattes != self._mattes:
+            self._mattes = mattes
+            self._prepare(snapshot.content)
+        self._visible = culling.seen(self._spheres, plan)
+        self._draws = self._cull(self._all_draws)
+        self._triangles_per_sample = sum(d.triangles * d.count for d in self._draws)
         self._view = uniform_buffer(_view_params(plan))
         world = snapshot.content.world.color
         self._background = (0.0,) * 4 if snapshot.film.transparent else (*world, 1.0)
-        size = (plan.width, plan.height)
-        if self._targets is None or (self._targets.width, self._targets.height) != size:
+        self._prepare_targets()
+
+    def _prepare(self, content):
+        target = surface.COLOR_AND_MATTES if self._mattes else surface.COLOR
+        self._all_draws = surface.build_draws(content, self._buffers, target)
+        self._full_detail_per_sample = sum(d.triangles * d.count for d in self._all_draws)
+        bounds = {uid: mesh.bounds for uid, mesh in self._buffers.meshes.items()}
+        self._spheres = culling.BoundingSpheres(content, bounds)
+        self._content = content
+
+    def _cull(self, draws):
+        return [
+            draw if (first, count) == (draw.first, draw.count)
+            else replace(draw, first=first, count=count)
+            for draw in draws
+            for first, count in culling.runs(
+                self._visible, draw.first, draw.count, draw.triangles
+            )
+        ]  # fmt: skip
+
+    def _prepare_targets(self):
+        size = (self.plan.width, self.plan.height)
+        specs = self._target_specs()
+        if (
+            self._targets is None
+            or (self._targets.width, self._targets.height) != size
+            or self._specs != specs
+        ):
             self.release()
-            self._targets = Targets(*size, _TARGETS)
+            self._targets = Targets(*size, specs)
+            self._specs = specs
         self._targets.forget_framebuffers()
-        with self._targets.framebuffer("sum").bind():
-            self._targets.framebuffer("sum").clear(color=(0.0, 0.0, 0.0, 0.0))
+        for name in ("sum", "focus_sum", "tables"):
+            if name in self._targets:
+                self._targets.clear(name, (0.0, 0.0, 0.0, 0.0))
+
+    def _target_specs(self):
+        specs = [*_COLOR_TARGETS]
+        if self._mattes:
+            specs.append(TargetSpec("mattes", "RGBA32F"))
+        if "Focus Matte" in self.plan.passes:
+            specs += [TargetSpec("focus_sum", "R32F"), TargetSpec("focus", "RGBA32F")]
+        if self._cryptomattes:
+            layers = len(self._cryptomattes) * cryptomatte.slot_pairs(self._cryptomattes)
+            specs.append(TargetSpec("tables", "RGBA32F", layers))
+        return tuple(specs)
 
     def advance(self, samples):
         """Render up to `samples` more lens samples."""
@@ -70,6 +129,8 @@ class FrameRenderer:
         end = min(self.samples_done + samples, self.plan.samples)
         for index in range(self.samples_done, end):
             self._render_sample(index)
+            if (index + 1) % _SAMPLES_IN_FLIGHT == 0:
+                self.wait()
         self.samples_done = end
 
     def wait(self):
@@ -77,19 +138,34 @@ class FrameRenderer:
         readback.wait(self._targets.framebuffer("sum"))
 
     def _render_sample(self, index):
-        plan = self.plan
+        plan, targets = self.plan, self._targets
         lens_sample = (*plan.lens_positions[index].tolist(), *plan.jitter[index].tolist())
-        framebuffer = self._targets.framebuffer("sample", depth="sample_depth")
+        framebuffer = targets.framebuffer("sample", depth="sample_depth")
         with framebuffer.bind():
             framebuffer.clear(color=self._background, depth=1.0)
+        if self._mattes:
+            # What surrounds the scene has no id, and is as sharp as its distance makes it.
+            targets.clear("mattes", (0.0, 0.0, 0.0, self._empty_focus()))
+            framebuffer = targets.framebuffer("sample", "mattes", depth="sample_depth")
+        with framebuffer.bind():
             state.opaque()
             surface.draw_sample(
                 self._draws, self._view, self._buffers.instances, lens_sample, index
             )
-        with self._targets.framebuffer("sum").bind():
-            accumulate.accumulate(self._fullscreen, self._targets["sample"])
-        self.draw_calls += len(self._draws) + 1
+        with targets.framebuffer("sum").bind():
+            accumulate.accumulate(self._fullscreen, targets["sample"])
+        if "focus_sum" in targets:
+            with targets.framebuffer("focus_sum").bind():
+                accumulate.accumulate_focus(self._fullscreen, targets["mattes"])
+        if self._cryptomattes:
+            cryptomatte.count(targets["mattes"], targets["tables"], self._cryptomattes)
+        self.draw_calls += len(self._draws) + 1 + ("focus_sum" in targets)
         self.triangles += self._triangles_per_sample
+        self.triangles_full_detail += self._full_detail_per_sample
+
+    def _empty_focus(self):
+        sharp = self.plan.sharp_radius
+        return (sharp / max(abs(self.plan.empty_coc), sharp)) ** 2
 
     def finished(self):
         """Whether every sample has been rendered."""
@@ -105,18 +181,89 @@ class FrameRenderer:
         pixel_size : int
             Side of the square that shows one pixel.
         """
+        self._resolve("sum", origin, pixel_size)
+
+    def _resolve(self, total, origin=(0, 0), pixel_size=1):
         state.overwrite()
-        resolve.resolve(
-            self._fullscreen, self._targets["sum"], max(self.samples_done, 1), origin, pixel_size
-        )
+        samples = max(self.samples_done, 1)
+        resolve.resolve(self._fullscreen, self._targets[total], samples, origin, pixel_size)
 
     def read_image(self):
         """Return the picture so far, shape (height, width, 4), bottom row first."""
         self._targets.forget_framebuffers()
+        return self._read_sum("sum", "image")
+
+    def read_passes(self):
+        """Return every pass of the plan, from the samples so far.
+
+        Returns
+        -------
+        dict of str to ndarray of shape (height, width, channels)
+            float32, bottom row first, by name, in the plan's order.
+        """
+        self._targets.forget_framebuffers()
+        pictures = {"Combined": self._read_sum("sum", "image")}
+        if "Focus Matte" in self.plan.passes:
+            focus = self._read_sum("focus_sum", "focus")
+            pictures["Focus Matte"] = np.ascontiguousarray(focus[..., :1])
+        for name in render_passes.made_by(self.plan.passes, "CRYPTOMATTE"):
+            pictures[name] = self._read_cryptomatte(name[:-2], int(name[-2:]))
+        pictures.update(self._read_data(render_passes.made_by(self.plan.passes, "DATA")))
+        return {name: pictures[name] for name in self.plan.passes}
+
+    def _read_sum(self, total, image):
+        framebuffer = self._targets.framebuffer(image)
+        with framebuffer.bind():
+            self._resolve(total)
+        return readback.read_color(framebuffer, self.plan.width, self.plan.height)
+
+    def _read_cryptomatte(self, kind, index):
         framebuffer = self._targets.framebuffer("image")
         with framebuffer.bind():
-            self.resolve()
+            state.overwrite()
+            cryptomatte.draw_ranks(
+                self._fullscreen,
+                self._targets["tables"],
+                self._cryptomattes,
+                kind,
+                index,
+                max(self.samples_done, 1),
+            )
         return readback.read_color(framebuffer, self.plan.width, self.plan.height)
+
+    def _read_data(self, names):
+        if not names:
+            return {}
+        plan = self.plan
+        vector = "Vector" in names
+        draws = surface.build_draws(self._content, self._buffers, data.target(vector))
+        draws = self._cull(draws)
+        bindings = [("data_buf", data.data_params(
+            plan.previous, plan.next, plan.width, plan.height, plan.alpha_threshold
+        ))]  # fmt: skip
+        if vector:
+            tables = self._buffers.neighbouring_instances(self._content.instances)
+            bindings += zip(("previous_tx", "next_tx"), tables, strict=True)
+        specs = [TargetSpec(name, "RGBA32F") for name in data.TARGETS]
+        specs.append(TargetSpec("depth", "DEPTH_COMPONENT32F"))
+        with Targets(plan.width, plan.height, specs) as targets:
+            for name, value in data.empty_values(plan.empty_coc).items():
+                targets.clear(name, value)
+            framebuffer = targets.framebuffer(*data.TARGETS, depth="depth")
+            with framebuffer.bind():
+                framebuffer.clear(depth=1.0)
+                state.opaque()
+                data.draw(draws, self._view, self._buffers.instances, tuple(bindings))
+            self.draw_calls += len(draws)
+            pictures = {
+                name: readback.read_color(targets.framebuffer(name), plan.width, plan.height)
+                for name in {data.PLACES[name][0] for name in names}
+            }
+        return {name: _channels(pictures, *data.PLACES[name]) for name in names}
+
+    def texture_bytes(self):
+        """Return how many bytes the targets hold on the device."""
+        return self._targets.bytes if self._targets else 0
 
     def release(self):
         """Give the targets back to the device."""
@@ -125,11 +272,15 @@ class FrameRenderer:
             self._targets = None
 
 
+def _channels(pictures, target, first, count):
+    return np.ascontiguousarray(pictures[target][..., first : first + count])
+
+
 def _view_params(plan):
     return surface.VIEW_PARAMS.pack(
         view=plan.view,
         view_inverse=np.linalg.inv(plan.view),
         projection=plan.projection,
-        lens=(plan.focus_distance, float(plan.orthographic), 0.0, 0.0),
-        film=(plan.width, plan.height, 0.0, 0.0),
+        lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
+        film=(plan.width, plan.height, *plan.origin),
     )

@@ -6,6 +6,10 @@ import numpy as np
 
 from ..sampling.sequence import lens_samples, pixel_offsets
 
+# Diagonals of the picture over the diameter of the largest circle of confusion that counts as
+# sharp: the usual criterion of depth-of-field tables (0.029 mm for 36 x 24 mm).
+_SHARP_CIRCLES_PER_DIAGONAL = 1500.0
+
 
 @dataclass(frozen=True, eq=False)
 class FramePlan:
@@ -15,26 +19,51 @@ class FramePlan:
     ----------
     width, height : int
         Of the rendered region, in pixels.
+    origin : tuple of 2 int
+        Lower left pixel of the region in the picture.
     view : ndarray of shape (4, 4)
         World to camera space.
     projection : ndarray of shape (4, 4)
         Camera space to clip space of the region.
+    orthographic : bool
     focus_distance : float
         In m.
     lens_positions : ndarray of shape (N, 2)
         Places on the lens, in m.
     jitter : ndarray of shape (N, 2)
         Sub-pixel movement in clip units of the region.
+    lens_extent : ndarray of shape (2,)
+        Half the width and height of the opening, in m.
+    coc_scale : float
+        Radius of the circle of confusion in pixels, for `lib/lens_lib.glsl`.
+    sharp_radius : float
+        Largest radius that counts as sharp, in pixels; see `sharp_radius`.
+    empty_coc : float
+        Radius of the circle of confusion where nothing is, in pixels.
+    passes : tuple of str
+    alpha_threshold : float
+        Opacity below which a surface is left out of the data passes.
+    previous, next : ndarray of shape (4, 4)
+        World to clip space of the region in the neighbouring frames.
     """
 
     width: int
     height: int
+    origin: tuple[int, int]
     view: np.ndarray
     projection: np.ndarray
     orthographic: bool
     focus_distance: float
     lens_positions: np.ndarray
     jitter: np.ndarray
+    lens_extent: np.ndarray
+    coc_scale: float
+    sharp_radius: float
+    empty_coc: float
+    passes: tuple[str, ...]
+    alpha_threshold: float
+    previous: np.ndarray
+    next: np.ndarray
 
     @property
     def samples(self):
@@ -64,6 +93,49 @@ def region_projection(projection, film):
     return crop @ projection
 
 
+def sharp_radius(width, height):
+    """Return the largest radius of a circle of confusion that counts as sharp.
+
+    A circle whose diameter is 1/1500 of the picture's diagonal, but at least one pixel, so that the
+    matte of a small picture is not decided by less than it can show. Focus Matte is the share of a
+    point's light that falls inside that circle: 1 up to this radius, then falling with its square.
+
+    Parameters
+    ----------
+    width, height : int
+        Of the whole picture, in pixels.
+
+    Returns
+    -------
+    float
+        In pixels.
+    """
+    return 0.5 * max(1.0, float(np.hypot(width, height)) / _SHARP_CIRCLES_PER_DIAGONAL)
+
+
+def coc_scale(projection, film, lens):
+    """Return the factor from defocus to pixels of the circle of confusion.
+
+    The radius is that along the picture's vertical, which an anamorphic iris leaves alone.
+
+    Parameters
+    ----------
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the whole picture.
+    film : Film
+    lens : ThinLens or None
+
+    Returns
+    -------
+    float
+        In pixels times the unit of the depth for a perspective camera (aperture radius times focal
+        length in pixels), in pixels for an orthographic one.
+    """
+    if lens is None:
+        return 0.0
+    return float(lens.aperture_radius * projection[1, 1] * film.height / 2.0)
+
+
 def plan_frame(snapshot):
     """Plan a frame.
 
@@ -76,23 +148,50 @@ def plan_frame(snapshot):
     FramePlan
     """
     film, camera, sampling = snapshot.film, snapshot.camera, snapshot.sampling
-    _, _, width, height = film.region
+    x, y, width, height = film.region
     count = sampling.lens_samples
     lens = camera.lens
     if lens is None or lens.aperture_radius == 0.0:
-        positions, focus = np.zeros((count, 2)), 1.0
+        positions, focus, extent = np.zeros((count, 2)), 1.0, np.zeros(2)
     else:
         points = lens_samples(0, count, lens.iris, sampling.seed)
         positions, focus = points * lens.aperture_radius, lens.focus_distance
+        extent = lens.aperture_radius * np.array([1.0 / lens.iris.ratio, 1.0])
     offsets = pixel_offsets(0, count, film.filter_kind, film.filter_size_px, sampling.seed)
+    projection = region_projection(camera.projection, film)
+    current = (camera.view, camera.projection)
+    previous, following = (
+        region_projection(frame_projection, film) @ frame_view
+        for frame_view, frame_projection in (camera.previous or current, camera.next or current)
+    )
+    scale = coc_scale(camera.projection, film, lens)
     return FramePlan(
         width=width,
         height=height,
+        origin=(x, y),
         view=camera.view,
-        projection=region_projection(camera.projection, film),
+        projection=projection,
         orthographic=camera.orthographic,
         focus_distance=focus,
         lens_positions=positions,
         # A sample at +x in the pixel sees what lies to its right: the picture moves to the left.
         jitter=-2.0 * offsets / np.array([width, height]),
+        lens_extent=extent,
+        coc_scale=scale,
+        sharp_radius=sharp_radius(film.width, film.height),
+        empty_coc=_empty_coc(camera, scale, focus),
+        passes=snapshot.passes,
+        alpha_threshold=snapshot.alpha_threshold,
+        previous=previous,
+        next=following,
     )
+
+
+def _empty_coc(camera, scale, focus):
+    if not camera.orthographic:
+        # The limit of scale (d - focus) / (d focus).
+        return scale / focus
+    # It grows without bound with the depth; what is not there is taken to be at the far plane.
+    inverse = np.linalg.inv(camera.projection)
+    far = -(inverse @ np.array([0.0, 0.0, 1.0, 1.0]))[2]
+    return float(scale * (far - focus) / focus)

@@ -4,6 +4,8 @@ Content is found by uid: what the previous content had already is not uploaded a
 new one lacks is released.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..device.geometry import MeshBuffers
@@ -66,6 +68,26 @@ class SceneBuffers:
             self._instance_table = content.instances
             self.uploads["instance_tables"] += 1
         self._content = content
+
+    def neighbouring_instances(self, instances):
+        """Return the instance tables of the previous and the next frame.
+
+        They are uploaded when they are asked for; what has none stands still.
+
+        Parameters
+        ----------
+        instances : InstanceTable
+
+        Returns
+        -------
+        tuple of two GPUTexture
+        """
+        return tuple(
+            self.instances
+            if world is None
+            else texture_2d(instance_texels(replace(instances, world=world)))
+            for world in (instances.previous_world, instances.next_world)
+        )
 
     def material_constants(self, uid, code):
         """Return the uniform block of a material, uploading it at its first use."""

@@ -100,7 +100,7 @@ class Draw:
     material_id: float | None = None
 
 
-def surface_shader(target, code, mesh_attributes, holdout=False):
+def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False):
     """Return the compiled shader of a surface on a mesh.
 
     Parameters
@@ -109,6 +109,8 @@ def surface_shader(target, code, mesh_attributes, holdout=False):
     code : SurfaceCode
     mesh_attributes : dict of str to ndarray
     holdout : bool
+    deforms : bool
+        The mesh has positions in the neighbouring frames.
 
     Returns
     -------
@@ -120,10 +122,18 @@ def surface_shader(target, code, mesh_attributes, holdout=False):
     transparent = code.transparent and not holdout
     shades = not holdout and (target.shades or transparent)
     own = tuple(key for key in target.attributes if key in mesh_attributes)
+    defines = [*target.defines, *["HOLDOUT"] * holdout, *["TRANSPARENT"] * transparent]
+    if "HAS_VECTOR" in defines and deforms:
+        defines.append("HAS_DEFORMATION")
+        attributes += [("VEC3", "pos_previous"), ("VEC3", "pos_next")]
+    defines = dict.fromkeys(defines, "1")
     for key in dict.fromkeys((code.attributes if shades else ()) + own):
         name = attribute_identifier(key)
         kind = attribute_type(mesh_attributes[key].shape[1])
         attributes.append((kind, name))
+        if key == "normal":
+            varyings.append(("VEC3", "world_normal"))
+            defines |= {"HAS_NORMAL": "1", "ATTRIBUTE_NORMAL": name}
         varyings.append((kind, f"v_{name}"))
         forward.append(f"  v_{name} = {name};")
     vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
@@ -141,7 +151,6 @@ def surface_shader(target, code, mesh_attributes, holdout=False):
     if target.names_material and not holdout:
         push_constants.append(("FLOAT", "material_id"))
     fragment += shader_source.load(target.fragment)
-    defines = [*target.defines, *["HOLDOUT"] * holdout, *["TRANSPARENT"] * transparent]
     return compile_shader(
         ShaderInfo(
             name="aplanat_surface",
@@ -154,7 +163,7 @@ def surface_shader(target, code, mesh_attributes, holdout=False):
             samplers=tuple(samplers),
             uniforms=tuple(uniforms),
             push_constants=tuple(push_constants),
-            defines=tuple((name, "1") for name in defines),
+            defines=tuple(defines.items()),
         )
     )
 
@@ -180,7 +189,8 @@ def build_draws(content, buffers, target=COLOR):
         for slot, (batch, count) in buffers.meshes[group.mesh].batches.items():
             material = content.materials[group.materials[slot]]
             code = surface_code.generate(material.graph, mesh.attributes, srgb)
-            shader = surface_shader(target, code, mesh.attributes, group.holdout)
+            deforms = mesh.motion is not None
+            shader = surface_shader(target, code, mesh.attributes, group.holdout, deforms)
             order = shaders.setdefault(id(shader), len(shaders))
             constants, textures = None, ()
             transparent = code.transparent and not group.holdout

@@ -1,7 +1,10 @@
 // Draws instanced meshes as one lens sample sees them.
 // Inputs: mesh attributes; instances_tx (instance table); view_buf; lens_sample (xy: place on the
 // lens, m; zw: sub-pixel jitter in clip units); instance_base.
-// Outputs: world position and normal, instance row, the attributes that the surface reads.
+// HAS_VECTOR: data_buf and the instance tables of the neighbouring frames, previous_tx and next_tx;
+// HAS_DEFORMATION: the mesh's positions there.
+// Outputs: world position and normal, instance row, the attributes that the surface reads; clip
+// positions in the neighbouring frames.
 // Source: methods 1 (HA90, JKL13 section 3).
 #include "lib/lens_lib.glsl"
 #include "lib/instance_lib.glsl"
@@ -22,6 +25,15 @@ void main()
   mat3 cofactor = mat3(cross(y, z), cross(z, x), cross(x, y));
   float handedness = dot(x, cross(y, z)) < 0.0 ? -1.0 : 1.0;
   world_normal = handedness * (cofactor * ATTRIBUTE_NORMAL);
+#endif
+#ifdef HAS_VECTOR
+#ifdef HAS_DEFORMATION
+  vec3 before = pos_previous, after = pos_next;
+#else
+  vec3 before = pos, after = pos;
+#endif
+  previous_clip = data_buf.previous * (instance_world(previous_tx, instance) * vec4(before, 1.0));
+  next_clip = data_buf.next * (instance_world(next_tx, instance) * vec4(after, 1.0));
 #endif
   forward_attributes();
 }

@@ -1,0 +1,113 @@
+"""A census of the graphics objects that are alive, for leak tests and diagnosis.
+
+Blender's GPU types take neither weak references nor subclasses. So while a census is taken, it
+holds a reference to every object made through `addon.device`, and calls those dead that nobody else
+refers to: it then drops them, and the device frees them. Without a census in progress, nothing is
+recorded and nothing kept.
+"""
+
+import sys
+from contextlib import contextmanager
+
+_in_progress = []
+
+# Bytes of a texel.
+TEXEL_BYTES = {
+    "RGBA32F": 16,
+    "RGBA16F": 8,
+    "RGBA8": 4,
+    "RG32F": 8,
+    "R32F": 4,
+    "R32UI": 4,
+    "DEPTH_COMPONENT32F": 4,
+}
+
+
+class Census:
+    """The graphics objects made since it began."""
+
+    def __init__(self):
+        self._entries = []
+
+    def record(self, kind, thing, size):
+        """Take an object in.
+
+        Parameters
+        ----------
+        kind : str
+        thing : object
+        size : int
+            In bytes.
+        """
+        self._entries.append((kind, size, [thing]))
+
+    def alive(self):
+        """Return how many objects are alive, and how many bytes they hold.
+
+        Returns
+        -------
+        dict of str to (int, int)
+            By kind: ``"texture"``, ``"framebuffer"``, ``"uniform_buffer"``, ``"vertex_buffer"``,
+            ``"index_buffer"``, ``"batch"``.
+        """
+        # Frame buffers and batches hold textures and buffers: repeat until nothing more dies.
+        while True:
+            living = [entry for entry in self._entries if not _is_orphan(entry[2])]
+            if len(living) == len(self._entries):
+                break
+            self._entries = living
+        counts = {}
+        for kind, size, _ in self._entries:
+            count, total = counts.get(kind, (0, 0))
+            counts[kind] = (count + 1, total + size)
+        return counts
+
+
+@contextmanager
+def taken():
+    """Take a census of what is made inside a `with` block.
+
+    Yields
+    ------
+    Census
+    """
+    census = Census()
+    _in_progress.append(census)
+    try:
+        yield census
+    finally:
+        _in_progress.remove(census)
+
+
+def record(kind, thing, size=0):
+    """Tell the censuses in progress of a new object, and return it.
+
+    Parameters
+    ----------
+    kind : str
+    thing : object
+    size : int
+        In bytes.
+
+    Returns
+    -------
+    object
+    """
+    for census in _in_progress:
+        census.record(kind, thing, size)
+    return thing
+
+
+def texture_bytes(width, height, texel_format, layers=1):
+    """Return how many bytes a texture takes."""
+    return width * height * max(layers, 1) * TEXEL_BYTES[texel_format]
+
+
+def _is_orphan(holder):
+    return sys.getrefcount(holder[0]) <= _ALONE
+
+
+# What `sys.getrefcount` answers for an object that only a census holds: the interpreter decides how
+# many references the question itself makes.
+_ALONE = sys.maxsize
+_ALONE = next(sys.getrefcount(holder[0]) for holder in [[object()]])

@@ -1,0 +1,103 @@
+"""Cryptomattes: which objects and materials a pixel shows through the lens, and how much of each.
+
+Each lens sample's ids are counted in a small table a pixel, so that coverage is exactly that of the
+blurred picture. A table has two slots more than the ranks that are shown: memory does not depend on
+the number of samples, and only pixels that see more ids than slots are approximate, in their least
+ranks.
+
+References
+----------
+Friedman and Jones, *Fully automatic ID mattes with support for motion blur and transparency*,
+SIGGRAPH 2015.
+"""
+
+from ..device import shader_source
+from ..device.shaders import ShaderInfo, compile_shader, dispatch
+
+# Channel of `surface.COLOR_AND_MATTES`' second target that holds the id.
+CHANNELS = {"CryptoObject": 0, "CryptoMaterial": 1}
+
+_GROUP = 8
+_SPARE_PAIRS = 1
+
+
+def slot_pairs(kinds):
+    """Return how many pairs of slots a table has.
+
+    Parameters
+    ----------
+    kinds : dict of str to int
+        Passes of two ranks each, by kind.
+    """
+    return max(kinds.values()) + _SPARE_PAIRS
+
+
+def _count_info(pairs):
+    return ShaderInfo(
+        name="aplanat_cryptomatte_count",
+        compute=shader_source.load("passes/cryptomatte_comp.glsl"),
+        samplers=(("FLOAT_2D", "mattes_tx"),),
+        images=(("RGBA32F", "FLOAT_2D_ARRAY", "tables_img", ("READ", "WRITE")),),
+        push_constants=(("INT", "kinds"), ("IVEC2", "channels")),
+        defines=(("SLOT_PAIRS", str(pairs)),),
+        local_size=(_GROUP, _GROUP, 1),
+    )
+
+
+def _rank_info(pairs):
+    return ShaderInfo(
+        name="aplanat_cryptomatte_rank",
+        vertex=shader_source.load("passes/fullscreen_vert.glsl"),
+        fragment=shader_source.load("passes/cryptomatte_frag.glsl"),
+        attributes=(("VEC2", "pos"),),
+        outputs=(("VEC4", "out_color"),),
+        samplers=(("FLOAT_2D_ARRAY", "tables_tx"),),
+        push_constants=(("INT", "first_layer"), ("INT", "rank"), ("FLOAT", "scale")),
+        defines=(("SLOT_PAIRS", str(pairs)),),
+    )
+
+
+def count(mattes, tables, kinds):
+    """Count the ids of a lens sample.
+
+    Parameters
+    ----------
+    mattes : GPUTexture
+        The sample's ids.
+    tables : GPUTexture
+        ``slot_pairs(kinds)`` layers a kind, cleared to zero before the first sample.
+    kinds : dict of str to int
+        As `render_passes.cryptomatte_kinds` gives them.
+    """
+    shader = compile_shader(_count_info(slot_pairs(kinds)))
+    channels = [CHANNELS[kind] for kind in kinds]
+    shader.bind()
+    shader.uniform_sampler("mattes_tx", mattes)
+    shader.image("tables_img", tables)
+    shader.uniform_int("kinds", len(channels))
+    shader.uniform_int("channels", (channels + [0])[:2])
+    dispatch(shader, -(-mattes.width // _GROUP), -(-mattes.height // _GROUP))
+
+
+def draw_ranks(fullscreen, tables, kinds, kind, index, samples):
+    """Draw one pass of two ranks into the bound frame buffer.
+
+    Parameters
+    ----------
+    fullscreen : GPUBatch
+    tables : GPUTexture
+    kinds : dict of str to int
+    kind : str
+        ``"CryptoObject"`` or ``"CryptoMaterial"``.
+    index : int
+        0 holds ranks 0 and 1, 1 holds 2 and 3, ...
+    samples : int
+    """
+    pairs = slot_pairs(kinds)
+    shader = compile_shader(_rank_info(pairs))
+    shader.bind()
+    shader.uniform_sampler("tables_tx", tables)
+    shader.uniform_int("first_layer", list(kinds).index(kind) * pairs)
+    shader.uniform_int("rank", 2 * index)
+    shader.uniform_float("scale", 1.0 / samples)
+    fullscreen.draw(shader)

@@ -1,0 +1,108 @@
+"""The data passes: what a pinhole at the lens' centre sees, as geometry (methods 1).
+
+One draw of the scene fills Depth, Normal, Position, Vector and CoC together, from the middle of
+each pixel: these values must not be averaged across an edge.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..device.uniform_block import UniformStruct
+from ..device.uniforms import uniform_buffer
+from . import surface
+
+DATA_PARAMS = UniformStruct("shared/data_params.glsl", "DataParams")
+
+EMPTY_DEPTH = 1e10
+
+# Colour targets by slot, all RGBA32F.
+TARGETS = ("normal_depth", "position_coc", "vector")
+
+# Where each pass lies: target, first channel, channels.
+PLACES = {
+    "Normal": ("normal_depth", 0, 3),
+    "Depth": ("normal_depth", 3, 1),
+    "Position": ("position_coc", 0, 3),
+    "CoC": ("position_coc", 3, 1),
+    "Vector": ("vector", 0, 4),
+}
+
+_STILL = surface.SurfaceTarget(
+    "passes/data_frag.glsl",
+    tuple(("VEC4", f"out_{name}") for name in TARGETS),
+    attributes=("normal",),
+    structs=DATA_PARAMS.source,
+    uniforms=(("DataParams", "data_buf"),),
+    shades=False,
+)
+
+_MOVING = replace(
+    _STILL,
+    varyings=(("VEC4", "previous_clip"), ("VEC4", "next_clip")),
+    samplers=(("FLOAT_2D", "previous_tx"), ("FLOAT_2D", "next_tx")),
+    defines=("HAS_VECTOR",),
+)
+
+
+def target(vector):
+    """Return the `SurfaceTarget` of the data passes, with or without movement."""
+    return _MOVING if vector else _STILL
+
+
+def empty_values(empty_coc):
+    """Return what each of `TARGETS` holds where nothing is.
+
+    Parameters
+    ----------
+    empty_coc : float
+        Signed circle of confusion of what surrounds the scene, in pixels.
+
+    Returns
+    -------
+    dict of str to tuple of 4 float
+    """
+    return {
+        "normal_depth": (0.0, 0.0, 0.0, EMPTY_DEPTH),
+        "position_coc": (0.0, 0.0, 0.0, empty_coc),
+        "vector": (0.0, 0.0, 0.0, 0.0),
+    }
+
+
+def data_params(previous, following, width, height, alpha_threshold):
+    """Upload the block of the data passes.
+
+    Parameters
+    ----------
+    previous, following : ndarray of shape (4, 4)
+        World to clip space of the region in the neighbouring frames.
+    width, height : int
+        Of the region, in pixels.
+    alpha_threshold : float
+
+    Returns
+    -------
+    GPUUniformBuf
+    """
+    return uniform_buffer(
+        DATA_PARAMS.pack(
+            previous=previous,
+            next=following,
+            raster=(width / 2.0, height / 2.0, alpha_threshold, 0.0),
+        )
+    )
+
+
+def draw(draws, view_buffer, instances, bindings):
+    """Draw the data passes into the bound frame buffer, over `TARGETS` by slot.
+
+    Parameters
+    ----------
+    draws : list of surface.Draw
+        Built for `target`.
+    view_buffer : GPUUniformBuf
+    instances : GPUTexture
+    bindings : tuple of (str, GPUUniformBuf or GPUTexture)
+        ``data_buf``, and with movement ``previous_tx`` and ``next_tx``.
+    """
+    surface.draw_sample(draws, view_buffer, instances, np.zeros(4).tolist(), 0, bindings)
