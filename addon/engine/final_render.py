@@ -18,7 +18,7 @@ from .outcome import LayerPicture, PassPicture
 from .pacing import Pacer
 from .pipeline import FrameRenderer
 from .plan import plan_frame
-from .render_passes import fill_layer, render_pass
+from .render_passes import cryptomatte_metadata, fill_layer, render_pass
 from .scene_buffers import SceneBuffers
 
 # The picture is shown twice a second while it converges, unless that takes a tenth of the time.
@@ -46,7 +46,7 @@ def render_view_layer(engine, depsgraph, heard):
     """
     statistics = heard.statistics
     with statistics.timed("extract"):
-        snapshot = SceneExtractor().extract(depsgraph)
+        snapshot = SceneExtractor().extract(depsgraph, engine.frame_set)
     _show_report(engine, heard, snapshot.content.report)
     with statistics.timed("plan"):
         plan = plan_frame(snapshot)
@@ -58,15 +58,18 @@ def render_view_layer(engine, depsgraph, heard):
         try:
             with _result(engine, snapshot) as result:
                 _draw(engine, gpu, renderer, result, heard)
-                pictures = _finish(engine, gpu, renderer, result, heard)
+                pictures = _finish(gpu, renderer, result, heard)
         finally:
             statistics.lens_samples += renderer.samples_done
             statistics.draw_calls += renderer.draw_calls
             statistics.triangles_submitted += renderer.triangles
-            statistics.triangles_full_detail += renderer.triangles
+            statistics.triangles_full_detail += renderer.triangles_full_detail
             gpu.release(renderer.release)
+    metadata = cryptomatte_metadata(snapshot)
+    for key, value in metadata.items():
+        engine.get_result().stamp_data_add_field(key, value)
     if heard.keeps_pictures:
-        heard.layers.append(_layer_picture(depsgraph.scene, snapshot, pictures))
+        heard.layers.append(_layer_picture(depsgraph.scene, snapshot, pictures, metadata))
 
 
 def _show_report(engine, heard, lines):
@@ -129,14 +132,14 @@ def _show_progress(engine, heard, renderer, seconds):
         heard.progress(done / total, text)
 
 
-def _finish(engine, gpu, renderer, result, heard):
+def _finish(gpu, renderer, result, heard):
     with heard.statistics.timed("read_back"):
-        pictures = {"Combined": gpu.call(renderer.read_image)}
+        pictures = gpu.call(renderer.read_passes)
     fill_layer(result.layers[0], pictures)
     return pictures
 
 
-def _layer_picture(scene, snapshot, pictures):
+def _layer_picture(scene, snapshot, pictures, metadata):
     film = snapshot.film
     return LayerPicture(
         scene=scene.name,
@@ -147,4 +150,5 @@ def _layer_picture(scene, snapshot, pictures):
             name: PassPicture(render_pass(name).channels, pixels)
             for name, pixels in pictures.items()
         },
+        metadata=metadata,
     )

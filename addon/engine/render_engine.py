@@ -3,7 +3,8 @@
 import bpy
 
 from ..errors import AplanatError, RenderCancelledError
-from . import final_render, gpu_thread, outcome
+from ..scene.settings import read_passes
+from . import final_render, gpu_thread, outcome, render_passes
 
 ENGINE_ID = "APLANAT"
 
@@ -38,6 +39,11 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
             heard.error = error
             self.error_set(f"Aplanat failed, see the console: {error}")
             raise
+
+    def update_render_passes(self, scene=None, renderlayer=None):
+        """Tell Blender which passes a view layer has."""
+        if scene is not None and renderlayer is not None:
+            render_passes.register(self, scene, renderlayer, read_passes(renderlayer))
 
 
 _register, _unregister = bpy.utils.register_classes_factory((AplanatRenderEngine,))

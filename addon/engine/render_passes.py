@@ -15,8 +15,11 @@ after this table, and asks for the passes of a view layer through `register`.
   `plan.sharp_radius`.
 """
 
+import json
 import re
 from dataclasses import dataclass
+
+from ..scene.cryptomatte import cryptomatte_hash, murmur3_32
 
 _CRYPTOMATTE = re.compile(r"Crypto(Object|Material)\d\d")
 
@@ -88,6 +91,37 @@ def cryptomatte_kinds(names):
     for name in made_by(names, "CRYPTOMATTE"):
         counts[name[:-2]] = counts.get(name[:-2], 0) + 1
     return counts
+
+
+def cryptomatte_metadata(snapshot):
+    """Return what a picture says about its Cryptomattes, so that names can be picked.
+
+    Parameters
+    ----------
+    snapshot : SceneSnapshot
+
+    Returns
+    -------
+    dict of str to str
+        Keys as the Cryptomatte specification demands them, for each kind that is asked for.
+    """
+    content = snapshot.content
+    names = {
+        "CryptoObject": content.instances.names,
+        "CryptoMaterial": [material.name for material in content.materials.values()],
+    }
+    metadata = {}
+    for kind in cryptomatte_kinds(snapshot.passes):
+        name = f"{snapshot.layer_name}.{kind}"
+        prefix = f"cryptomatte/{murmur3_32(name.encode()):08x}"[: len("cryptomatte/") + 7]
+        manifest = {n: f"{cryptomatte_hash(n):08x}" for n in sorted(set(names[kind])) if n}
+        metadata |= {
+            f"{prefix}/name": name,
+            f"{prefix}/hash": "MurmurHash3_32",
+            f"{prefix}/conversion": "uint32_to_float32",
+            f"{prefix}/manifest": json.dumps(manifest, ensure_ascii=False, separators=(",", ":")),
+        }
+    return metadata
 
 
 def register(engine, scene, view_layer, names):
