@@ -58,6 +58,8 @@ class Blender:
         self.env = os.environ | {
             "BLENDER_USER_RESOURCES": str(self.resources),
             "LIBGL_ALWAYS_SOFTWARE": "1",
+            # Where the checkout lies in a system folder, the private Blender still sees it.
+            "APLANAT_BIND": str(REPO),
             "PYTHONDONTWRITEBYTECODE": "1",
         }
         self._root = Path(self.path).resolve().with_name("in-blender-root")
