@@ -1,6 +1,6 @@
 """From Blender's evaluated scene to a `SceneSnapshot`."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -46,7 +46,7 @@ class SceneExtractor:
         self._space = space
         self._materials = MaterialReader()
         self._known = {}
-        # Readings whose source may have changed: compared with what is read next.
+        # Read before, but the source may have changed: compared with what is read next.
         self._doubtful = []
         self._content = None
         self._passes = None
@@ -147,7 +147,7 @@ class SceneExtractor:
                 for slot in slots_of[look.mesh]:
                     graph = materials.materials[uids[slot]].graph
                     needed[look.mesh] |= attributes_read(graph)
-        readings = self._read_meshes(depsgraph, found, needed)
+        readings = self._read_meshes(depsgraph, found, needed, "Vector" in passes)
         row_look = np.array([numbers[look] for look in found.looks], np.int32)
         order = np.argsort(row_look, kind="stable")
         counts = np.bincount(row_look, minlength=len(numbers))
@@ -195,17 +195,23 @@ class SceneExtractor:
         with source.opened(depsgraph) as mesh:
             return used_slots(mesh)
 
-    def _read_meshes(self, depsgraph, found, needed):
+    def _read_meshes(self, depsgraph, found, needed, for_motion):
         current = {}
         earlier = [*self._doubtful]
         earlier += [k.reading for key, k in self._known.items() if key not in found.sources]
         for key, source in found.sources.items():
             known = self._known.get(key)
             keys = frozenset(needed[key])
-            if known is None or not keys <= known.keys:
+            if (
+                known is None
+                or not keys <= known.keys
+                or (for_motion and known.reading.split is None)
+            ):
                 with source.opened(depsgraph) as mesh:
                     reading = read_mesh(mesh, keys, source.owner)
-                reading = _take_equal(earlier, reading)
+                equal = _take_equal(earlier, reading.snapshot)
+                split = reading.split if for_motion else None
+                reading = replace(reading, snapshot=equal, split=split)
                 known = _KnownMesh(reading, keys, frozenset(found.owners[key]))
             current[key] = known
         self._known = {key: known for key, known in current.items() if isinstance(key, int)}
@@ -213,12 +219,12 @@ class SceneExtractor:
         return {key: known.reading for key, known in current.items()}
 
 
-def _take_equal(earlier, reading):
-    """Return an equal earlier reading, which no other mesh may then take, or the new one."""
+def _take_equal(earlier, mesh):
+    """Return an equal mesh read before, which no other one may then take, or the new one."""
     for i, candidate in enumerate(earlier):
-        if same_content(candidate.snapshot, reading.snapshot):
-            return earlier.pop(i)
-    return reading
+        if same_content(candidate.snapshot, mesh):
+            return earlier.pop(i).snapshot
+    return mesh
 
 
 def _slot_uids(slots, used, materials):

@@ -31,14 +31,14 @@ class MeshReading:
     Parameters
     ----------
     snapshot : MeshSnapshot
-    split : VertexSplit
+    split : VertexSplit or None
         How its vertices came about; `read_moved_positions` needs it.
     notes : tuple of str
         Lines for the report.
     """
 
     snapshot: MeshSnapshot
-    split: VertexSplit
+    split: VertexSplit | None
     notes: tuple[str, ...] = ()
 
 

@@ -22,7 +22,8 @@ class VertexSplit:
     Parameters
     ----------
     vertices, corners : ndarray of shape (W,)
-        int32; the old vertex and a corner that each new vertex takes its values from.
+        int32; the old vertex and a corner that each new vertex takes its values from. Without
+        corner values there are no corners.
     index : ndarray of shape (C,)
         int32; each corner's new vertex.
     unsplit : bool
@@ -61,11 +62,14 @@ def split_vertices(corner_vertices, vertex_count, corner_values=()):
     VertexSplit
     """
     count = len(corner_vertices)
+    vertices = np.arange(vertex_count, dtype=np.int32)
+    if not corner_values:
+        nowhere = np.empty(0, np.int32)
+        return VertexSplit(vertices, nowhere, corner_vertices, unsplit=True)
     first = np.zeros(vertex_count, np.int32)
     # Written from the back, so that a vertex's first corner is the one that stays.
     first[corner_vertices[::-1]] = np.arange(count - 1, -1, -1, dtype=np.int32)
-    vertices = np.arange(vertex_count, dtype=np.int32)
-    if not corner_values or count == 0:
+    if count == 0:
         return VertexSplit(vertices, first, corner_vertices, unsplit=True)
     bits = [np.ascontiguousarray(values, np.float32).view(np.int32) for values in corner_values]
     representative = np.take(first, corner_vertices)

@@ -1,0 +1,223 @@
+"""Everything that is drawn covers the pixels that Cycles covers, in the colours of its materials."""
+
+import numpy as np
+import pytest
+
+from tests.pictures import render_aplanat, render_cycles, save_side_by_side
+from tests import scene_builders as scenes
+
+# Unlit colours are exact in both engines; only how much of a pixel on an outline is covered is
+# sampled, by 16 and 64 places. A pixel wholly inside or outside a shape must agree: a shape that is
+# missing, mirrored, in another place or of another colour differs in far more.
+SAMPLES = 16
+INSIDE = 1e-4
+OUTLINE_MEAN = 0.012
+
+
+def compare(scene, tmp_path, width=160, height=120, transparent=True):
+    scene.render.resolution_x, scene.render.resolution_y = width, height
+    scene.render.film_transparent = transparent
+    ours = render_aplanat(scene, SAMPLES)
+    cycles = render_cycles(scene, 64)
+    save_side_by_side(tmp_path / "ours_cycles_difference.png", ours, cycles)
+    difference = np.abs(ours - cycles).max(axis=2)
+    outlines = outline(ours) | outline(cycles)
+    assert (ours[..., 3] > 0).any()
+    assert difference[~outlines].max() < INSIDE, tmp_path
+    assert difference.mean() < OUTLINE_MEAN, tmp_path
+    return ours, cycles
+
+
+def outline(picture):
+    """Pixels that differ from a neighbour."""
+    edge = np.zeros(picture.shape[:2], bool)
+    for axis in (0, 1):
+        differs = (np.abs(np.diff(picture, axis=axis)) > INSIDE).any(axis=2)
+        low = [slice(None)] * 2
+        high = [slice(None)] * 2
+        low[axis], high[axis] = slice(None, -1), slice(1, None)
+        edge[tuple(low)] |= differs
+        edge[tuple(high)] |= differs
+    return edge
+
+
+@pytest.fixture
+def bpy(aplanat_bpy, empty_scene):
+    scenes.look_along_y(aplanat_bpy, 8.0)
+    return aplanat_bpy
+
+
+def palette(bpy, count):
+    rng = np.random.default_rng(5)
+    colors = rng.uniform(0.15, 0.9, (count, 3)).tolist()
+    return [scenes.emission(bpy, f"color {i}", color) for i, color in enumerate(colors)]
+
+
+def test_every_kind_of_geometry_is_drawn_where_cycles_draws_it(bpy, tmp_path):
+    scene = bpy.context.scene
+    paint = palette(bpy, 12)
+    bevelled = bpy.data.curves.new("bevelled", "CURVE")
+    bevelled.dimensions = "3D"
+    spline = bevelled.splines.new("POLY")
+    spline.points.add(2)
+    for point, place in zip(
+        spline.points, ((-0.5, 0, 0), (0, 0, 0.5), (0.5, 0, -0.2)), strict=True
+    ):
+        point.co = (*place, 1.0)
+    bevelled.bevel_depth = 0.12
+    scenes.add(bpy, "bevelled", bevelled, paint[0], (-3, 2))
+    wire = bpy.data.curves.new("wire", "CURVE")
+    wire.splines.new("POLY").points.add(2)
+    scenes.add(bpy, "wire", wire, paint[1], (0, 0))
+    filled = bpy.data.curves.new("filled", "CURVE")
+    filled.dimensions = "2D"
+    filled.fill_mode = "BOTH"
+    spline = filled.splines.new("POLY")
+    spline.use_cyclic_u = True
+    spline.points.add(2)
+    for point, place in zip(spline.points, ((-0.5, -0.4), (0.5, -0.4), (-0.2, 0.5)), strict=True):
+        point.co = (*place, 0.0, 1.0)
+    scenes.add(bpy, "filled", filled, paint[2], (-1.5, 2)).rotation_euler.x = np.pi / 2
+    text = bpy.data.curves.new("text", "FONT")
+    text.body = "Rq"
+    text.size = 1.4
+    scenes.add(bpy, "text", text, paint[3], (-0.7, 1.6)).rotation_euler.x = np.pi / 2
+    bpy.ops.surface.primitive_nurbs_surface_sphere_add(radius=0.5, location=(1.7, 0, 2))
+    bpy.context.object.data.materials.append(paint[4])
+    for x in (2.8, 3.4):
+        ball = bpy.data.metaballs.new("ball")
+        ball.elements.new().radius = 0.8
+        ball.render_resolution = 0.15
+        scenes.add(bpy, f"ball.{x:.0f}", ball, paint[5], (x, 2))
+    left = scenes.add(bpy, "mirrored", scenes.triangle(bpy), paint[6], (-3, 0))
+    left.scale = (-1.0, 1.0, 1.3)
+    two = scenes.cube(bpy, "two")
+    two.materials.append(paint[7])
+    two.materials.append(paint[8])
+    two.polygons[4].material_index = 1
+    two.polygons[2].material_index = 1
+    scenes.add(bpy, "two", two, at=(-1.5, 0)).rotation_euler = (0.5, 0.3, 0.8)
+    beyond = scenes.add(bpy, "slot beyond", scenes.triangle(bpy, "beyond"), paint[9], (0, 0))
+    beyond.data.polygons[0].material_index = 7
+    by_object = scenes.add(bpy, "slot of object", two, at=(1.5, 0))
+    by_object.rotation_euler = (0.5, 0.3, 0.8)
+    by_object.material_slots[0].link = "OBJECT"
+    by_object.material_slots[0].material = paint[10]
+    smooth = scenes.add(bpy, "subdivided", scenes.cube(bpy, "round", 1.1), paint[11], (3, 0))
+    smooth.modifiers.new("round", "SUBSURF").render_levels = 3
+    for kind in ("edges only", "nothing"):
+        scenes.add(
+            bpy, kind, scenes.mesh(bpy, kind, [(0, 0, 0), (1, 0, 1)] * (kind != "nothing"), [])
+        )
+    compare(scene, tmp_path)
+
+
+def test_instances_are_drawn_where_cycles_draws_them(bpy, tmp_path):
+    scene = bpy.context.scene
+    paint = palette(bpy, 8)
+    kept, kept_layer = scenes.collection(bpy, "sources")
+    source = scenes.add(bpy, "source", scenes.triangle(bpy), paint[0], collection=kept)
+    second = scenes.add(bpy, "second", scenes.cube(bpy), paint[1], (0.8, 0), kept)
+    second.scale = (1, 1, -1.4)
+    kept_layer.exclude = True
+    for i, (scale, turn) in enumerate(((1.0, 0.0), (-0.8, 0.3), (0.6, 1.0))):
+        empty = scenes.add(bpy, f"empty {i}", None, at=(-3 + 2.5 * i, 2.1))
+        empty.instance_type, empty.instance_collection = "COLLECTION", kept
+        empty.scale = (scale, 1, 1)
+        empty.rotation_euler.y = turn
+    points = [(-3 + i, 0, 0.7 + 0.1 * i) for i in range(7)]
+    scenes.instancer(bpy, None, paint[2], points, "balls")
+    hidden = scenes.add(bpy, "hidden", scenes.triangle(bpy, "hidden"), paint[3])
+    hidden.hide_render = True
+    scenes.instancer(bpy, hidden, None, [(-3 + i, 0, -0.5) for i in range(7)], "triangles")
+    emitter = scenes.add(bpy, "emitter", scenes.cube(bpy, "emitter", 1.2), paint[4], (-2.5, -2))
+    particles = emitter.modifiers.new("particles", "PARTICLE_SYSTEM").particle_system.settings
+    particles.count, particles.frame_start, particles.frame_end = 30, -20, 0
+    particles.lifetime = 200
+    particles.render_type, particles.instance_object = "OBJECT", source
+    particles.particle_size = 0.4
+    particles.use_rotations = True
+    emitter.show_instancer_for_render = False
+    shown = scenes.add(bpy, "shown", scenes.cube(bpy, "shown", 0.8), paint[5], (1.0, -2))
+    particles = shown.modifiers.new("particles", "PARTICLE_SYSTEM").particle_system.settings
+    particles.count, particles.frame_start, particles.frame_end = 20, -20, 0
+    particles.render_type, particles.instance_object = "OBJECT", second
+    particles.particle_size = 0.3
+    faces = scenes.add(bpy, "faces", scenes.cube(bpy, "faces", 1.6), paint[6], (3, -2))
+    faces.rotation_euler = (0.4, 0.2, 0.5)
+    child = scenes.add(bpy, "child", scenes.triangle(bpy, "child"), paint[7])
+    child.parent = faces
+    faces.instance_type = "FACES"
+    faces.show_instancer_for_render = False
+    compare(scene, tmp_path)
+
+
+def test_visibility_holdout_and_collections_act_as_in_cycles(bpy, tmp_path):
+    scene = bpy.context.scene
+    paint = palette(bpy, 8)
+    big = scenes.cube(bpy, "big", 1.0)
+    row = {}
+    for i, name in enumerate(("plain", "hidden", "no camera", "holdout", "cut", "hidden parent")):
+        row[name] = scenes.add(bpy, name, big.copy(), paint[i], (-3.2 + 1.25 * i, 2))
+    row["hidden"].hide_render = True
+    row["no camera"].visible_camera = False
+    row["holdout"].is_holdout = True
+    row["cut"].hide_viewport = True
+    row["hidden parent"].hide_viewport = row["hidden parent"].hide_render = True
+    backdrop = scenes.add(bpy, "backdrop", big.copy(), paint[6], (0, 1.9))
+    backdrop.scale, backdrop.location.y = (7.4, 1, 0.5), 3
+    for i, flag in enumerate(("holdout", "indirect_only", "exclude", "hide_viewport")):
+        folder, layer = scenes.collection(bpy, flag)
+        at = (-3 + 1.6 * i, 0)
+        scenes.add(bpy, f"in {flag}", big.copy(), paint[i], at, folder)
+        empty = scenes.add(bpy, f"of {flag}", None, at=(0.3, -2))
+        empty.instance_type, empty.instance_collection = "COLLECTION", folder
+        empty.scale = (0.7, 1, 0.7)
+        setattr(layer, flag, True)
+    folder, layer = scenes.collection(bpy, "hidden collection")
+    scenes.add(bpy, "in hidden collection", big.copy(), paint[5], (3.2, 0), folder)
+    folder.hide_render = True
+    folder, layer = scenes.collection(bpy, "instancers held out")
+    source = bpy.data.collections["exclude"]
+    empty = scenes.add(bpy, "held out instance", None, at=(6, 0.2), collection=folder)
+    empty.instance_type, empty.instance_collection = "COLLECTION", source
+    layer.holdout = True
+    behind = scenes.add(bpy, "behind", big.copy(), paint[7], (0, -0.2))
+    behind.scale, behind.location.y = (7.4, 1, 0.4), 3
+    ours, _ = compare(scene, tmp_path)
+    assert (ours[..., 3] == 0).any()
+
+
+def test_each_view_layer_has_its_own_collections_and_material(bpy, tmp_path):
+    scene = bpy.context.scene
+    paint = palette(bpy, 3)
+    folder, _ = scenes.collection(bpy, "left")
+    scenes.add(bpy, "left", scenes.triangle(bpy, "left"), paint[0], (-2, 0), folder)
+    scenes.add(bpy, "right", scenes.cube(bpy, "right", 1.5), paint[1], (2, 0))
+    other = scene.view_layers.new("other")
+    other.layer_collection.children["left"].exclude = True
+    other.material_override = paint[2]
+    for name in ("ViewLayer", "other"):
+        for layer in scene.view_layers:
+            layer.use = layer.name == name
+        compare(scene, tmp_path, 80, 60)
+
+
+def test_colour_attributes_of_every_kind_have_cycles_values(bpy, tmp_path):
+    scene = bpy.context.scene
+    rng = np.random.default_rng(2)
+    kinds = [(t, d) for t in ("BYTE_COLOR", "FLOAT_COLOR") for d in ("POINT", "CORNER")]
+    for i, (kind, domain) in enumerate(kinds):
+        data = scenes.cube(bpy, f"{kind} {domain}", 1.3)
+        attribute = data.color_attributes.new("tint", kind, domain)
+        values = rng.uniform(0.1, 0.9, (len(attribute.data), 4)).astype(np.float32)
+        attribute.data.foreach_set("color", values.ravel())
+        paint = scenes.emission(bpy, f"paint {i}", (0, 0, 0), "tint")
+        obj = scenes.add(bpy, data.name, data, paint, (-3 + 2 * i, 0))
+        obj.rotation_euler = (0.5, 0.3, 0.8)
+    ours, cycles = (render_aplanat(scene, 64), render_cycles(scene, 64))
+    save_side_by_side(tmp_path / "colors.png", ours, cycles)
+    covered = (ours[..., 3] == 1) & (cycles[..., 3] == 1)
+    assert covered.mean() > 0.1
+    # Colours vary over a pixel, so that both engines sample them; 8-bit values are the same ones.
+    assert np.abs(ours - cycles)[covered].max() < 0.02
