@@ -60,7 +60,6 @@ def apply_options(scene, arguments):
         If one of them does not fit the scene.
     """
     render, settings = scene.render, scene.aplanat
-    render.engine = ENGINE_ID
     if arguments.resolution:
         render.resolution_x, render.resolution_y = arguments.resolution
         render.resolution_percentage = 100
@@ -81,6 +80,19 @@ def apply_options(scene, arguments):
     if arguments.fstop or arguments.focus is not None:
         _use_lens_options(scene, arguments)
     check_size(scene)
+
+
+def use_engine(scene):
+    """Choose Aplanat as the scene's render engine.
+
+    Raises
+    ------
+    CameraError
+        If there is no camera to render from.
+    """
+    scene.render.engine = ENGINE_ID
+    if scene.camera is None:
+        raise CameraError(f"scene '{scene.name}' has no camera; add one, or name one with --camera")
 
 
 def check_size(scene):
