@@ -20,6 +20,19 @@ def preserved():
         gpu.state.face_culling_set("NONE")
 
 
+@contextmanager
+def confined(x, y, width, height):
+    """Draw into a rectangle of the bound frame buffer, in pixels, for a `with` block."""
+    import gpu
+
+    viewport = gpu.state.viewport_get()
+    gpu.state.viewport_set(x, y, width, height)
+    try:
+        yield
+    finally:
+        gpu.state.viewport_set(*viewport)
+
+
 def opaque():
     """Nearest surface wins: depth test and write, no blending."""
     import gpu

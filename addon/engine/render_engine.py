@@ -5,6 +5,7 @@ import bpy
 from ..errors import AplanatError, RenderCancelledError
 from ..scene.settings import read_passes
 from . import final_render, gpu_thread, outcome, render_passes
+from .viewport import Viewport
 
 ENGINE_ID = "APLANAT"
 
@@ -21,6 +22,11 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
     # In the background the render thread owns the GPU context; in the user interface it must not,
     # or Blender freezes until the render ends.
     bl_use_gpu_context = bpy.app.background
+
+    def __init__(self, *args, **kwargs):
+        super().__init__(*args, **kwargs)
+        # Made by the first 3D view that asks; a final render has none.
+        self._viewport = None
 
     def render(self, depsgraph):
         """Render one view layer."""
@@ -44,6 +50,28 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
         """Tell Blender which passes a view layer has."""
         if scene is not None and renderlayer is not None:
             render_passes.register(self, scene, renderlayer, read_passes(renderlayer))
+
+    def view_update(self, context, depsgraph):
+        """Take note of what changed in the scene of a 3D view."""
+        if self._viewport is None:
+            self._viewport = Viewport()
+        self._viewport.note_updates(depsgraph, context.space_data)
+
+    def view_draw(self, context, depsgraph):
+        """Draw the picture of a 3D view, finer than the last time."""
+        unfinished = False
+        try:
+            unfinished = self._viewport.draw(
+                depsgraph,
+                context.space_data,
+                context.region,
+                context.region_data,
+                int(self.get_preview_pixel_size(depsgraph.scene)),
+            )
+        finally:
+            self.update_stats("", self._viewport.text)
+        if unfinished:
+            self.tag_redraw()
 
 
 _register, _unregister = bpy.utils.register_classes_factory((AplanatRenderEngine,))

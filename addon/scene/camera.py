@@ -32,13 +32,8 @@ def read_camera(depsgraph, camera, film):
     """
     if camera is None:
         raise CameraError("the scene has no camera; add one or set Scene > Camera")
-    camera = camera.evaluated_get(depsgraph)
+    camera = evaluated_camera(depsgraph, camera)
     data = camera.data
-    if data.type not in {"PERSP", "ORTHO"}:
-        raise CameraError(
-            f"camera '{camera.name}' is {data.type.lower()}; Aplanat renders perspective and"
-            " orthographic cameras (Camera > Lens > Type)"
-        )
     render = depsgraph.scene.render
     projection = camera.calc_matrix_camera(
         depsgraph,
@@ -55,6 +50,24 @@ def read_camera(depsgraph, camera, film):
         lens=read_lens(depsgraph, camera) if data.dof.use_dof else None,
         orthographic=orthographic,
     )
+
+
+def evaluated_camera(depsgraph, camera):
+    """Return a camera as it is in the depsgraph's frame.
+
+    Raises
+    ------
+    CameraError
+        If it is panoramic or custom.
+    """
+    camera = camera.evaluated_get(depsgraph)
+    kind = camera.data.type
+    if kind not in {"PERSP", "ORTHO"}:
+        raise CameraError(
+            f"camera '{camera.name}' is {kind.lower()}; Aplanat renders perspective and"
+            " orthographic cameras (Camera > Lens > Type)"
+        )
+    return camera
 
 
 def read_lens(depsgraph, camera):

@@ -1,0 +1,178 @@
+"""The Rendered viewport: the frame of a 3D view, refined while nothing changes.
+
+Blender tells a viewport what changed (`Viewport.note_updates`) and asks it to draw
+(`Viewport.draw`). A drawing answers within about one sample; the picture is the final render's at
+every step: same plan, same passes. 3D views that show the same objects share their copies on the
+graphics device.
+"""
+
+import weakref
+from functools import cache
+
+from ..device import context as device_context
+from ..device import state
+from ..errors import AplanatError
+from ..scene.changes import Change, compare
+from ..scene.extract import SceneExtractor
+from ..scene.settings import read_preview_sampling
+from ..scene.snapshot import SceneSnapshot
+from ..scene.view import read_view
+from .pacing import Pacer
+from .pipeline import FrameRenderer
+from .plan import plan_frame
+from .scene_buffers import SceneBuffers
+
+# Between two answers to the user; a single sample may take longer.
+DRAW_SECONDS = 0.02
+
+
+class _ViewedScene:
+    """What stands before the camera of one or several 3D views, also on the device.
+
+    Parameters
+    ----------
+    space : bpy.types.SpaceView3D or None
+        The 3D view that shows not all objects, if it is such a one.
+    """
+
+    def __init__(self, space):
+        self.buffers = SceneBuffers()
+        self._extractor = SceneExtractor(space)
+
+    def note_updates(self, depsgraph):
+        self._extractor.note_updates(depsgraph)
+
+    def content(self, depsgraph):
+        """Return the current `SceneContent`, after its upload."""
+        content = self._extractor.extract_content(depsgraph)
+        self.buffers.update(content)
+        return content
+
+
+# Lives as long as a viewport shows it.
+_viewed_scenes = weakref.WeakValueDictionary()
+
+
+def _viewed_scene(depsgraph, space):
+    """Return the scene that a 3D view shows, shared with those that show the same objects."""
+    key, filtering = _visibility_key(space)
+    layer = depsgraph.view_layer
+    key = (depsgraph.as_pointer(), depsgraph.scene.original.session_uid, layer.name, *key)
+    scene = _viewed_scenes.get(key)
+    if scene is None:
+        scene = _viewed_scenes[key] = _ViewedScene(space if filtering else None)
+    return scene
+
+
+def _visibility_key(space):
+    shown = tuple(getattr(space, name) for name in _type_switches(type(space)))
+    if space.local_view is None and not space.use_local_collections and all(shown):
+        return (), False
+    return (space.as_pointer(), space.local_view is None, space.use_local_collections, *shown), True
+
+
+@cache
+def _type_switches(space_type):
+    names = space_type.bl_rna.properties.keys()
+    return tuple(name for name in names if name.startswith("show_object_viewport_"))
+
+
+class Viewport:
+    """The picture of one region of a 3D view.
+
+    Attributes
+    ----------
+    text : str
+        What to tell the user: progress, or in one line why there is no picture.
+    """
+
+    def __init__(self):
+        self.text = ""
+        self._scene = None
+        self._drawn_scene = None
+        self._snapshot = None
+        self._renderer = None
+        self._pacer = Pacer(DRAW_SECONDS)
+        self._broken = False
+
+    def note_updates(self, depsgraph, space):
+        """Take note of what changed; cheap, nothing is read yet.
+
+        Parameters
+        ----------
+        depsgraph : bpy.types.Depsgraph
+        space : bpy.types.SpaceView3D
+        """
+        self._broken = False
+        self._scene = _viewed_scene(depsgraph, space)
+        self._scene.note_updates(depsgraph)
+
+    def draw(self, depsgraph, space, region, region_3d, pixel_size):
+        """Refine the picture and draw it into the bound frame buffer.
+
+        Parameters
+        ----------
+        depsgraph : bpy.types.Depsgraph
+        space : bpy.types.SpaceView3D
+        region : bpy.types.Region
+        region_3d : bpy.types.RegionView3D
+        pixel_size : int
+
+        Returns
+        -------
+        bool
+            Whether another drawing would refine it further.
+        """
+        if self._broken:
+            return False
+        try:
+            return self._draw(depsgraph, space, region, region_3d, pixel_size)
+        except AplanatError as error:
+            self.text = " ".join(str(error).split())
+            self._snapshot = None
+            return False
+        except Exception:
+            # Blender prints the traceback; once is enough until something changes.
+            self._broken = True
+            self.text = "Aplanat failed, see the console"
+            raise
+
+    def _draw(self, depsgraph, space, region, region_3d, pixel_size):
+        device_context.ensure_context()
+        self._scene = _viewed_scene(depsgraph, space)
+        view = read_view(depsgraph, space, region, region_3d, pixel_size)
+        if view is None:
+            self.text = "the render region is outside the view"
+            return False
+        snapshot = SceneSnapshot(
+            content=self._scene.content(depsgraph),
+            camera=view.camera,
+            film=view.film,
+            sampling=read_preview_sampling(depsgraph.scene),
+        )
+        with state.preserved():
+            self._begin_if_changed(snapshot)
+            renderer = self._renderer
+            if not renderer.finished():
+                self._pacer.advance(renderer)
+            x, y, width, height = view.rectangle
+            with state.confined(x, y, width, height):
+                renderer.resolve((x, y), view.pixel_size)
+        self.text = f"Sample {renderer.samples_done}/{renderer.plan.samples}"
+        return not renderer.finished()
+
+    def _begin_if_changed(self, snapshot):
+        changed = compare(self._snapshot, snapshot)
+        self._snapshot = snapshot
+        if self._renderer is None or self._drawn_scene is not self._scene:
+            self.release()
+            self._renderer = FrameRenderer(plan_frame(snapshot), snapshot, self._scene.buffers)
+            self._drawn_scene = self._scene
+        elif changed & Change.PICTURE:
+            self._renderer.restart(plan_frame(snapshot), snapshot)
+
+    def release(self):
+        """Give the picture back to the device."""
+        if self._renderer is not None:
+            self._renderer.release()
+            self._renderer = None
