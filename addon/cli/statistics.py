@@ -88,6 +88,9 @@ def work(statistics):
         "highlights_masked": found["masked"],
         "highlights_splatted": found["splatted"],
         "uploads": dict(statistics.uploads),
+        "shaders_compiled": statistics.shaders_compiled,
+        "texture_bytes": statistics.texture_bytes,
+        "geometry_bytes": statistics.geometry_bytes,
     }
 
 

@@ -103,6 +103,11 @@ def texture_bytes(width, height, texel_format, layers=1):
     return width * height * max(layers, 1) * TEXEL_BYTES[texel_format]
 
 
+def size_of_texture(texture):
+    """Return how many bytes a plain 2D texture takes."""
+    return texture_bytes(texture.width, texture.height, texture.format)
+
+
 def _is_orphan(holder):
     return sys.getrefcount(holder[0]) <= _ALONE
 

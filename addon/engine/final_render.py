@@ -12,6 +12,7 @@ from functools import partial
 import bpy
 
 from ..device import context
+from ..device.shaders import compiled_count
 from ..scene.extract import SceneExtractor
 from .gpu_thread import gpu_of_render
 from .outcome import LayerPicture, PassPicture
@@ -50,6 +51,7 @@ def render_view_layer(engine, depsgraph, heard):
     _show_report(engine, heard, snapshot.content.report)
     with statistics.timed("plan"):
         plan = plan_frame(snapshot)
+    compiled_before = compiled_count()
     slice_seconds = depsgraph.scene.aplanat.chunk_milliseconds / 1000.0
     with gpu_of_render(engine.test_break, slice_seconds, bpy.app.background) as gpu:
         statistics.device = gpu.call(_open_device)
@@ -64,6 +66,9 @@ def render_view_layer(engine, depsgraph, heard):
             statistics.draw_calls += renderer.draw_calls
             statistics.triangles_submitted += renderer.triangles
             statistics.triangles_full_detail += renderer.triangles_full_detail
+            statistics.shaders_compiled += compiled_count() - compiled_before
+            statistics.texture_bytes = max(statistics.texture_bytes, renderer.texture_bytes())
+            statistics.geometry_bytes = max(statistics.geometry_bytes, renderer.geometry_bytes())
             gpu.release(renderer.release)
     metadata = cryptomatte_metadata(snapshot)
     for key, value in metadata.items():

@@ -37,6 +37,10 @@ class RenderStatistics:
         ``masked``, ``splatted``.
     uploads : dict of str to int
         Meshes, images, materials and instance tables sent to the device.
+    shaders_compiled : int
+        During this render; compiling is part of ``upload`` and of the first samples' ``draw``.
+    texture_bytes, geometry_bytes : int
+        On the device, of the view layer that took most.
     device : str
     """
 
@@ -62,6 +66,9 @@ class RenderStatistics:
         )
     )
     uploads: dict[str, int] = field(default_factory=dict)
+    shaders_compiled: int = 0
+    texture_bytes: int = 0
+    geometry_bytes: int = 0
     device: str = ""
 
     @contextmanager

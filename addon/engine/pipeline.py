@@ -262,8 +262,13 @@ class FrameRenderer:
         return {name: _channels(pictures, *data.PLACES[name]) for name in names}
 
     def texture_bytes(self):
-        """Return how many bytes the targets hold on the device."""
-        return self._targets.bytes if self._targets else 0
+        """Return how many bytes targets, images and instances hold on the device."""
+        targets = self._targets.bytes if self._targets else 0
+        return targets + self._buffers.texture_bytes()
+
+    def geometry_bytes(self):
+        """Return how many bytes the meshes hold on the device."""
+        return self._buffers.geometry_bytes()
 
     def release(self):
         """Give the targets back to the device."""

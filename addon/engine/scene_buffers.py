@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..device.census import size_of_texture
 from ..device.geometry import MeshBuffers
 from ..device.textures import image_texture, texture_2d
 from ..device.uniforms import uniform_buffer
@@ -68,6 +69,15 @@ class SceneBuffers:
             self._instance_table = content.instances
             self.uploads["instance_tables"] += 1
         self._content = content
+
+    def texture_bytes(self):
+        """Return how many bytes the images and the instance table take on the device."""
+        textures = [*self.images.values(), *([self.instances] if self.instances else [])]
+        return sum(map(size_of_texture, textures))
+
+    def geometry_bytes(self):
+        """Return how many bytes the meshes take on the device."""
+        return sum(mesh.bytes for mesh in self.meshes.values())
 
     def neighbouring_instances(self, instances):
         """Return the instance tables of the previous and the next frame.
