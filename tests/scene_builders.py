@@ -1,5 +1,7 @@
 """Objects of every kind for small test scenes; colours are unlit, so that only coverage counts."""
 
+from contextlib import contextmanager
+
 import numpy as np
 
 
@@ -23,6 +25,29 @@ def mesh(bpy, name, vertices, faces):
     data = bpy.data.meshes.new(name)
     data.from_pydata(vertices, [], faces)
     return data
+
+
+def set_coordinate(data, vertex, value):
+    """Set y of a vertex as an importer does: Blender clamps what is set one by one."""
+    positions = np.empty(3 * len(data.vertices), np.float32)
+    data.attributes["position"].data.foreach_get("vector", positions)
+    positions[3 * vertex + 1] = value
+    data.attributes["position"].data.foreach_set("vector", positions)
+
+
+@contextmanager
+def told_of_updates(bpy, extractor):
+    """Tell an extractor of updates when an engine is told: before Blender forgets them."""
+
+    def tell(_scene, depsgraph):
+        extractor.note_updates(depsgraph)
+
+    handlers = bpy.app.handlers.depsgraph_update_post
+    handlers.append(tell)
+    try:
+        yield extractor
+    finally:
+        handlers.remove(tell)
 
 
 def triangle(bpy, name="triangle"):

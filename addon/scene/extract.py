@@ -131,62 +131,56 @@ class SceneExtractor:
         return self._content
 
     def _read_content(self, depsgraph, passes):
-        found = read_instances(depsgraph, self._space, with_places="Vector" in passes)
+        for_motion = "Vector" in passes
+        found = read_instances(depsgraph, self._space, with_places=for_motion)
         materials = self._materials
         materials.begin()
-        numbers = {look: i for i, look in enumerate(dict.fromkeys(found.looks))}
-        slots_of = {k: self._used_slots(depsgraph, s) for k, s in found.sources.items()}
-        drawn = {}
-        needed = {key: set() for key in found.sources}
-        for look in numbers:
-            uids = _slot_uids(found.slots[look.slots], slots_of[look.mesh], materials)
-            drawn[look] = uids
-            if "Normal" in passes:
-                needed[look.mesh].add("normal")
-            if not look.holdout:
-                for slot in slots_of[look.mesh]:
-                    graph = materials.materials[uids[slot]].graph
-                    needed[look.mesh] |= attributes_read(graph)
-        readings = self._read_meshes(depsgraph, found, needed, "Vector" in passes)
-        row_look = np.array([numbers[look] for look in found.looks], np.int32)
-        order = np.argsort(row_look, kind="stable")
-        counts = np.bincount(row_look, minlength=len(numbers))
+        slots_of = {}
+        for key, source in found.sources.items():
+            if slots := self._used_slots(depsgraph, source):
+                slots_of[key] = slots
+        uids_of = {
+            look: _slot_uids(found.slots[look.slots], slots_of[look.mesh], materials)
+            for look in dict.fromkeys(found.looks)
+            if look.mesh in slots_of
+        }
+        needed = _needed_attributes(uids_of, slots_of, materials.materials, passes)
+        readings = self._read_meshes(depsgraph, found, needed, for_motion)
+        order, counts = _sort_rows(found.looks, list(uids_of))
         groups, first = [], 0
-        for look, count in zip(numbers, counts.tolist(), strict=True):
-            mesh = readings[look.mesh].snapshot
-            if mesh.slots:
-                groups.append(InstanceGroup(mesh.uid, drawn[look], first, count, look.holdout))
+        for (look, uids), count in zip(uids_of.items(), counts, strict=True):
+            mesh = readings[look.mesh].snapshot.uid
+            groups.append(InstanceGroup(mesh, uids, first, count, look.holdout))
             first += count
-        names = [found.names[i] for i in order.tolist()]
-        crypto = any(name.startswith("Crypto") for name in passes)
-        instances = InstanceTable(
-            world=np.take(found.world, order, axis=0),
-            cryptomatte_id=np.array([cryptomatte_id(name) for name in names], np.float32),
-            names=tuple(names) if crypto else (),
-        )
-        if self._content is not None and same_instances(self._content.instances, instances):
-            instances = self._content.instances
-        used = {group.mesh for group in groups}
-        if found.places:
+        if for_motion:
             self._sources = RowSources(
-                places=[found.places[i] for i in order.tolist()],
-                meshes=[readings[found.looks[i].mesh].snapshot.uid for i in order.tolist()],
+                places=[found.places[i] for i in order],
+                meshes=[readings[found.looks[i].mesh].snapshot.uid for i in order],
                 readings={reading.snapshot.uid: reading for reading in readings.values()},
                 keys={reading.snapshot.uid: key for key, reading in readings.items()},
             )
-        world = _read_world(depsgraph.scene)
         notes = [note for reading in readings.values() for note in reading.notes]
         return SceneContent(
-            meshes={
-                r.snapshot.uid: r.snapshot for r in readings.values() if r.snapshot.uid in used
-            },
+            meshes={reading.snapshot.uid: reading.snapshot for reading in readings.values()},
             images=materials.images,
             materials=materials.materials,
-            instances=instances,
+            instances=self._instance_table(found, order, passes),
             groups=tuple(groups),
-            world=world,
+            world=_read_world(depsgraph.scene),
             report=tuple(dict.fromkeys([*found.report, *notes, *materials.report])),
         )
+
+    def _instance_table(self, found, order, passes):
+        names = [found.names[i] for i in order]
+        with_names = any(name.startswith("Crypto") for name in passes)
+        table = InstanceTable(
+            world=np.take(found.world, np.array(order, np.intp), axis=0),
+            cryptomatte_id=np.array([cryptomatte_id(name) for name in names], np.float32),
+            names=tuple(names) if with_names else (),
+        )
+        if self._content is not None and same_instances(self._content.instances, table):
+            return self._content.instances
+        return table
 
     def _used_slots(self, depsgraph, source):
         known = self._known.get(source.key)
@@ -198,10 +192,9 @@ class SceneExtractor:
     def _read_meshes(self, depsgraph, found, needed, for_motion):
         current = {}
         earlier = [*self._doubtful]
-        earlier += [k.reading for key, k in self._known.items() if key not in found.sources]
-        for key, source in found.sources.items():
-            known = self._known.get(key)
-            keys = frozenset(needed[key])
+        earlier += [k.reading for key, k in self._known.items() if key not in needed]
+        for key, keys in needed.items():
+            source, known = found.sources[key], self._known.get(key)
             if (
                 known is None
                 or not keys <= known.keys
@@ -217,6 +210,26 @@ class SceneExtractor:
         self._known = {key: known for key, known in current.items() if isinstance(key, int)}
         self._doubtful = [k.reading for key, k in current.items() if key not in self._known]
         return {key: known.reading for key, known in current.items()}
+
+
+def _needed_attributes(uids_of, slots_of, materials, passes):
+    """Return the attributes that the surfaces on each mesh, or the passes, read."""
+    of_passes = {"normal"} if "Normal" in passes else set()
+    needed = {look.mesh: of_passes.copy() for look in uids_of}
+    for look, uids in uids_of.items():
+        if not look.holdout:
+            for slot in slots_of[look.mesh]:
+                needed[look.mesh] |= attributes_read(materials[uids[slot]].graph)
+    return {key: frozenset(keys) for key, keys in needed.items()}
+
+
+def _sort_rows(row_looks, looks):
+    """Return the rows with one of `looks`, sorted by it, and how many each has."""
+    numbers = {look: i for i, look in enumerate(looks)}
+    number = np.array([numbers.get(look, -1) for look in row_looks], np.int64)
+    counts = np.bincount(number + 1, minlength=len(looks) + 1)
+    order = np.argsort(number, kind="stable")[counts[0] :]
+    return order.tolist(), counts[1:].tolist()
 
 
 def _take_equal(earlier, mesh):

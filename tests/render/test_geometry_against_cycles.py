@@ -1,10 +1,10 @@
-"""Everything that is drawn covers the pixels that Cycles covers, in the colours of its materials."""
+"""Everything drawn covers the pixels that Cycles covers, in the colours of its materials."""
 
 import numpy as np
 import pytest
 
-from tests.pictures import render_aplanat, render_cycles, save_side_by_side
 from tests import scene_builders as scenes
+from tests.pictures import render_aplanat, render_cycles, save_side_by_side
 
 # Unlit colours are exact in both engines; only how much of a pixel on an outline is covered is
 # sampled, by 16 and 64 places. A pixel wholly inside or outside a shape must agree: a shape that is
