@@ -95,12 +95,14 @@ def work(statistics):
 
 
 def total_work(parts):
-    """Add the work of several frames, key by key."""
+    """Add the work of several frames, key by key; of what is held at a time, take the most."""
     total = {}
     for part in parts:
         for key, value in part.items():
             if isinstance(value, dict):
                 total[key] = total_work([total.get(key, {}), value])
+            elif key.endswith("_bytes"):
+                total[key] = max(total.get(key, 0), value)
             else:
                 total[key] = total.get(key, 0) + value
     return total
