@@ -42,12 +42,14 @@ def told_of_updates(bpy, extractor):
     def tell(_scene, depsgraph):
         extractor.note_updates(depsgraph)
 
-    handlers = bpy.app.handlers.depsgraph_update_post
-    handlers.append(tell)
+    occasions = (bpy.app.handlers.depsgraph_update_post, bpy.app.handlers.frame_change_post)
+    for handlers in occasions:
+        handlers.append(tell)
     try:
         yield extractor
     finally:
-        handlers.remove(tell)
+        for handlers in occasions:
+            handlers.remove(tell)
 
 
 def triangle(bpy, name="triangle"):
