@@ -119,7 +119,9 @@ def render_passes(scene):
                 channels = {}
                 for name, channel in part.channels.items():
                     owner, letter = name.rsplit(".", 1)
-                    channels.setdefault(owner, {})[letter.upper()] = np.array(channel.pixels, np.float32)
+                    channels.setdefault(owner, {})[letter.upper()] = np.array(
+                        channel.pixels, np.float32
+                    )
                 for owner, values in channels.items():
                     order = "RGBA" if "R" in values else "XYZW"
                     letters = sorted(values, key=order.find)
