@@ -44,6 +44,9 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
             # the render must still hear that there is none.
             heard.error = error
             self.error_set(f"Aplanat failed, see the console: {error}")
+            # Without an error report Blender goes on to write the picture that is not there, and a
+            # multilayer file of nothing crashes it.
+            self.report({"ERROR"}, f"Aplanat failed, see the console: {error}")
             raise
 
     def update_render_passes(self, scene=None, renderlayer=None):
