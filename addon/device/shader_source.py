@@ -5,6 +5,7 @@ text appears once, at its first mention.
 """
 
 import re
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -34,6 +35,40 @@ def load(path):
         If the file or one of its includes is missing.
     """
     return "\n".join(line for line, _, _ in located_lines(path)) + "\n"
+
+
+@dataclass(frozen=True)
+class Text:
+    """Generated text among shader files."""
+
+    text: str
+
+
+def join(parts):
+    """Return shader files and generated text as one, every included file once.
+
+    Parameters
+    ----------
+    parts : iterable of str or Text
+        Paths relative to ``gpu_shaders/``, or text as it is.
+
+    Returns
+    -------
+    str
+    """
+    return "\n".join(line for line, _, _ in located_parts(parts)) + "\n"
+
+
+def located_parts(parts):
+    """Return the lines of `join` with the file and line number that each came from."""
+    seen, lines = set(), []
+    for part in parts:
+        if isinstance(part, Text):
+            numbered = enumerate(part.text.splitlines(), start=1)
+            lines += [(line, "generated", number) for number, line in numbered]
+        elif part not in seen:
+            lines += _expand(part, seen)
+    return lines
 
 
 def located_lines(path):

@@ -53,6 +53,22 @@ def overwrite():
     gpu.state.face_culling_set("NONE")
 
 
+def behind():
+    """Fill what the depth buffer has left empty; depth is kept."""
+    import gpu
+
+    opaque()
+    gpu.state.depth_mask_set(False)
+
+
+def glow():
+    """Sum of all four channels wherever nothing is in front; depth is kept."""
+    import gpu
+
+    behind()
+    gpu.state.blend_set("ADDITIVE_PREMULT")
+
+
 def additive():
     """Sum of all four channels; no depth."""
     import gpu

@@ -11,7 +11,7 @@ import numpy as np
 from ..device import geometry, readback, state
 from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
-from ..passes import accumulate, cryptomatte, data, resolve, surface
+from ..passes import accumulate, background, cryptomatte, data, resolve, surface
 from . import culling, render_passes
 
 _COLOR_TARGETS = (
@@ -72,16 +72,23 @@ class FrameRenderer:
             self._prepare(snapshot.content)
         self._visible = culling.seen(self._spheres, plan)
         self._draws = self._cull(self._all_draws)
-        self._triangles_per_sample = sum(d.triangles * d.count for d in self._draws)
+        self._glows = self._cull(self._all_glows)
+        self._triangles_per_sample = sum(
+            d.triangles * d.count for d in (*self._draws, *self._glows)
+        )
         self._view = uniform_buffer(_view_params(plan))
-        world = snapshot.content.world.color
-        self._background = (0.0,) * 4 if snapshot.film.transparent else (*world, 1.0)
+        world = snapshot.content.world
+        self._background = (0.0,) * 4 if snapshot.film.transparent else (*world.color, 1.0)
+        self._shows_image = bool(world.image) and not snapshot.film.transparent
         self._prepare_targets()
 
     def _prepare(self, content):
         target = surface.COLOR_AND_MATTES if self._mattes else surface.COLOR
         self._all_draws = surface.build_draws(content, self._buffers, target)
-        self._full_detail_per_sample = sum(d.triangles * d.count for d in self._all_draws)
+        self._all_glows = surface.build_glow_draws(content, self._buffers, target)
+        self._full_detail_per_sample = sum(
+            d.triangles * d.count for d in (*self._all_draws, *self._all_glows)
+        )
         bounds = {uid: mesh.bounds for uid, mesh in self._buffers.meshes.items()}
         self._spheres = culling.BoundingSpheres(content, bounds)
         self._content = content
@@ -152,6 +159,17 @@ class FrameRenderer:
             surface.draw_sample(
                 self._draws, self._view, self._buffers.instances, lens_sample, index
             )
+        if self._shows_image:
+            with targets.framebuffer("sample", depth="sample_depth").bind():
+                background.draw(
+                    self._fullscreen,
+                    self._view,
+                    self._buffers.environment_buffer,
+                    self._buffers.environment_image,
+                    lens_sample,
+                )
+        with framebuffer.bind():
+            surface.draw_glows(self._glows, self._view, self._buffers.instances, lens_sample)
         with targets.framebuffer("sum").bind():
             accumulate.accumulate(self._fullscreen, targets["sample"])
         if "focus_sum" in targets:
@@ -159,7 +177,8 @@ class FrameRenderer:
                 accumulate.accumulate_focus(self._fullscreen, targets["mattes"])
         if self._cryptomattes:
             cryptomatte.count(targets["mattes"], targets["tables"], self._cryptomattes)
-        self.draw_calls += len(self._draws) + 1 + ("focus_sum" in targets)
+        self.draw_calls += len(self._draws) + len(self._glows) + self._shows_image + 1
+        self.draw_calls += "focus_sum" in targets
         self.triangles += self._triangles_per_sample
         self.triangles_full_detail += self._full_detail_per_sample
 

@@ -12,6 +12,7 @@ from ..device.census import size_of_texture
 from ..device.geometry import MeshBuffers
 from ..device.textures import image_texture, texture_2d
 from ..device.uniforms import uniform_buffer
+from ..passes import environment, light_table
 
 # Must agree with lib/instance_lib.glsl.
 INSTANCES_PER_ROW = 256
@@ -25,15 +26,30 @@ class SceneBuffers:
     meshes : dict of int to MeshBuffers
     images : dict of int to GPUTexture
     instances : GPUTexture
+    lighting : tuple of (str, GPUUniformBuf or GPUTexture)
+        What lit surfaces read of the lights and the world.
+    environment_buffer, environment_image : GPUUniformBuf, GPUTexture or None
+        The world as the background reads it; no image where it is one colour.
     uploads : dict of str to int
-        How many meshes, images, materials and instance tables were uploaded so far.
+        How many meshes, images, materials, instance tables, light tables were uploaded and
+        environments computed so far.
     """
 
     def __init__(self):
         self.meshes = {}
         self.images = {}
         self.instances = None
-        self.uploads = {"meshes": 0, "images": 0, "materials": 0, "instance_tables": 0}
+        self.lighting = ()
+        self.environment_buffer = None
+        self.environment_image = None
+        self.uploads = dict.fromkeys(
+            ("meshes", "images", "materials", "instance_tables", "light_tables", "environments"), 0
+        )
+        self._lights = None
+        self._world = None
+        self._harmonics = None
+        self._levels = None
+        self._fixed = None
         self._materials = {}
         self._instance_table = None
         self._content = None
@@ -68,7 +84,45 @@ class SceneBuffers:
             self.instances = texture_2d(instance_texels(content.instances))
             self._instance_table = content.instances
             self.uploads["instance_tables"] += 1
+        yield from self._update_lighting(content)
         self._content = content
+
+    def _update_lighting(self, content):
+        if self._fixed is None:
+            self._fixed = (environment.ggx_texture(), environment.single_texel())
+        table = dict(self.lighting).get("lights_tx")
+        if table is None or self._lights != content.lights:
+            table = light_table.light_texture(content.lights)
+            self._lights = content.lights
+            self.uploads["light_tables"] += 1
+        world = content.world
+        if self._world is None or self._world.image != world.image:
+            self._harmonics = self._levels = self.environment_image = None
+            if world.image:
+                self._compute_environment(content.images[world.image])
+                yield
+        if self._world != world:
+            self.environment_buffer = environment.environment_buffer(world, self._harmonics)
+            self._world = world
+        table_of_ggx, empty = self._fixed
+        self.lighting = (
+            ("environment_buf", self.environment_buffer),
+            ("lights_tx", table),
+            ("environment_tx", self.environment_image or empty),
+            ("environment_levels_tx", self._levels or empty),
+            ("ggx_tx", table_of_ggx),
+        )
+
+    def _compute_environment(self, image):
+        pixels = environment.linear_pixels(image)
+        self._harmonics = environment.diffuse_harmonics(environment.shrink(pixels, 512))
+        self._levels = environment.prefilter(pixels)
+        if image.srgb or image.pixels.dtype == np.uint8:
+            opaque = np.ones((*pixels.shape[:2], 1), np.float32)
+            self.environment_image = texture_2d(np.concatenate([pixels, opaque], axis=2))
+        else:
+            self.environment_image = self.images[image.uid]
+        self.uploads["environments"] += 1
 
     def texture_bytes(self):
         """Return how many bytes the images and the instance table take on the device."""

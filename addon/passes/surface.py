@@ -6,18 +6,25 @@ material, so that a frame changes state as rarely as it can.
 
 from dataclasses import dataclass
 
-from ..device import shader_source
+from ..device import shader_source, state
 from ..device.geometry import attribute_identifier, attribute_type
 from ..device.shaders import ShaderInfo, compile_shader
 from ..device.uniform_block import UniformStruct
 from ..device.uniforms import bind_resource
-from . import surface_code
+from . import environment, surface_code
+
+# Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and what
+# a lobe reflects of white surroundings.
+LIGHTING_TEXTURES = ("lights_tx", "environment_tx", "environment_levels_tx", "ggx_tx")
 
 VIEW_PARAMS = UniformStruct("shared/view_params.glsl", "ViewParams")
 
-_LIBRARIES = "".join(
-    shader_source.load(path)
-    for path in ("lib/hash_lib.glsl", "lib/color_lib.glsl", "lib/closure_lib.glsl")
+_LIBRARIES = (
+    "lib/hash_lib.glsl",
+    "lib/color_lib.glsl",
+    "lib/texture_lib.glsl",
+    "lib/vector_lib.glsl",
+    "passes/surface_lighting.glsl",
 )
 
 
@@ -85,6 +92,8 @@ class Draw:
     textures : tuple of (str, GPUTexture)
     transparent : bool
         The shader reads the sample's index.
+    lighting : tuple of (str, GPUUniformBuf or GPUTexture)
+        What a lit surface reads of the lights and the world, the same for all of them.
     material_id : float or None
         Cryptomatte id, where the shader reads it.
     """
@@ -97,10 +106,11 @@ class Draw:
     constants: object
     textures: tuple
     transparent: bool
+    lighting: tuple = ()
     material_id: float | None = None
 
 
-def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False):
+def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, glow=False):
     """Return the compiled shader of a surface on a mesh.
 
     Parameters
@@ -111,6 +121,8 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False):
     holdout : bool
     deforms : bool
         The mesh has positions in the neighbouring frames.
+    glow : bool
+        Only the light that the surface adds, for `draw_glows`.
 
     Returns
     -------
@@ -123,6 +135,10 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False):
     shades = not holdout and (target.shades or transparent)
     own = tuple(key for key in target.attributes if key in mesh_attributes)
     defines = [*target.defines, *["HOLDOUT"] * holdout, *["TRANSPARENT"] * transparent]
+    if target.shades and not holdout:
+        defines += [*["SHADES"], *["LIT"] * code.lit]
+        if code.glows:
+            defines.append("GLOW" if glow else "GLOW_APART")
     if "HAS_VECTOR" in defines and deforms:
         defines.append("HAS_DEFORMATION")
         attributes += [("VEC3", "pos_previous"), ("VEC3", "pos_next")]
@@ -138,19 +154,23 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False):
         forward.append(f"  v_{name} = {name};")
     vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
     vertex += shader_source.load("passes/surface_vert.glsl")
-    fragment = _LIBRARIES
     structs = VIEW_PARAMS.source + target.structs
     uniforms = [("ViewParams", "view_buf"), *target.uniforms]
     samplers = [("FLOAT_2D", "instances_tx"), *target.samplers]
     push_constants = [("VEC4", "lens_sample"), ("INT", "instance_base"), ("INT", "sample_index")]
+    generated = ""
     if shades:
-        fragment += code.source
+        generated = code.source
         structs += f"struct MaterialParams {{ vec4 constants[{len(code.constants)}]; }};\n"
         uniforms.append(("MaterialParams", "material_buf"))
         samplers += [("FLOAT_2D", f"image_{i}_tx") for i in range(len(code.images))]
+    if "LIT" in defines:
+        structs += environment.ENVIRONMENT_PARAMS.source
+        uniforms.append(("EnvironmentParams", "environment_buf"))
+        samplers += [("FLOAT_2D", name) for name in LIGHTING_TEXTURES]
     if target.names_material and not holdout:
         push_constants.append(("FLOAT", "material_id"))
-    fragment += shader_source.load(target.fragment)
+    fragment = shader_source.join((*_LIBRARIES, shader_source.Text(generated), target.fragment))
     return compile_shader(
         ShaderInfo(
             name="aplanat_surface",
@@ -181,20 +201,31 @@ def build_draws(content, buffers, target=COLOR):
     -------
     list of Draw
     """
+    return _list_draws(content, buffers, target, glow=False)
+
+
+def build_glow_draws(content, buffers, target=COLOR):
+    """List the draw calls of `draw_glows`: surfaces that add light to what is behind them."""
+    return _list_draws(content, buffers, target, glow=True)
+
+
+def _list_draws(content, buffers, target, glow):
     draws = []
     shaders = {}
-    srgb = frozenset(uid for uid, image in content.images.items() if image.srgb)
     for group in content.groups:
         mesh = content.meshes[group.mesh]
         for slot, (batch, count) in buffers.meshes[group.mesh].batches.items():
             material = content.materials[group.materials[slot]]
-            code = surface_code.generate(material.graph, mesh.attributes, srgb)
+            code = surface_code.generate(material.graph, mesh.attributes)
+            if glow and (group.holdout or not code.glows):
+                continue
             deforms = mesh.motion is not None
-            shader = surface_shader(target, code, mesh.attributes, group.holdout, deforms)
+            shader = surface_shader(target, code, mesh.attributes, group.holdout, deforms, glow)
             order = shaders.setdefault(id(shader), len(shaders))
             constants, textures = None, ()
             transparent = code.transparent and not group.holdout
-            if not group.holdout and (target.shades or transparent):
+            shaded = target.shades and not group.holdout
+            if shaded or transparent:
                 constants = buffers.material_constants(material.uid, code)
                 textures = tuple(
                     (f"image_{i}_tx", buffers.images[uid]) for i, uid in enumerate(code.images)
@@ -208,12 +239,35 @@ def build_draws(content, buffers, target=COLOR):
                 constants,
                 textures,
                 # The data passes decide by a threshold, not by chance.
-                transparent and target.shades,
-                material.cryptomatte_id if target.names_material and not group.holdout else None,
+                transparent=transparent and shaded and not glow,
+                lighting=buffers.lighting if shaded and code.lit else (),
+                material_id=(
+                    material.cryptomatte_id
+                    if target.names_material and not group.holdout and not glow
+                    else None
+                ),
             )
             draws.append(((order, material.uid, group.mesh, slot), draw))
     draws.sort(key=lambda item: item[0])
     return [draw for _, draw in draws]
+
+
+def draw_glows(draws, view_buffer, instances, lens_sample):
+    """Add the light of surfaces that glow to what the frame buffer shows behind them.
+
+    Unlike opacity, which is decided by chance, their light is added wherever no surface of this
+    sample is in front, so its mean is exact also where the surface lets everything through.
+
+    Parameters
+    ----------
+    draws : list of Draw
+        Of `build_glow_draws`; the same depth buffer as `draw_sample`'s must be bound.
+    view_buffer, instances, lens_sample
+        As for `draw_sample`.
+    """
+    if draws:
+        state.glow()
+        draw_sample(draws, view_buffer, instances, lens_sample, 0)
 
 
 def draw_sample(draws, view_buffer, instances, lens_sample, sample_index, bindings=()):
@@ -243,7 +297,7 @@ def draw_sample(draws, view_buffer, instances, lens_sample, sample_index, bindin
             shader.uniform_float("lens_sample", lens_sample)
             if draw.transparent:
                 shader.uniform_int("sample_index", sample_index)
-            for name, resource in bindings:
+            for name, resource in (*draw.lighting, *bindings):
                 bind_resource(shader, name, resource)
         if draw.material_id is not None:
             shader.uniform_float("material_id", draw.material_id)

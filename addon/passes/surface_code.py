@@ -10,6 +10,7 @@ import numpy as np
 
 from ..device.geometry import attribute_identifier
 from ..scene.surface_graph import Constant, Link
+from .surface_nodes import GENERATORS
 
 _ATTRIBUTE_COMPONENTS = {"normal": 3, "uv": 2, "color": 4}
 
@@ -30,6 +31,11 @@ class SurfaceCode:
         `ImageSnapshot.uid` of samplers ``image_0_tx``, ``image_1_tx``, ...
     transparent : bool
         The surface may let light through. Opaque ones keep the early depth test.
+    lit : bool
+        The surface reflects lights and the world.
+    glows : bool
+        The surface may add light to what it lets through, so its light cannot be decided by the
+        same chance as its opacity.
     """
 
     source: str
@@ -37,19 +43,33 @@ class SurfaceCode:
     attributes: tuple[str, ...]
     images: tuple[int, ...]
     transparent: bool
+    lit: bool = False
+    glows: bool = False
 
 
 @dataclass
 class Writer:
-    """What the node generators write to."""
+    """What the node generators write to.
+
+    Attributes
+    ----------
+    available : frozenset of str
+        Attributes that the mesh has.
+    transmitting, dark : set of str
+        Closures that may let light through, and those that add no light of their own.
+    glows : bool
+    """
 
     available: frozenset[str]
-    srgb_images: frozenset[int]
+    used: frozenset[tuple[int, str]]
     lines: list[str] = field(default_factory=list)
     constants: list[tuple[float, ...]] = field(default_factory=list)
     attributes: list[str] = field(default_factory=list)
     images: list[int] = field(default_factory=list)
-    transparent: bool = False
+    transmitting: set[str] = field(default_factory=set)
+    dark: set[str] = field(default_factory=set)
+    lit: bool = False
+    glows: bool = False
     # (type, expression) of each output of each node so far
     outputs: list[dict[str, tuple[str, str]]] = field(default_factory=list)
 
@@ -64,6 +84,8 @@ class Writer:
 
     def _constant(self, value, wanted):
         index = len(self.constants)
+        if wanted == "float" and len(value) > 1:
+            value = (float(np.dot(value[:3], LUMINANCE)),)
         padded = tuple(np.resize(value, 3)) if len(value) == 1 else tuple(value[:3])
         self.constants.append((*map(float, padded), 0.0))
         expression = f"material_buf.constants[{index}]"
@@ -78,17 +100,35 @@ class Writer:
             self.attributes.append(key)
         return f"v_{attribute_identifier(key)}"
 
+    def light(self):
+        """Take note that the surface is lit: it reads the normal, where the mesh has it."""
+        self.lit = True
+        if "normal" in self.available and "normal" not in self.attributes:
+            self.attributes.append("normal")
+
     def image(self, uid):
         """Return the sampler of an image."""
         if uid not in self.images:
             self.images.append(uid)
         return f"image_{self.images.index(uid)}_tx"
 
+    def uses(self, node, output):
+        """Whether anything reads an output of the node that is being written."""
+        return (len(self.outputs), output) in self.used
+
     def let(self, kind, expression):
         """Write a local variable and return its name."""
         name = f"t{len(self.lines)}"
         self.lines.append(f"  {kind} {name} = {expression};")
         return name
+
+    def closure(self, output, expression):
+        """Write a closure and return it as the one output of a node."""
+        return {output: ("closure", self.let("Closure", expression))}
+
+
+# Rec. 709, as Blender's default scene-linear space.
+LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
 def convert(kind, expression, wanted):
@@ -98,8 +138,8 @@ def convert(kind, expression, wanted):
     if wanted == "vec3" and kind == "float":
         return f"vec3({expression})"
     if wanted == "float" and kind == "color":
-        # Rec. 709 luminance
-        return f"dot({expression}, vec3(0.2126, 0.7152, 0.0722))"
+        weights = ", ".join(map(str, LUMINANCE))
+        return f"dot({expression}, vec3({weights}))"
     if wanted == "float" and kind == "vec3":
         return f"dot({expression}, vec3(1.0 / 3.0))"
     if {kind, wanted} <= {"color", "vec3"}:
@@ -107,37 +147,7 @@ def convert(kind, expression, wanted):
     raise TypeError(f"no conversion from {kind} to {wanted}")
 
 
-def _emission(node, writer):
-    color = writer.value(node.input("Color"), "vec3")
-    strength = writer.value(node.input("Strength"), "float")
-    return {"Emission": ("closure", writer.let("Closure", f"closure_emission({color}, {strength})"))}
-
-
-def _image_texture(node, writer):
-    vector = dict(node.inputs).get("Vector")
-    if vector is None:
-        uv = writer.attribute("uv:")
-    else:
-        uv = f"({writer.value(vector, 'vec3')}).xy"
-    texel = writer.let("vec4", f"texture({writer.image(node.image)}, {uv})")
-    if node.image in writer.srgb_images:
-        texel = writer.let("vec4", f"vec4(srgb_to_linear({texel}.rgb), {texel}.a)")
-    return {"Color": ("color", f"{texel}.rgb"), "Alpha": ("float", f"{texel}.a")}
-
-
-def _color_attribute(node, writer):
-    value = writer.attribute(f"color:{node.setting('name')}")
-    return {"Color": ("color", f"{value}.rgb"), "Alpha": ("float", f"{value}.a")}
-
-
-GENERATORS = {
-    "emission": _emission,
-    "image_texture": _image_texture,
-    "color_attribute": _color_attribute,
-}
-
-
-def generate(graph, available, srgb_images=frozenset()):
+def generate(graph, available):
     """Generate the code of a surface.
 
     Parameters
@@ -145,14 +155,13 @@ def generate(graph, available, srgb_images=frozenset()):
     graph : SurfaceGraph
     available : iterable of str
         Attributes that the mesh has.
-    srgb_images : frozenset of int
-        Images whose texels are sRGB encoded.
 
     Returns
     -------
     SurfaceCode
     """
-    writer = Writer(frozenset(available), srgb_images)
+    links = [value for node in graph.nodes for _, value in node.inputs if isinstance(value, Link)]
+    writer = Writer(frozenset(available), frozenset((link.node, link.output) for link in links))
     for node in graph.nodes:
         writer.outputs.append(GENERATORS[node.kind](node, writer))
     surface = "closure_none()"
@@ -164,5 +173,7 @@ def generate(graph, available, srgb_images=frozenset()):
         tuple(writer.constants) or ((0.0,) * 4,),
         tuple(writer.attributes),
         tuple(writer.images),
-        writer.transparent,
+        transparent=surface in writer.transmitting,
+        lit=writer.lit,
+        glows=writer.glows and surface in writer.transmitting,
     )

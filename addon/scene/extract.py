@@ -12,8 +12,9 @@ from .materials import MaterialReader
 from .meshes import MeshReading, read_mesh, same_content, used_slots
 from .motion import RowSources, add_motion
 from .settings import read_film, read_passes, read_sampling
-from .snapshot import InstanceGroup, InstanceTable, SceneContent, SceneSnapshot, World
+from .snapshot import InstanceGroup, InstanceTable, SceneContent, SceneSnapshot
 from .surface_graph import attributes_read
+from .world import read_world
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,14 +161,16 @@ class SceneExtractor:
                 keys={reading.snapshot.uid: key for key, reading in readings.items()},
             )
         notes = [note for reading in readings.values() for note in reading.notes]
+        world, world_notes = read_world(depsgraph.scene.world, materials.image_reader)
         return SceneContent(
             meshes={reading.snapshot.uid: reading.snapshot for reading in readings.values()},
             images=materials.images,
             materials=materials.materials,
             instances=self._instance_table(found, order, passes),
             groups=tuple(groups),
-            world=_read_world(depsgraph.scene),
-            report=tuple(dict.fromkeys([*found.report, *notes, *materials.report])),
+            lights=tuple(found.lights),
+            world=world,
+            report=tuple(dict.fromkeys([*found.report, *notes, *world_notes, *materials.report])),
         )
 
     def _instance_table(self, found, order, passes):
@@ -252,12 +255,3 @@ def _is_camera(block):
     kind = type(block).__name__
     return kind == "Camera" or (kind == "Object" and block.type == "CAMERA")
 
-
-def _read_world(scene):
-    color = (0.0, 0.0, 0.0)
-    if scene.world and scene.world.node_tree:
-        for node in scene.world.node_tree.nodes:
-            if node.type == "BACKGROUND":
-                strength = node.inputs["Strength"].default_value
-                color = tuple(c * strength for c in node.inputs["Color"].default_value[:3])
-    return World(color)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import SnapshotError
+from .lights import read_light
 
 # Object types with a surface or substance of their own that the engine has no way to draw, and how
 # to tell an empty one.
@@ -95,6 +96,7 @@ class InstanceList:
         float32.
     places : list of tuple
         What an instance is called in every frame; only if asked for.
+    lights : list of Light
     report : tuple of str
     """
 
@@ -105,6 +107,7 @@ class InstanceList:
     names: list = field(default_factory=list)
     world: np.ndarray = None
     places: list = field(default_factory=list)
+    lights: list = field(default_factory=list)
     report: tuple = ()
 
 
@@ -188,6 +191,12 @@ class _Reader:
         obj = instance.object
         if self._space is not None and not obj.visible_in_viewport_get(self._space):
             return None
+        kind = obj.type
+        if kind == "LIGHT":
+            # It lights what the camera sees wherever it hides itself.
+            if instance.show_self:
+                self._read_light(obj, instance.matrix_world)
+            return None
         original = obj.original
         parent = instance.parent.original if instance.is_instance else original
         visible, catches_shadow = self._flags(original)
@@ -199,7 +208,6 @@ class _Reader:
             self._note_hair(obj, name)
         if not instance.show_self:
             return None
-        kind = obj.type
         if kind != "MESH":
             undrawn = _UNDRAWN.get(kind)
             if undrawn and undrawn[1](obj.data):
@@ -210,6 +218,13 @@ class _Reader:
         data = obj.data
         key = self._source(obj, original, parent, data, name)
         return Look(key, self._slots(obj, original, key), holdout), name
+
+    def _read_light(self, obj, matrix):
+        light, notes = read_light(obj.data, matrix)
+        if light is not None:
+            self.out.lights.append(light)
+        for note in notes:
+            self._note(obj.name, note)
 
     def _flags(self, original):
         number = original.session_uid

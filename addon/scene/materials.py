@@ -1,79 +1,97 @@
-"""Blender's node trees to `SurfaceGraph`."""
+"""Blender's materials to `MaterialSnapshot`."""
 
-import numpy as np
+from .cryptomatte import cryptomatte_id
+from .images import ImageReader
+from .material_nodes import TreeReader
+from .snapshot import MaterialSnapshot, next_uid
+from .surface_graph import DEFAULT_BASE_COLOR, Constant, Link, ShaderNode, SurfaceGraph
 
-from .snapshot import ImageSnapshot, MaterialSnapshot, next_uid
-from .surface_graph import (
-    DEFAULT_BASE_COLOR,
-    MISSING_IMAGE_COLOR,
-    Constant,
-    Link,
-    ShaderNode,
-    SurfaceGraph,
-    emission_graph,
+DEFAULT_GRAPH = SurfaceGraph(
+    (ShaderNode("diffuse", (("Color", Constant(DEFAULT_BASE_COLOR)),)),), Link(0, "BSDF")
 )
 
 
 class MaterialReader:
-    """Reads materials and the images they use, each once."""
+    """Reads materials and the images they use.
+
+    Keep one for the life of an extractor: a material or image that did not change keeps its uid
+    from one round to the next.
+
+    Attributes
+    ----------
+    materials : dict of int to MaterialSnapshot
+        Those read since `begin`.
+    images : dict of int to ImageSnapshot
+    report : list of str
+        What is not drawn, and what is drawn instead, one line each.
+    """
 
     def __init__(self):
+        self.image_reader = ImageReader()
+        self._known = {}
+        self.begin()
+
+    def begin(self):
+        """Start a new round; what the last one did not use is forgotten."""
+        used = self.materials.keys() if self._known else ()
+        self._known = {k: m for k, m in self._known.items() if m.uid in used}
+        self.image_reader.begin()
         self.materials = {}
-        self.images = {}
-        self.report = []
         self._uids = {}
-        self._image_uids = {}
+        self._report = []
+
+    @property
+    def images(self):
+        """The images read since `begin`."""
+        return self.image_reader.images
+
+    @property
+    def report(self):
+        """The lines of the report since `begin`."""
+        return list(dict.fromkeys(self._report + self.image_reader.report))
 
     def read(self, material):
-        """Return the uid of a material, reading it at its first mention."""
-        key = material.as_pointer() if material else 0
+        """Return the uid of a material, reading it at its first mention in the round.
+
+        Parameters
+        ----------
+        material : bpy.types.Material or None
+            None is what Blender draws where a surface has no material.
+
+        Returns
+        -------
+        int
+        """
+        key = material.original.session_uid if material else 0
         uid = self._uids.get(key)
         if uid is None:
-            uid = self._uids[key] = next_uid()
-            graph = self._graph(material) if material else emission_graph(DEFAULT_BASE_COLOR)
-            name = material.name if material else ""
-            self.materials[uid] = MaterialSnapshot(uid, name, graph)
+            snapshot = self._snapshot(material, self._known.get(key))
+            self._known[key] = snapshot
+            self.materials[snapshot.uid] = snapshot
+            uid = self._uids[key] = snapshot.uid
         return uid
+
+    def _snapshot(self, material, known):
+        if material is None:
+            values = ("", DEFAULT_GRAPH, 0, False)
+        else:
+            graph = self._graph(material)
+            values = (material.name, graph, material.pass_index, material.use_backface_culling)
+        if known and values == (known.name, known.graph, known.pass_index, known.culls_back):
+            return known
+        name, graph, pass_index, culls_back = values
+        identifier = cryptomatte_id(name) if name else 0.0
+        return MaterialSnapshot(next_uid(), name, graph, identifier, pass_index, culls_back)
 
     def _graph(self, material):
-        output = material.node_tree and material.node_tree.get_output_node("ALL")
-        if not output or not output.inputs["Surface"].is_linked:
+        tree = material.node_tree
+        output = tree and tree.get_output_node("EEVEE")
+        if not output:
             return SurfaceGraph()
-        nodes = []
-        surface = self._node(output.inputs["Surface"].links[0].from_socket, nodes)
-        return SurfaceGraph(tuple(nodes), surface)
-
-    def _input(self, socket, nodes):
-        if socket.is_linked:
-            return self._node(socket.links[0].from_socket, nodes)
-        value = socket.default_value
-        return Constant((value,) if socket.type == "VALUE" else tuple(value)[:3])
-
-    def _node(self, socket, nodes):
-        node = socket.node
-        if node.type == "EMISSION":
-            inputs = tuple((k, self._input(node.inputs[k], nodes)) for k in ("Color", "Strength"))
-            nodes.append(ShaderNode("emission", inputs))
-        elif node.type == "TEX_IMAGE":
-            nodes.append(ShaderNode("image_texture", image=self._image(node.image)))
-        elif node.type == "VERTEX_COLOR":
-            nodes.append(ShaderNode("color_attribute", settings=(("name", node.layer_name),)))
-        else:
-            nodes.append(emission_graph(MISSING_IMAGE_COLOR).nodes[0])
-            return Link(len(nodes) - 1, "Emission")
-        return Link(len(nodes) - 1, socket.identifier)
-
-    def _image(self, image):
-        key = image.as_pointer()
-        uid = self._image_uids.get(key)
-        if uid is None:
-            uid = self._image_uids[key] = next_uid()
-            width, height = image.size
-            pixels = np.empty((height, width, 4), np.float32)
-            image.pixels.foreach_get(pixels.reshape(-1))
-            srgb = False
-            if not image.is_float:
-                pixels = np.rint(pixels * 255.0).astype(np.uint8)
-                srgb = image.colorspace_settings.name == "sRGB"
-            self.images[uid] = ImageSnapshot(uid, image.name, pixels, srgb)
-        return uid
+        reader = TreeReader(f"material '{material.name}'", self.image_reader)
+        graph = reader.surface(output)
+        for socket, what in (("Volume", "volume"), ("Displacement", "displacement")):
+            if reader.linked(output, socket, ()):
+                reader.note(f"{what} is not drawn")
+        self._report += reader.report
+        return graph

@@ -157,19 +157,27 @@ class Light:
 
     Parameters
     ----------
-    kind : {'SUN', 'POINT', 'SPOT'}
+    kind : {'SUN', 'POINT', 'SPOT', 'AREA'}
     position : tuple of 3 float
         In world space; unused for the sun.
     direction : tuple of 3 float
-        The way light travels from a sun or spot, unit length, in world space.
+        The way light travels along the axis, unit length, in world space; unused for a point.
     radiance : tuple of 3 float
         Sun: irradiance on a surface facing it, W/m^2. Point and spot: radiant intensity, W/sr.
+        Area: radiance, W/(sr m^2).
     radius : float
-        Soft size, in m; for a sun the angle of its disk in radians.
-    spot_cosine, spot_blend : float
-        Cosine of the half angle, and the share of the cone that fades.
-    spot_axes : tuple of 3 tuples
-        Rows that rotate and scale world directions into the spot's cone.
+        Soft size, in m; for a sun the sine of its disk's half angle.
+    soft_falloff : bool
+        A disk that always faces what it lights, instead of a sphere.
+    diffuse_factor, specular_factor : float
+    cone : tuple of 2 float
+        Spot: cosine of the half angle, and one over the width of its edge in cosines. Area: tangent
+        of half the spread and the factor that keeps its power; 0 and 0 for all directions.
+    axes : tuple of 3 tuples
+        Rows that turn world directions away from the light into its own, x and y across, z along
+        the beam; for a spot scaled as the cone is.
+    half_size : tuple of 2 float
+        Of an area light's rectangle, in m.
     """
 
     kind: str
@@ -177,9 +185,12 @@ class Light:
     direction: tuple[float, float, float]
     radiance: tuple[float, float, float]
     radius: float = 0.0
-    spot_cosine: float = -1.0
-    spot_blend: float = 0.0
-    spot_axes: tuple[tuple[float, float, float], ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+    soft_falloff: bool = True
+    diffuse_factor: float = 1.0
+    specular_factor: float = 1.0
+    cone: tuple[float, float] = (0.0, 0.0)
+    axes: tuple[tuple[float, float, float], ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+    half_size: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,7 @@
 // Shades a surface for one lens sample; transparency is decided by chance, so that the average over
-// the samples is exact whatever the order of the surfaces.
+// the samples is exact whatever the order of the surfaces. A surface that adds light to what it lets
+// through is drawn twice: its opacity by chance without its light (GLOW_APART), then its light onto
+// what was left (GLOW), wherever nothing is in front of it.
 // Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads.
 // Outputs: premultiplied scene-linear colour; with MATTES also Cryptomatte ids of object (x) and
 // material (y), and the share of sharpness (w).
@@ -19,8 +21,18 @@ void main()
 #endif
 #else
   Closure closure = surface_closure();
+#ifdef GLOW
+  out_color = vec4(closure.radiance, 0.0);
+#ifdef MATTES
+  out_mattes = vec4(0.0);
+#endif
+#else
+  float hole = clamp(closure.holdout, 0.0, 1.0);
 #ifdef TRANSPARENT
-  float through = clamp(dot(closure.transmittance, vec3(1.0 / 3.0)), 0.0, 1.0);
+#ifdef GLOW_APART
+  closure.radiance = vec3(0.0);
+#endif
+  float through = closure_through(closure);
   if (through > 0.0) {
     uvec2 pixel = uvec2(gl_FragCoord.xy) + uvec2(view_buf.film.zw);
     uint seed = hash_combine(hash_uint(pixel.x), pixel.y);
@@ -30,15 +42,19 @@ void main()
     if (hash_unit(seed) < through) {
       discard;
     }
-    closure.radiance /= max(1.0 - through, 1e-6);
+    // What is left of the surface stands for the rest, too.
+    float scale = 1.0 / max(1.0 - through, 1e-6);
+    closure.radiance *= scale;
+    hole = min(hole * scale, 1.0);
   }
 #endif
-  out_color = vec4(closure.radiance, 1.0);
+  out_color = vec4(closure.radiance, 1.0 - hole);
 #ifdef MATTES
   float depth = -(view_buf.view * vec4(world_position, 1.0)).z;
   float object_id = texelFetch(instances_tx, instance_texel(instance_row, 3), 0).x;
   float sharp = focus_share(coc_radius_px(depth, view_buf.lens), view_buf.lens.w);
   out_mattes = vec4(object_id, material_id, 0.0, sharp);
+#endif
 #endif
 #endif
 }

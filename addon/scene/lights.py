@@ -1,0 +1,152 @@
+"""Blender's lights to `Light`, in the units of Cycles.
+
+A sun's strength is the irradiance of a surface that faces it. A point or spot light of power P has
+the intensity P / 4 pi, an area light the radiance P / (pi area).
+"""
+
+import math
+
+import numpy as np
+
+from .material_nodes import constant
+from .node_tree import source_of
+from .snapshot import Light
+
+# Of a spot whose edge is sharp, in cosines: far below a pixel.
+_SHARPEST_EDGE = 1e-6
+
+
+def read_light(light, matrix):
+    """Read a light.
+
+    Parameters
+    ----------
+    light : bpy.types.Light
+    matrix : mathutils.Matrix
+        Object to world.
+
+    Returns
+    -------
+    Light or None
+        None for one that gives no light.
+    notes : list of str
+        What is not drawn as it is set.
+    """
+    notes = []
+    matrix = np.array(matrix, np.float64)
+    power = np.array(light.color[:], np.float64) * light.energy * 2.0**light.exposure
+    if light.use_temperature:
+        power *= light.temperature_color[:]
+    if light.node_tree and light.use_nodes:
+        power *= _emission(light.node_tree, notes)
+    if not power.any() or not np.isfinite(power).all() or not np.isfinite(matrix).all():
+        return None, notes
+    axes = _unit_axes(matrix)
+    read = {"SUN": _sun, "POINT": _point, "SPOT": _spot, "AREA": _area}[light.type]
+    values = read(light, matrix, axes, power, notes)
+    return (
+        Light(
+            kind=light.type,
+            position=_floats(matrix[:3, 3]),
+            # Lights look along their negative z axis.
+            direction=_floats(-axes[2]),
+            diffuse_factor=light.diffuse_factor,
+            specular_factor=light.specular_factor,
+            **values,
+        ),
+        notes,
+    )
+
+
+def _emission(tree, notes):
+    """The factor of a light's node tree: of one Emission with constant inputs."""
+    output = tree.get_output_node("EEVEE")
+    socket = output and source_of(output.inputs["Surface"], ())[0]
+    if not socket or not socket.is_output:
+        return np.zeros(3)
+    node = socket.node
+    if node.type == "EMISSION":
+        color, strength = (source_of(node.inputs[name], ())[0] for name in ("Color", "Strength"))
+        if not color.is_output and not strength.is_output:
+            return np.array(constant(color).value) * constant(strength).value[0]
+    notes.append("the nodes of a light are not read; its colour and power are used")
+    return np.ones(3)
+
+
+def _sun(light, matrix, axes, power, notes):
+    sine = math.sin(min(light.angle, math.pi) / 2)
+    if not light.normalize and sine > 0.0:
+        power = power * (math.pi * sine**2)
+    return {"radiance": _floats(power), "radius": sine}
+
+
+def _intensity(light, power):
+    factor = 1.0 / (4.0 * math.pi)
+    if not light.normalize:
+        # Power a square metre of the sphere; a point counts as one of radius 1 / sqrt(pi).
+        radius = light.shadow_soft_size
+        factor *= 4.0 * math.pi * radius**2 if radius > 0.0 else 4.0
+    return power * factor
+
+
+def _point(light, matrix, axes, power, notes):
+    return {
+        "radiance": _floats(_intensity(light, power)),
+        "radius": light.shadow_soft_size,
+        "soft_falloff": light.use_soft_falloff,
+    }
+
+
+def _spot(light, matrix, axes, power, notes):
+    if light.use_square:
+        notes.append("a square spot is drawn round")
+    cosine = math.cos(light.spot_size / 2)
+    edge = max(light.spot_blend * (1.0 - cosine), _SHARPEST_EDGE)
+    scale = np.linalg.norm(matrix[:3, :3], axis=0)
+    # The cone is as much wider across as the object is scaled there, compared with its length.
+    rows = axes * np.array([1.0, 1.0, -1.0])[:, None] / np.maximum(scale, 1e-9)[:, None]
+    return {
+        "radiance": _floats(_intensity(light, power)),
+        "radius": light.shadow_soft_size,
+        "soft_falloff": light.use_soft_falloff,
+        "cone": (cosine, 1.0 / edge),
+        "axes": tuple(_floats(row) for row in rows),
+    }
+
+
+def _area(light, matrix, axes, power, notes):
+    width = light.size
+    height = light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
+    scale = np.linalg.norm(matrix[:3, :3], axis=0)
+    half = np.array([width * scale[0], height * scale[1]]) / 2
+    half = np.maximum(half, 1e-6)
+    if light.shape in {"DISK", "ELLIPSE"}:
+        notes.append("a round area light is drawn as a rectangle of the same area")
+        half = half * math.sqrt(math.pi) / 2
+    area = 4.0 * half[0] * half[1]
+    radiance = power / math.pi
+    if light.normalize:
+        radiance = radiance / area
+    cone = (0.0, 0.0)
+    if light.spread < math.pi:
+        notes.append("the spread of an area light is taken at the light's middle")
+        half_spread = max(light.spread / 2, math.radians(0.05))
+        tangent = math.tan(half_spread)
+        cone = (tangent, 1.0 / (tangent - half_spread))
+    return {
+        "radiance": _floats(radiance),
+        "cone": cone,
+        "axes": tuple(_floats(row) for row in axes * np.array([1.0, 1.0, -1.0])[:, None]),
+        "half_size": _floats(half),
+    }
+
+
+def _unit_axes(matrix):
+    """Rows: the object's axes in world space, of unit length."""
+    axes = matrix[:3, :3].T
+    sizes = np.linalg.norm(axes, axis=1, keepdims=True)
+    return np.divide(axes, sizes, out=np.eye(3), where=sizes > 0.0)
+
+
+def _floats(values):
+    return tuple(float(v) for v in values)

@@ -1,0 +1,159 @@
+"""Blender's world to `World`: one Background with a colour or an equirectangular image."""
+
+import numpy as np
+
+from .material_nodes import constant, euler_matrix, mapping_matrix
+from .node_tree import source_of
+from .snapshot import World
+from .surface_graph import MISSING_IMAGE_COLOR
+
+# How far a Mapping may be from a rotation.
+_ROTATION_TOLERANCE = 1e-4
+
+
+def read_world(world, images):
+    """Read a world.
+
+    Parameters
+    ----------
+    world : bpy.types.World or None
+    images : ImageReader
+
+    Returns
+    -------
+    World
+    notes : list of str
+        What is not drawn, and what is drawn instead.
+    """
+    notes = []
+    if world is None:
+        return World(), notes
+    tree = world.node_tree
+    output = tree and tree.get_output_node("EEVEE")
+    if not output:
+        return World(), notes
+    reader = _WorldReader(world.name, images, notes)
+    volume = next((s for s in output.inputs if s.identifier == "Volume"), None)
+    if volume is not None and source_of(volume, ())[0].is_output:
+        reader.note("volume is not drawn")
+    return reader.read(output), notes
+
+
+class _WorldReader:
+    def __init__(self, name, images, notes):
+        self._name = name
+        self._images = images
+        self._notes = notes
+
+    def note(self, text):
+        self._notes.append(f"world '{self._name}': {text}")
+
+    def read(self, output):
+        surface = next(s for s in output.inputs if s.identifier == "Surface")
+        socket, groups = source_of(surface, ())
+        if not socket.is_output:
+            return World()
+        node = socket.node
+        if node.type not in {"BACKGROUND", "EMISSION"}:
+            self.note(f"node '{node.bl_label}' is not read; the first Background under it is used")
+            node, groups = _first_background(node, groups)
+            if node is None:
+                return World()
+        color, image, rotation = self._color(node, groups)
+        strength = self._number(node.inputs["Strength"], groups)
+        return World(tuple(c * strength for c in color), image, rotation)
+
+    def _number(self, socket, groups):
+        source, _ = source_of(socket, groups)
+        if source.is_output:
+            if source.node.type == "VALUE":
+                return constant(source).value[0]
+            self.note(f"node '{source.node.bl_label}' is not read; its socket's value is used")
+            source = socket
+        return constant(source).value[0]
+
+    def _color(self, node, groups):
+        socket = node.inputs["Color"]
+        source, inner = source_of(socket, groups)
+        nothing = World()
+        if not source.is_output:
+            return constant(source).value, 0, nothing.rotation
+        kind = source.node.type
+        if kind == "RGB":
+            return constant(source).value, 0, nothing.rotation
+        if kind == "TEX_ENVIRONMENT":
+            return self._environment(source.node, inner)
+        self.note(f"node '{source.node.bl_label}' is not read; its socket's value is used")
+        return constant(socket).value, 0, nothing.rotation
+
+    def _environment(self, node, groups):
+        rotation = World().rotation
+        if node.image is None:
+            return MISSING_IMAGE_COLOR, 0, rotation
+        use = self._images.read(node.image, node.image_user)
+        if use is None:
+            return MISSING_IMAGE_COLOR, 0, rotation
+        if node.projection != "EQUIRECTANGULAR":
+            self.note("a mirror ball is drawn as an equirectangular image")
+        if use.associated:
+            self.note("the alpha of an environment image is not read")
+        return (1.0, 1.0, 1.0), use.uid, self._rotation(node, groups)
+
+    def _rotation(self, node, groups):
+        identity = World().rotation
+        source, inner = source_of(node.inputs["Vector"], groups)
+        if not source.is_output:
+            return identity
+        matrix = np.eye(3)
+        while source.is_output and source.node.type == "MAPPING":
+            matrix = matrix @ self._mapping(source.node, inner)
+            source, inner = source_of(source.node.inputs["Vector"], inner)
+        if source.is_output and (source.node.type, source.identifier) not in {
+            ("TEX_COORD", "Generated"),
+            ("TEX_COORD", "Normal"),
+            ("NEW_GEOMETRY", "Position"),
+            ("NEW_GEOMETRY", "Normal"),
+        }:
+            self.note(
+                f"'{source.identifier}' of node '{source.node.bl_label}' is not read;"
+                " the direction of view is used"
+            )
+        return tuple(tuple(float(v) for v in row) for row in matrix)
+
+    def _mapping(self, node, groups):
+        values = {}
+        for name in ("Location", "Rotation", "Scale"):
+            socket = next((s for s in node.inputs if s.identifier == name), None)
+            if socket is None or not socket.enabled:
+                continue
+            source, _ = source_of(socket, groups)
+            if source.is_output:
+                self.note(f"'{name}' of node 'Mapping' is not read; its socket's value is used")
+                source = socket
+            values[name] = constant(source).value
+        if node.vector_type == "NORMAL":
+            matrix, offset = mapping_matrix("VECTOR", {**values, "Scale": (1.0,) * 3})
+        else:
+            matrix, offset = mapping_matrix(node.vector_type, values)
+        scale = np.linalg.norm(matrix, axis=0)
+        uniform = scale.min() > 0.0 and np.ptp(scale / scale.max()) < _ROTATION_TOLERANCE
+        if not uniform or np.abs(offset).max() > _ROTATION_TOLERANCE:
+            self.note("of node 'Mapping' only the rotation is drawn")
+            rotation = euler_matrix(values["Rotation"])
+            return rotation.T if node.vector_type == "TEXTURE" else rotation
+        return matrix / scale.max()
+
+
+def _first_background(node, groups, depth=0):
+    for socket in node.inputs:
+        if socket.type != "SHADER" or depth > 32:
+            continue
+        source, inner = source_of(socket, groups)
+        if not source.is_output:
+            continue
+        if source.node.type in {"BACKGROUND", "EMISSION"}:
+            return source.node, inner
+        found = _first_background(source.node, inner, depth + 1)
+        if found[0] is not None:
+            return found
+    return None, groups

@@ -1,0 +1,61 @@
+// Image look-ups in full float precision: the texture unit weighs texels with 8 bits, which is not
+// enough to agree with Cycles. Texels are fetched as stored; decoding comes after interpolation.
+#ifndef TEXTURE_LIB_GLSL
+#define TEXTURE_LIB_GLSL
+
+#define EXTENSION_REPEAT 0
+#define EXTENSION_EXTEND 1
+#define EXTENSION_CLIP 2
+#define EXTENSION_MIRROR 3
+
+// Texel index on an endless line of copies to an index in [0, size).
+int extend_texel(int i, int size, int extension)
+{
+  if (extension == EXTENSION_REPEAT) {
+    int r = i % size;
+    return (r < 0) ? r + size : r;
+  }
+  if (extension == EXTENSION_MIRROR) {
+    int r = i % (2 * size);
+    r = (r < 0) ? r + 2 * size : r;
+    return (r < size) ? r : 2 * size - 1 - r;
+  }
+  return clamp(i, 0, size - 1);
+}
+
+vec4 image_texel(sampler2D tx, ivec2 texel, ivec2 size, int extension)
+{
+  if (extension == EXTENSION_CLIP && (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size)))) {
+    return vec4(0.0);
+  }
+  return texelFetch(
+      tx, ivec2(extend_texel(texel.x, size.x, extension), extend_texel(texel.y, size.y, extension)), 0);
+}
+
+vec4 image_closest(sampler2D tx, vec2 uv, int extension)
+{
+  ivec2 size = textureSize(tx, 0);
+  return image_texel(tx, ivec2(floor(uv * vec2(size))), size, extension);
+}
+
+vec4 image_linear(sampler2D tx, vec2 uv, int extension)
+{
+  ivec2 size = textureSize(tx, 0);
+  vec2 place = uv * vec2(size) - 0.5;
+  vec2 corner = floor(place);
+  vec2 t = place - corner;
+  ivec2 texel = ivec2(corner);
+  vec4 a = image_texel(tx, texel, size, extension);
+  vec4 b = image_texel(tx, texel + ivec2(1, 0), size, extension);
+  vec4 c = image_texel(tx, texel + ivec2(0, 1), size, extension);
+  vec4 d = image_texel(tx, texel + ivec2(1, 1), size, extension);
+  return mix(mix(a, b, t.x), mix(c, d, t.x), t.y);
+}
+
+// Colour that was multiplied by alpha before interpolation.
+vec4 image_unassociate(vec4 texel)
+{
+  return (texel.a != 0.0 && texel.a != 1.0) ? vec4(texel.rgb / texel.a, texel.a) : texel;
+}
+
+#endif

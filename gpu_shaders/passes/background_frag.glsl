@@ -1,0 +1,25 @@
+// The world at infinity as one place on the lens sees it, where no surface is.
+// Inputs: view_buf; lens_sample (xy: place on the lens, m; zw: sub-pixel jitter in clip units);
+// environment_buf; environment_tx (equirectangular, scene linear).
+// Outputs: opaque scene-linear colour.
+// Source: methods 1: the ray from the lens' place through the pixel's point of the focus plane.
+#include "lib/environment_lib.glsl"
+#include "lib/texture_lib.glsl"
+
+void main()
+{
+  vec2 clip = gl_FragCoord.xy / view_buf.film.xy * 2.0 - 1.0 - lens_sample.zw;
+  vec3 direction = vec3(0.0, 0.0, -1.0);
+  if (view_buf.lens.y < 0.5) {
+    // Where the pinhole's ray is at a depth of 1 m, where w is 1.
+    direction.xy = (clip + vec2(view_buf.projection[2][0], view_buf.projection[2][1])) /
+                   vec2(view_buf.projection[0][0], view_buf.projection[1][1]);
+  }
+  direction.xy -= lens_sample.xy / view_buf.lens.x;
+  direction = mat3(view_buf.view_inverse) * direction;
+  vec3 local = vec3(dot(environment_buf.rotation_x.xyz, direction),
+                    dot(environment_buf.rotation_y.xyz, direction),
+                    dot(environment_buf.rotation_z.xyz, direction));
+  vec3 radiance = image_linear(environment_tx, direction_to_equirect(local), EXTENSION_REPEAT).rgb;
+  out_color = vec4(radiance * environment_buf.color.rgb, 1.0);
+}
