@@ -110,7 +110,9 @@ def test_the_device_reads_what_was_packed(aplanat_bpy, declare):
             state.overwrite()
             shader = compile_shader(info)
             shader.bind()
-            shader.uniform_block("block_buf", uniform_buffer(packed))
+            # A block that nobody holds is freed at once, bound or not.
+            block = uniform_buffer(packed)
+            shader.uniform_block("block_buf", block)
             fullscreen_batch().draw(shader)
         found = read_color(framebuffer, len(reads), 1)[0]
     assert found[0].tolist() == [0.25, 1.5, -2.0, 3.0]
