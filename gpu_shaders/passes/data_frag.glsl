@@ -23,8 +23,7 @@ void main()
   out_vector = vec4(0.0);
 #else
 #ifdef TRANSPARENT
-  Closure closure = surface_closure();
-  if (1.0 - dot(closure.transmittance, vec3(1.0 / 3.0)) < data_buf.raster.z) {
+  if (1.0 - closure_through(surface_closure()) < data_buf.raster.z) {
     discard;
   }
 #endif
