@@ -254,4 +254,3 @@ def _slot_uids(slots, used, materials):
 def _is_camera(block):
     kind = type(block).__name__
     return kind == "Camera" or (kind == "Object" and block.type == "CAMERA")
-

@@ -33,25 +33,25 @@ class MeshSource:
         mesh afresh, so an edited mesh, another frame or a state after undo has another key, also
         where it occupies the same memory. Meshes without number have a key of their own each time.
     mesh : bpy.types.Mesh
-    edited : bpy.types.Object or None
-        The object whose edit mode holds the mesh.
+    wrapped_by : bpy.types.Object or None
+        The object whose evaluated mesh is a wrapper that may lack elements: in edit mode, and where
+        Blender leaves subdivision to the graphics device.
     owner : str
         Name of the first object that shows it.
     """
 
     key: object
     mesh: object
-    edited: object
+    wrapped_by: object
     owner: str
 
     @contextmanager
     def opened(self, depsgraph):
         """Give the mesh with all its elements, valid inside a `with` block."""
-        if self.edited is None:
+        if self.wrapped_by is None:
             yield self.mesh
             return
-        # In edit mode the evaluated mesh is a wrapper that may have no elements of its own.
-        evaluated = self.edited.evaluated_get(depsgraph)
+        evaluated = self.wrapped_by.evaluated_get(depsgraph)
         try:
             yield evaluated.to_mesh()
         finally:
@@ -177,6 +177,8 @@ def place(instance):
 class _Reader:
     def __init__(self, depsgraph, space):
         self.out = InstanceList()
+        self._depsgraph = depsgraph
+        self._in_viewport = depsgraph.mode == "VIEWPORT"
         self._view_layer = depsgraph.view_layer
         self._override = depsgraph.view_layer_eval.material_override
         self._space = space
@@ -251,8 +253,9 @@ class _Reader:
         key = data.session_uid or ("unnumbered", data.as_pointer())
         source = out.sources.get(key)
         if source is None:
-            edited = original if data.is_editmode else None
-            source = out.sources[key] = MeshSource(key, data, edited, name)
+            wrapped = data.is_editmode or self._may_be_subdivided_later(original, data)
+            wrapped_by = original if wrapped else None
+            source = out.sources[key] = MeshSource(key, data, wrapped_by, name)
             out.owners[key] = set()
         owners = out.owners[key]
         owners.add(original.session_uid)
@@ -260,6 +263,15 @@ class _Reader:
         if original.data is not None:
             owners.add(original.data.session_uid)
         return key
+
+    def _may_be_subdivided_later(self, original, data):
+        if not self._in_viewport or original.type != "MESH":
+            return False
+        shown = [modifier.type for modifier in original.modifiers if modifier.show_viewport]
+        if not shown or shown[-1] != "SUBSURF":
+            return False
+        # Other meshes may come from the same object: what its geometry nodes instance.
+        return original.evaluated_get(self._depsgraph).data == data
 
     def _slots(self, obj, original, mesh_key):
         # Objects made by geometry nodes share their instancer's name, not its slots.

@@ -165,3 +165,51 @@ def test_an_empty_scene_is_empty_content(bpy):
     assert content.groups == ()
     assert content.meshes == {}
     assert extract(bpy).instances.world.shape[1:] == (4, 4)
+
+
+def test_a_mesh_that_ends_in_subdivision_has_all_its_elements(bpy):
+    # The viewport's evaluation, where Blender may leave them to the graphics device.
+    obj = scenes.add(bpy, "round", scenes.cube(bpy))
+    obj.modifiers.new("round", "SUBSURF").levels = 2
+    assert bpy.context.evaluated_depsgraph_get().mode == "VIEWPORT"
+    (mesh,) = extract(bpy).meshes.values()
+    assert len(mesh.triangles) == 12 * 4**2
+
+
+def test_simplify_limits_subdivision(bpy):
+    obj = scenes.add(bpy, "round", scenes.cube(bpy))
+    obj.modifiers.new("round", "SUBSURF").levels = 3
+    bpy.context.scene.render.use_simplify = True
+    bpy.context.scene.render.simplify_subdivision = 1
+    (mesh,) = extract(bpy).meshes.values()
+    assert len(mesh.triangles) == 12 * 4
+
+
+def test_a_3d_view_shows_the_kinds_of_objects_it_is_set_to(aplanat_bpy):
+    bpy = aplanat_bpy
+    # The default scene, with its screens.
+    bpy.ops.wm.read_factory_settings()
+    areas = [area for screen in bpy.data.screens for area in screen.areas]
+    space = next(area.spaces.active for area in areas if area.type == "VIEW_3D")
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    assert len(SceneExtractor(space).extract_content(depsgraph).groups) == 1
+    space.show_object_viewport_mesh = False
+    assert SceneExtractor(space).extract_content(depsgraph).groups == ()
+    assert len(SceneExtractor().extract_content(depsgraph).groups) == 1
+
+
+def test_linked_objects_are_drawn(bpy, tmp_path):
+    library = tmp_path / "library.blend"
+    data = scenes.cube(bpy, "linked cube")
+    obj = bpy.data.objects.new("linked", data)
+    data.materials.append(scenes.emission(bpy, "linked paint", (0, 1, 0)))
+    bpy.data.libraries.write(str(library), {obj})
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
+        wanted.objects = ["linked"]
+    for linked in wanted.objects:
+        bpy.context.scene.collection.objects.link(linked)
+    scenes.add(bpy, "linked cube", scenes.triangle(bpy, "linked cube"))
+    content = extract(bpy)
+    assert sorted(len(mesh.triangles) for mesh in content.meshes.values()) == [1, 12]
+    assert {m.name for m in content.materials.values()} == {"linked paint", ""}
