@@ -1,7 +1,7 @@
 """Whole frames through Blender: border, percentage, view layers, transparency, repeats, leaks."""
 
 import gc
-import resource
+import os
 import sys
 from pathlib import Path
 
@@ -226,4 +226,4 @@ def test_a_hundred_renders_leave_nothing_behind(scene):
 
 def _resident_kib():
     pages = int(Path("/proc/self/statm").read_text().split()[1])
-    return pages * resource.getpagesize() // 1024
+    return pages * os.sysconf("SC_PAGE_SIZE") // 1024
