@@ -179,65 +179,70 @@ class _Reader:
         self.out = InstanceList()
         self._depsgraph = depsgraph
         self._in_viewport = depsgraph.mode == "VIEWPORT"
-        self._view_layer = depsgraph.view_layer
-        self._override = depsgraph.view_layer_eval.material_override
+        # Evaluated, as the objects are: animated switches are not written back while rendering.
+        self._view_layer = depsgraph.view_layer_eval
+        self._override = self._view_layer.material_override
         self._space = space
-        self._own_flags = {}
+        self._kinds = {}
         self._place_flags = {}
-        self._slot_keys = {}
         self._slot_numbers = {}
-        self._undrawn = {}
+        self._counts = {}
 
     def read(self, instance):
         """Return look and name of an instance that is drawn, else None."""
         obj = instance.object
-        if self._space is not None and not obj.visible_in_viewport_get(self._space):
+        data = obj.data
+        if data is None:
             return None
-        kind = obj.type
-        if kind == "LIGHT":
+        if obj.type == "LIGHT":
             # It lights what the camera sees wherever it hides itself.
-            if instance.show_self:
+            if instance.show_self and self._is_in_view(obj):
                 self._read_light(obj, instance.matrix_world)
             return None
-        original = obj.original
-        parent = instance.parent.original if instance.is_instance else original
-        visible, catches_shadow = self._flags(original)
+        parent = instance.parent if instance.is_instance else obj
+        number = data.session_uid or ("unnumbered", data.as_pointer())
+        shown = (instance.show_self, instance.show_particles)
+        # Copies of one thing in one place of the scene are alike; there may be very many.
+        key = (obj.original.session_uid, parent.original.session_uid, number, shown)
+        if key not in self._kinds:
+            self._kinds[key] = self._read_kind(obj, parent, number, *shown)
+        drawn, notes = self._kinds[key]
+        for note in notes:
+            self._counts[note] = self._counts.get(note, 0) + 1
+        return drawn
+
+    def _read_kind(self, obj, parent, number, show_self, show_particles):
+        """Return look and name, or None, and the notes of an instance."""
         holdout, indirect_only, parent_visible = self._flags_of_place(parent)
-        if not visible or not parent_visible or (indirect_only and not holdout):
-            return None
+        visible = obj.visible_camera and parent_visible
+        if not visible or (indirect_only and not holdout) or not self._is_in_view(obj):
+            return None, ()
         name = obj.name
-        if instance.show_particles:
-            self._note_hair(obj, name)
-        if not instance.show_self:
-            return None
-        if kind != "MESH":
-            undrawn = _UNDRAWN.get(kind)
-            if undrawn and undrawn[1](obj.data):
-                self._note(name, f"{undrawn[0]} cannot be drawn; left out")
-            return None
-        if catches_shadow:
-            self._note(name, "a shadow catcher is drawn as any other surface")
-        data = obj.data
-        key = self._source(obj, original, parent, data, name)
-        return Look(key, self._slots(obj, original, key), holdout), name
+        notes = list(_hair_notes(obj)) if show_particles else []
+        drawn = None
+        if show_self and obj.type == "MESH":
+            self._add_source(obj, parent, number)
+            drawn = Look(number, self._slots(obj), holdout), name
+            if obj.is_shadow_catcher:
+                notes.append("a shadow catcher is drawn as any other surface")
+        elif show_self and obj.type in _UNDRAWN:
+            what, size = _UNDRAWN[obj.type]
+            if size(obj.data):
+                notes.append(f"{what} cannot be drawn; left out")
+        return drawn, tuple((name, note) for note in notes)
+
+    def _is_in_view(self, obj):
+        return self._space is None or obj.visible_in_viewport_get(self._space)
 
     def _read_light(self, obj, matrix):
         light, notes = read_light(obj.data, matrix)
         if light is not None:
             self.out.lights.append(light)
         for note in notes:
-            self._note(obj.name, note)
-
-    def _flags(self, original):
-        number = original.session_uid
-        flags = self._own_flags.get(number)
-        if flags is None:
-            flags = (original.visible_camera, original.is_shadow_catcher)
-            self._own_flags[number] = flags
-        return flags
+            self._counts[obj.name, note] = self._counts.get((obj.name, note), 0) + 1
 
     def _flags_of_place(self, parent):
-        number = parent.session_uid
+        number = parent.original.session_uid
         flags = self._place_flags.get(number)
         if flags is None:
             flags = (
@@ -248,21 +253,17 @@ class _Reader:
             self._place_flags[number] = flags
         return flags
 
-    def _source(self, obj, original, parent, data, name):
-        out = self.out
-        key = data.session_uid or ("unnumbered", data.as_pointer())
-        source = out.sources.get(key)
-        if source is None:
-            wrapped = data.is_editmode or self._may_be_subdivided_later(original, data)
+    def _add_source(self, obj, parent, number):
+        out, original = self.out, obj.original
+        if number not in out.sources:
+            wrapped = obj.data.is_editmode or self._may_be_subdivided_later(original, obj.data)
             wrapped_by = original if wrapped else None
-            source = out.sources[key] = MeshSource(key, data, wrapped_by, name)
-            out.owners[key] = set()
-        owners = out.owners[key]
-        owners.add(original.session_uid)
-        owners.add(parent.session_uid)
+            out.sources[number] = MeshSource(number, obj.data, wrapped_by, obj.name)
+            out.owners[number] = set()
+        owners = out.owners[number]
+        owners |= {original.session_uid, parent.original.session_uid}
         if original.data is not None:
             owners.add(original.data.session_uid)
-        return key
 
     def _may_be_subdivided_later(self, original, data):
         if not self._in_viewport or original.type != "MESH":
@@ -273,39 +274,31 @@ class _Reader:
         # Other meshes may come from the same object: what its geometry nodes instance.
         return original.evaluated_get(self._depsgraph).data == data
 
-    def _slots(self, obj, original, mesh_key):
-        # Objects made by geometry nodes share their instancer's name, not its slots.
-        key = (original.session_uid, mesh_key)
-        number = self._slot_keys.get(key)
-        if number is None:
-            if self._override is not None:
-                materials = (self._override,)
-            else:
-                materials = tuple(slot.material for slot in obj.material_slots) or (None,)
-            identity = tuple(m.original.session_uid if m else 0 for m in materials)
-            number = self._slot_numbers.setdefault(identity, len(self.out.slots))
-            if number == len(self.out.slots):
-                self.out.slots.append(materials)
-            self._slot_keys[key] = number
+    def _slots(self, obj):
+        if self._override is not None:
+            materials = (self._override,)
+        else:
+            materials = tuple(slot.material for slot in obj.material_slots) or (None,)
+        identity = tuple(m.original.session_uid if m else 0 for m in materials)
+        number = self._slot_numbers.setdefault(identity, len(self.out.slots))
+        if number == len(self.out.slots):
+            self.out.slots.append(materials)
         return number
-
-    def _note_hair(self, obj, name):
-        for modifier in obj.modifiers:
-            if modifier.type != "PARTICLE_SYSTEM":
-                continue
-            settings = modifier.particle_system.settings
-            if settings.type == "HAIR" and settings.render_type == "PATH":
-                self._note(name, f"particle hair '{settings.name}' cannot be drawn; left out")
-            elif settings.render_type in {"HALO", "LINE"}:
-                shape = settings.render_type.lower()
-                self._note(name, f"particles drawn as {shape} cannot be drawn; left out")
-
-    def _note(self, name, what):
-        self._undrawn[name, what] = self._undrawn.get((name, what), 0) + 1
 
     def report(self):
         """Return one line for each object and reason, however many copies there are."""
         return tuple(
             f"object '{name}': {what}" + (f" ({count} copies)" if count > 1 else "")
-            for (name, what), count in self._undrawn.items()
+            for (name, what), count in self._counts.items()
         )
+
+
+def _hair_notes(obj):
+    for modifier in obj.modifiers:
+        if modifier.type != "PARTICLE_SYSTEM":
+            continue
+        settings = modifier.particle_system.settings
+        if settings.type == "HAIR" and settings.render_type == "PATH":
+            yield f"particle hair '{settings.name}' cannot be drawn; left out"
+        elif settings.render_type in {"HALO", "LINE"}:
+            yield f"particles drawn as {settings.render_type.lower()} cannot be drawn; left out"
