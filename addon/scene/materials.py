@@ -10,6 +10,10 @@ DEFAULT_GRAPH = SurfaceGraph(
     (ShaderNode("diffuse", (("Color", Constant(DEFAULT_BASE_COLOR)),)),), Link(0, "BSDF")
 )
 
+_INVISIBLE_GRAPH = SurfaceGraph(
+    (ShaderNode("transparent", (("Color", Constant((1.0, 1.0, 1.0))),)),), Link(0, "BSDF")
+)
+
 
 class MaterialReader:
     """Reads materials and the images they use.
@@ -90,6 +94,9 @@ class MaterialReader:
             return SurfaceGraph()
         reader = TreeReader(f"material '{material.name}'", self.image_reader)
         graph = reader.surface(output)
+        if graph.surface is None and reader.linked(output, "Volume", ()):
+            # The hull of a fog or smoke is not to be seen itself.
+            graph = _INVISIBLE_GRAPH
         for socket, what in (("Volume", "volume"), ("Displacement", "displacement")):
             if reader.linked(output, socket, ()):
                 reader.note(f"{what} is not drawn")

@@ -225,3 +225,20 @@ def test_colour_attributes_of_every_kind_have_cycles_values(bpy, tmp_path):
     difference = np.abs(ours - cycles)[covered]
     assert np.quantile(difference, 0.98) < 0.02
     assert difference.mean() < 2e-3
+
+
+def test_the_hull_of_a_volume_is_not_seen_but_a_material_without_surface_is_black(bpy, tmp_path):
+    scene = bpy.context.scene
+    for name, x in (("fog", -2), ("nothing", 2)):
+        paint = scenes.emission(bpy, name, (1, 0, 0))
+        tree = paint.node_tree
+        tree.links.clear()
+        if name == "fog":
+            fog = tree.nodes.new("ShaderNodeVolumeScatter")
+            fog.inputs["Density"].default_value = 0.0
+            output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
+            tree.links.new(fog.outputs["Volume"], output.inputs["Volume"])
+        scenes.add(bpy, name, scenes.cube(bpy, name, 1.5), paint, (x, 0))
+    ours, _ = compare(scene, tmp_path, 80, 60)
+    assert ours[30, 20].tolist() == [0, 0, 0, 0]
+    assert ours[30, 60].tolist() == [0, 0, 0, 1]
