@@ -60,12 +60,23 @@ def parse(words, program="aplanat"):
     """
     if words and words[0] in _LATER:
         raise _not_yet(f"{program} {words[0]}", words[0])
-    arguments = _parser(program).parse_args(words)
+    arguments = _parser(program).parse_args(_with_negative_ranges(words))
     if arguments.command is None:
         raise InputError(f"no command given (see `{program} --help`)")
     if arguments.command == "render":
         _check_render(arguments)
     return arguments
+
+
+def _with_negative_ranges(words):
+    # argparse would take -5..5 for an option.
+    joined = []
+    for word in words:
+        if joined and joined[-1] == "--frames" and re.match(r"-\d", word):
+            joined[-1] = f"--frames={word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def wants_json(words):

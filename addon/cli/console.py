@@ -36,6 +36,10 @@ class Console:
         else:
             os.dup2(self._chatter.fileno(), 1)
             os.dup2(self._chatter.fileno(), 2)
+        # Python's streams may be other files than the descriptors, such as a test's.
+        self._streams = sys.stdout, sys.stderr
+        sys.stdout = open(1, "w", closefd=False, errors="replace")  # noqa: SIM115
+        sys.stderr = open(2, "w", closefd=False, errors="replace")  # noqa: SIM115
         self._terminal = self.err.isatty()
         self._last = time.monotonic()
         self._line_open = False
@@ -76,6 +80,7 @@ class Console:
         """Give stdout and stderr back."""
         self._end_progress()
         _flush()
+        sys.stdout, sys.stderr = self._streams
         for number, kept in zip((1, 2), self._kept, strict=True):
             os.dup2(kept, number)
             os.close(kept)

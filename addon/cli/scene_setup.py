@@ -75,8 +75,7 @@ def apply_options(scene, arguments):
         render.filter_size = arguments.filter_size
     if arguments.camera:
         _use_camera(scene, arguments.camera)
-    if scene.camera is None:
-        raise CameraError(f"scene '{scene.name}' has no camera; add one, or name one with --camera")
+    use_engine(scene)
     if arguments.fstop or arguments.focus is not None:
         _use_lens_options(scene, arguments)
     check_size(scene)
