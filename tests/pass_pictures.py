@@ -90,43 +90,53 @@ def use_passes(layer, *names):
         setattr(layer, f"use_pass_{name}", True)
 
 
-def render_passes(scene):
-    """Render a scene with its engine to a multilayer EXR and read that.
+def write_passes(scene, path):
+    """Render a scene with its engine to a multilayer EXR."""
+    import bpy
+
+    scene.render.filepath = str(path)
+    scene.render.use_file_extension = False
+    settings = scene.render.image_settings
+    settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format = "OPEN_EXR_MULTILAYER"
+    settings.color_depth = "32"
+    bpy.ops.render.render(write_still=True, scene=scene.name)
+
+
+def read_passes(path):
+    """Read a multilayer EXR that Blender wrote.
 
     Returns
     -------
     passes : dict of str to ndarray of shape (height, width, channels)
         By ``"Layer.Pass"``, top row first.
     header : dict of str to object
-        Of the first part.
+        Of all parts together.
     """
-    import bpy
     import OpenEXR
 
+    passes, header = {}, {}
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        for part in file.parts:
+            header = dict(part.header) | header
+            channels = {}
+            for name, channel in part.channels.items():
+                owner, letter = name.rsplit(".", 1)
+                pixels = np.array(channel.pixels, np.float32)
+                channels.setdefault(owner, {})[letter.upper()] = pixels
+            for owner, values in channels.items():
+                order = "RGBA" if "R" in values else "XYZW"
+                letters = sorted(values, key=order.find)
+                passes[owner] = np.stack([values[letter] for letter in letters], axis=-1)
+    return passes, header
+
+
+def render_passes(scene):
+    """Render a scene with its engine and return what `read_passes` reads."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "passes.exr"
-        scene.render.filepath = str(path)
-        scene.render.use_file_extension = False
-        settings = scene.render.image_settings
-        settings.media_type = "MULTI_LAYER_IMAGE"
-        settings.file_format = "OPEN_EXR_MULTILAYER"
-        settings.color_depth = "32"
-        bpy.ops.render.render(write_still=True, scene=scene.name)
-        passes, header = {}, {}
-        with OpenEXR.File(str(path), separate_channels=True) as file:
-            for part in file.parts:
-                header = dict(part.header) | header
-                channels = {}
-                for name, channel in part.channels.items():
-                    owner, letter = name.rsplit(".", 1)
-                    channels.setdefault(owner, {})[letter.upper()] = np.array(
-                        channel.pixels, np.float32
-                    )
-                for owner, values in channels.items():
-                    order = "RGBA" if "R" in values else "XYZW"
-                    letters = sorted(values, key=order.find)
-                    passes[owner] = np.stack([values[letter] for letter in letters], axis=-1)
-    return passes, header
+        write_passes(scene, path)
+        return read_passes(path)
 
 
 def render_passes_cycles(scene, samples):
