@@ -1,9 +1,12 @@
 """Everything drawn covers the pixels that Cycles covers, in the colours of its materials."""
 
+import json
+
 import numpy as np
 import pytest
 
 from tests import scene_builders as scenes
+from tests.pass_pictures import read_passes, use_passes, write_passes
 from tests.pictures import render_aplanat, render_cycles, save_side_by_side
 
 # Unlit colours are exact in both engines; only how much of a pixel on an outline is covered is
@@ -242,3 +245,36 @@ def test_the_hull_of_a_volume_is_not_seen_but_a_material_without_surface_is_blac
     ours, _ = compare(scene, tmp_path, 80, 60)
     assert ours[30, 20].tolist() == [0, 0, 0, 0]
     assert ours[30, 60].tolist() == [0, 0, 0, 1]
+
+
+def test_copies_have_the_names_of_cycles_manifest(bpy, tmp_path):
+    scene = bpy.context.scene
+    (paint,) = palette(bpy, 1)
+    source = scenes.add(bpy, "source", scenes.cube(bpy), paint)
+    source.hide_render = True
+    folder = bpy.data.collections.new("folder")
+    scenes.add(bpy, "inside", scenes.triangle(bpy), paint, collection=folder)
+    empty = scenes.add(bpy, "empty", None, at=(2, 2))
+    empty.instance_type, empty.instance_collection = "COLLECTION", folder
+    scenes.instancer(bpy, None, paint, [(-2, 0, -1)], "made")
+    scenes.instancer(bpy, source, paint, [(-2, 0, 2)], "placed")
+    text = bpy.data.curves.new("text", "FONT")
+    text.body = "T"
+    scenes.add(bpy, "text object", text, paint).rotation_euler.x = np.pi / 2
+    emitter = scenes.add(bpy, "emitter", scenes.cube(bpy, "emitter"), paint, (2, -2))
+    particles = emitter.modifiers.new("particles", "PARTICLE_SYSTEM").particle_system.settings
+    particles.frame_start, particles.frame_end, particles.count = -5, 0, 5
+    particles.render_type, particles.instance_object = "OBJECT", source
+    use_passes(scene.view_layers[0], "cryptomatte_object")
+    manifests = {}
+    for engine in ("APLANAT", "CYCLES"):
+        scene.render.engine = engine
+        scene.cycles.samples = scene.aplanat.render_samples = 1
+        write_passes(scene, tmp_path / f"{engine}.exr")
+        _, header = read_passes(tmp_path / f"{engine}.exr")
+        (key,) = (key for key in header if key.endswith("/manifest"))
+        manifests[engine] = json.loads(header[key])
+    ours, cycles = manifests["APLANAT"], manifests["CYCLES"]
+    assert set(ours) == {"source", "inside", "made", "text object", "emitter"}
+    # Cycles also lists objects without faces.
+    assert ours.items() <= cycles.items()
