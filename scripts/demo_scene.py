@@ -311,7 +311,7 @@ def build_candle(place):
 
 def build_near_object(place):
     """Put a brushed metal bauble close to the camera, far out of focus."""
-    metal = material("Bauble", (0.80, 0.24, 0.05), roughness=0.30, glow=0.03)
+    metal = material("Bauble", (0.80, 0.24, 0.05), roughness=0.30, glow=0.05)
     cap = material("Cap", (0.80, 0.60, 0.25), roughness=0.3, metallic=0.5)
     add("Bauble", sphere(0.034, 64), metal, place)
     turn = Matrix.Rotation(math.radians(-24), 4, "Y")
@@ -365,7 +365,7 @@ def light(name, kind, position, color, energy, size=0.0, target=None):
     if kind in {"POINT", "SPOT"}:
         data.shadow_soft_size = size
     if kind == "SPOT":
-        data.spot_size = math.radians(38)
+        data.spot_size = math.radians(58)
         data.spot_blend = 1.0
     bpy.context.scene.collection.objects.link(made)
 
