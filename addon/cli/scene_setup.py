@@ -86,12 +86,17 @@ def use_engine(scene):
 
     Raises
     ------
-    CameraError
-        If there is no camera to render from.
+    InputError
+        If there is no camera to render from or no view layer to render.
     """
     scene.render.engine = ENGINE_ID
     if scene.camera is None:
         raise CameraError(f"scene '{scene.name}' has no camera; add one, or name one with --camera")
+    if not (scene.render.use_single_layer or any(layer.use for layer in scene.view_layers)):
+        raise InputError(
+            f"scene '{scene.name}': every view layer is switched off; switch one on (View Layer >"
+            " Use for Rendering)"
+        )
 
 
 def check_size(scene):

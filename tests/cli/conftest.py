@@ -1,0 +1,96 @@
+"""Small scenes, and the command run in this process."""
+
+import json
+from types import SimpleNamespace
+
+import pytest
+
+SIZE = (48, 32)
+
+
+def build_scene(bpy):
+    """Make the current file a glowing, textured-looking plane behind a smaller one, in focus."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    for name, distance, size, color in (
+        ("Far", 8.0, 6.0, (0.1, 0.2, 0.6, 1.0)),
+        ("Near", 4.0, 1.0, (0.9, 0.4, 0.1, 1.0)),
+    ):
+        bpy.ops.mesh.primitive_plane_add(size=size, location=(0.0, 0.0, -distance))
+        plane = bpy.context.object
+        plane.name = name
+        material = bpy.data.materials.new(name)
+        nodes = material.node_tree.nodes
+        nodes.clear()
+        emission = nodes.new("ShaderNodeEmission")
+        emission.inputs["Color"].default_value = color
+        output = nodes.new("ShaderNodeOutputMaterial")
+        material.node_tree.links.new(emission.outputs[0], output.inputs[0])
+        plane.data.materials.append(material)
+    for name in ("Camera", "Second"):
+        camera = bpy.data.objects.new(name, bpy.data.cameras.new(name))
+        scene.collection.objects.link(camera)
+        camera.data.dof.focus_distance = 4.0
+        camera.data.dof.aperture_fstop = 0.5
+        camera.data.dof.use_dof = True
+    scene.camera = scene.objects["Camera"]
+    render = scene.render
+    render.resolution_x, render.resolution_y = SIZE
+    render.resolution_percentage = 100
+    scene.view_settings.view_transform = "Standard"
+    scene.aplanat.render_samples = 4
+    return scene
+
+
+@pytest.fixture(scope="session")
+def make_blend(aplanat_bpy, tmp_path_factory):
+    """Save a variation of the small scene: `make_blend(change)`, called with (bpy, scene)."""
+    folder = tmp_path_factory.mktemp("blends")
+
+    def make(change=None):
+        scene = build_scene(aplanat_bpy)
+        if change is not None:
+            change(aplanat_bpy, scene)
+        path = folder / f"{len(list(folder.iterdir()))}.blend"
+        aplanat_bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+        return path
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def small_blend(make_blend):
+    return make_blend()
+
+
+@pytest.fixture
+def aplanat(aplanat_bpy, capfd):
+    """Run the command line in this process; tells code, out, err, and the answer of --json."""
+    from addon.cli.command import main
+
+    def run(*words):
+        capfd.readouterr()
+        code = main([str(word) for word in words])
+        out, err = capfd.readouterr()
+        answer = json.loads(out) if "--json" in words else None
+        return SimpleNamespace(code=code, out=out, err=err, answer=answer)
+
+    return run
+
+
+@pytest.fixture
+def refused(aplanat, tmp_path):
+    """Run a command that must be refused: exit 2, one line, no file. Returns the line."""
+    before = set(tmp_path.rglob("*"))
+
+    def run(*words):
+        done = aplanat(*words)
+        assert done.code == 2, done
+        assert done.out == ""
+        assert done.err.startswith("aplanat: ")
+        assert done.err.count("\n") == 1 and done.err.endswith("\n"), done.err
+        assert "Traceback" not in done.err
+        assert {p for p in tmp_path.rglob("*") if p.suffix != ".blend"} <= before
+        return done.err
+
+    return run

@@ -1,0 +1,129 @@
+"""What `aplanat render` refuses: exit code 2, one line that helps, and no file."""
+
+import math
+
+import numpy as np
+import pytest
+
+
+def test_missing_scene(refused, tmp_path):
+    line = refused("render", tmp_path / "none.blend", "-o", tmp_path / "a.png")
+    assert "none.blend" in line and "does not exist" in line
+
+
+@pytest.mark.parametrize("content", [b"", b"not a blend file", b"BLENDER-v502" + bytes(100)])
+def test_broken_scene(refused, tmp_path, content):
+    path = tmp_path / "broken.blend"
+    path.write_bytes(content)
+    assert "broken.blend" in refused("render", path, "-o", tmp_path / "a.png")
+
+
+def test_truncated_scene(refused, small_blend, tmp_path):
+    path = tmp_path / "half.blend"
+    path.write_bytes(small_blend.read_bytes()[: small_blend.stat().st_size // 2])
+    assert "half.blend" in refused("render", path, "-o", tmp_path / "a.png")
+
+
+def test_folder_as_scene(refused, tmp_path):
+    assert "does not exist" in refused("render", tmp_path, "-o", tmp_path / "a.png")
+
+
+def test_no_camera(refused, make_blend, tmp_path):
+    def remove(_bpy, scene):
+        scene.camera = None
+
+    assert "no camera" in refused("render", make_blend(remove), "-o", tmp_path / "a.png")
+
+
+@pytest.mark.parametrize("name", ["Nobody", "Near"])
+def test_unknown_camera_lists_those_there_are(refused, small_blend, tmp_path, name):
+    line = refused("render", small_blend, "-o", tmp_path / "a.png", "--camera", name)
+    assert name in line and "'Camera', 'Second'" in line
+
+
+def test_panoramic_camera(refused, make_blend, tmp_path):
+    def panorama(_bpy, scene):
+        scene.camera.data.type = "PANO"
+
+    line = refused("render", make_blend(panorama), "-o", tmp_path / "a.png")
+    assert "pano" in line.lower()
+
+
+def test_unknown_focus_object(refused, small_blend, tmp_path):
+    line = refused("render", small_blend, "-o", tmp_path / "a.png", "--focus", "Nothing")
+    assert "Nothing" in line
+
+
+def test_focus_object_behind_the_camera(refused, make_blend, tmp_path):
+    def behind(_bpy, scene):
+        scene.objects["Near"].location.z = 3.0
+
+    line = refused("render", make_blend(behind), "-o", tmp_path / "a.png", "--focus", "Near")
+    assert "Near" in line and "front" in line
+
+
+def test_focus_distance_zero_in_the_file(refused, make_blend, tmp_path):
+    def zero(_bpy, scene):
+        scene.camera.data.dof.focus_distance = 0.0
+
+    assert "focus distance" in refused("render", make_blend(zero), "-o", tmp_path / "a.png")
+
+
+def test_fstop_zero_in_the_file(refused, make_blend, tmp_path):
+    def zero(_bpy, scene):
+        scene.camera.data.dof.aperture_fstop = 0.0
+
+    assert "f-stop" in refused("render", make_blend(zero), "-o", tmp_path / "a.png")
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_coordinates_that_are_not_finite(refused, make_blend, tmp_path, value):
+    def spoil(_bpy, scene):
+        # Blender's own fields would clamp an infinite value.
+        mesh = scene.objects["Near"].data
+        places = np.empty((len(mesh.vertices), 3), np.float32)
+        mesh.attributes["position"].data.foreach_get("vector", places.ravel())
+        places[2, 0] = value
+        mesh.attributes["position"].data.foreach_set("vector", places.ravel())
+
+    line = refused("render", make_blend(spoil), "-o", tmp_path / "a.png")
+    assert "finite" in line
+
+
+def test_more_pixels_than_memory(refused, small_blend, tmp_path):
+    words = ("render", small_blend, "-o", tmp_path / "a.png", "--resolution", "65536x65536")
+    line = refused(*words)
+    assert "65536" in line and ("memory" in line or "pixels a side" in line)
+
+
+def test_unwritable_output(refused, small_blend, tmp_path):
+    assert "does not exist" in refused("render", small_blend, "-o", tmp_path / "no" / "a.png")
+    assert "cannot write" in refused("render", small_blend, "-o", "/proc/a.png")
+
+
+def test_unwritable_statistics(refused, small_blend, tmp_path):
+    words = ("render", small_blend, "-o", tmp_path / "a.png", "--stats", tmp_path / "no" / "s.json")
+    assert "does not exist" in refused(*words)
+
+
+def test_movie_output_of_the_scene(refused, make_blend):
+    def movie(_bpy, scene):
+        scene.render.image_settings.media_type = "VIDEO"
+
+    assert "movie" in refused("render", make_blend(movie))
+
+
+def test_view_layers_all_off(refused, make_blend, tmp_path):
+    def off(_bpy, scene):
+        scene.view_layers[0].use = False
+
+    assert "view layer" in refused("render", make_blend(off), "-o", tmp_path / "a.png")
+
+
+def test_refusal_with_json_is_one_object(aplanat, tmp_path):
+    done = aplanat("render", tmp_path / "none.blend", "--json")
+    assert done.code == 2
+    assert [set(error) for error in done.answer["errors"]] == [{"code", "message"}]
+    assert done.answer["warnings"] == []
+    done = aplanat("render", "--samples", "0", "--json")
+    assert done.code == 2 and done.answer["errors"][0]["code"] == "input"

@@ -1,0 +1,103 @@
+"""A file is there whole or not at all, whatever ends its writing."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from addon.cli import whole_file as module
+from addon.cli.whole_file import check_writable, whole_file
+from addon.errors import OutputError
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(params=["nameless", "named"])
+def kind(request, monkeypatch):
+    """Both ways of writing: with the system's nameless files, and without."""
+    if request.param == "named":
+        monkeypatch.setattr(module, "_open", module._NamedFile)
+    elif not hasattr(os, "O_TMPFILE"):
+        pytest.skip("this system has no nameless files")
+    return request.param
+
+
+def test_file_appears_with_its_content(kind, tmp_path):
+    path = tmp_path / "a.txt"
+    with whole_file(path) as place:
+        Path(place).write_text("all of it")
+        assert not path.exists()
+    assert path.read_text() == "all of it"
+    assert os.listdir(tmp_path) == ["a.txt"]
+
+
+def test_existing_file_is_replaced(kind, tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("old and longer")
+    with whole_file(path) as place:
+        Path(place).write_text("new")
+        assert path.read_text() == "old and longer"
+    assert path.read_text() == "new"
+    assert os.listdir(tmp_path) == ["a.txt"]
+
+
+def test_nothing_stays_after_an_exception(kind, tmp_path):
+    def write_half():
+        with whole_file(tmp_path / "a.txt") as place:
+            Path(place).write_text("half")
+            raise RuntimeError("in the middle")
+
+    with pytest.raises(RuntimeError):
+        write_half()
+    assert os.listdir(tmp_path) == []
+
+
+def test_check_leaves_nothing(kind, tmp_path):
+    check_writable(tmp_path / "a.exr")
+    assert os.listdir(tmp_path) == []
+
+
+def test_missing_folder_a_folder_and_a_file_as_folder_are_refused(tmp_path):
+    (tmp_path / "file").write_text("")
+    (tmp_path / "folder.exr").mkdir()
+    for path, told in (
+        (tmp_path / "nowhere" / "a.exr", "does not exist"),
+        (tmp_path / "folder.exr", "is a folder"),
+        (tmp_path / "file" / "a.exr", "does not exist"),
+        (Path("/proc/a.exr"), "cannot write"),
+    ):
+        with pytest.raises(OutputError, match=told):
+            check_writable(path)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("writer", ["_NamelessFile", "_NamedFile"])
+def test_killed_writer_leaves_nothing(writer, number, tmp_path):
+    if writer == "_NamedFile" and number == signal.SIGKILL:
+        pytest.skip("only nameless files survive what no program can answer")
+    code = f"""
+import sys, time
+sys.path.insert(0, {str(REPOSITORY)!r})
+from addon.cli import whole_file as module
+module._open = module.{writer}
+with module.removed_on_signals(), module.whole_file({str(tmp_path / "a.exr")!r}) as place:
+    with open(place, "wb") as file:
+        file.write(bytes(100000))
+        file.flush()
+        print("half", flush=True)
+        time.sleep(30)
+"""
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
+    with process.stdout:
+        assert process.stdout.readline() == b"half\n"
+        process.send_signal(number)
+        assert process.wait(10) == -number
+    for _ in range(50):
+        if os.listdir(tmp_path) == []:
+            break
+        time.sleep(0.02)
+    assert os.listdir(tmp_path) == []
