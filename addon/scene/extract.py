@@ -98,7 +98,7 @@ class SceneExtractor:
             camera=read_camera(depsgraph, scene.camera, film),
             content=self.extract_content(depsgraph, passes),
             film=film,
-            sampling=read_sampling(scene),
+            sampling=read_sampling(depsgraph.scene_eval),
             passes=passes,
             layer_name=view_layer.name,
             alpha_threshold=view_layer.pass_alpha_threshold,
@@ -161,7 +161,7 @@ class SceneExtractor:
                 keys={reading.snapshot.uid: key for key, reading in readings.items()},
             )
         notes = [note for reading in readings.values() for note in reading.notes]
-        world, world_notes = read_world(depsgraph.scene.world, materials.image_reader)
+        world, world_notes = read_world(_world_of(depsgraph), materials.image_reader)
         return SceneContent(
             meshes={reading.snapshot.uid: reading.snapshot for reading in readings.values()},
             images=materials.images,
@@ -254,3 +254,11 @@ def _slot_uids(slots, used, materials):
 def _is_camera(block):
     kind = type(block).__name__
     return kind == "Camera" or (kind == "Object" and block.type == "CAMERA")
+
+
+def _world_of(depsgraph):
+    """Return the evaluated world that a view layer shows, or None."""
+    view_layer = depsgraph.view_layer_eval
+    if not view_layer.use_sky:
+        return None
+    return view_layer.world_override or depsgraph.scene_eval.world

@@ -12,13 +12,13 @@ import numpy as np
 from ..errors import SnapshotError
 from .lights import read_light
 
-# Object types with a surface or substance of their own that the engine has no way to draw, and how
-# to tell an empty one.
+# Object types with a surface or substance of their own that the engine cannot draw: in words,
+# the view layer's switch for them, and how to tell an empty one.
 _UNDRAWN = {
-    "CURVES": ("hair curves", lambda data: len(data.curves)),
-    "POINTCLOUD": ("a point cloud", lambda data: len(data.points)),
-    "VOLUME": ("a volume", lambda data: True),
-    "GREASEPENCIL": ("grease pencil", lambda data: len(data.layers)),
+    "CURVES": ("hair curves", "use_strand", lambda data: len(data.curves)),
+    "POINTCLOUD": ("a point cloud", "use_solid", lambda data: len(data.points)),
+    "VOLUME": ("a volume", "use_volumes", lambda data: True),
+    "GREASEPENCIL": ("grease pencil", "use_grease_pencil", lambda data: len(data.layers)),
 }
 
 
@@ -218,16 +218,17 @@ class _Reader:
         if not visible or (indirect_only and not holdout) or not self._is_in_view(obj):
             return None, ()
         name = obj.name
-        notes = list(_hair_notes(obj)) if show_particles else []
+        switches = self._view_layer
+        notes = list(_hair_notes(obj)) if show_particles and switches.use_strand else []
         drawn = None
-        if show_self and obj.type == "MESH":
+        if show_self and obj.type == "MESH" and switches.use_solid:
             self._add_source(obj, parent, number)
             drawn = Look(number, self._slots(obj), holdout), name
             if obj.is_shadow_catcher:
                 notes.append("a shadow catcher is drawn as any other surface")
         elif show_self and obj.type in _UNDRAWN:
-            what, size = _UNDRAWN[obj.type]
-            if size(obj.data):
+            what, switch, size = _UNDRAWN[obj.type]
+            if getattr(switches, switch) and size(obj.data):
                 notes.append(f"{what} cannot be drawn; left out")
         return drawn, tuple((name, note) for note in notes)
 

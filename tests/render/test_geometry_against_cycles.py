@@ -3,6 +3,7 @@
 import json
 
 import numpy as np
+import OpenEXR
 import pytest
 
 from tests import scene_builders as scenes
@@ -212,6 +213,45 @@ def test_each_view_layer_has_its_own_collections_and_material(bpy, tmp_path):
         for layer in scene.view_layers:
             layer.use = layer.name == name
         compare(scene, tmp_path, 80, 60)
+
+
+@pytest.mark.parametrize("transparent", [False, True])
+@pytest.mark.parametrize("switch", ["none", "use_sky", "use_solid", "world_override"])
+def test_a_view_layer_without_surfaces_or_world_or_with_its_own(bpy, tmp_path, switch, transparent):
+    scene = bpy.context.scene
+    worlds = []
+    for color in ((0.1, 0.2, 0.7), (0.2, 0.6, 0.1)):
+        world = bpy.data.worlds.new("world")
+        world.node_tree.nodes["Background"].inputs["Color"].default_value = (*color, 1.0)
+        worlds.append(world)
+    scene.world = worlds[0]
+    scenes.add(bpy, "cube", scenes.cube(bpy, size=2), palette(bpy, 1)[0])
+    if switch != "none":
+        value = worlds[1] if switch == "world_override" else False
+        setattr(scene.view_layers[0], switch, value)
+    scene.render.film_transparent = transparent
+    ours = render_aplanat(scene, 4)
+    cycles = render_cycles(scene, 4)
+    assert np.abs(ours - cycles)[[2, 32], [2, 48]].max() < INSIDE
+
+
+def test_an_animated_world_has_the_value_of_the_frame_that_is_rendered(bpy, tmp_path):
+    scene = bpy.context.scene
+    scene.world = bpy.data.worlds.new("world")
+    strength = scene.world.node_tree.nodes["Background"].inputs["Strength"]
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (1, 1, 1, 1)
+    for frame in (1, 2):
+        strength.default_value = frame / 4
+        strength.keyframe_insert("default_value", frame=frame)
+    # As in a render of an animation, the scene itself stays at another frame.
+    scene.frame_set(1)
+    assert render_aplanat(scene, 1)[0, 0, 0] == pytest.approx(0.25, abs=1e-6)
+    scene.frame_start, scene.frame_end = 2, 2
+    scene.render.filepath = str(tmp_path / "frame_")
+    scene.render.use_file_extension = True
+    bpy.ops.render.render(animation=True)
+    with OpenEXR.File(str(tmp_path / "frame_0002.exr")) as file:
+        assert file.channels()["RGBA"].pixels[0, 0, 0] == pytest.approx(0.5, abs=1e-6)
 
 
 def test_colour_attributes_of_every_kind_have_cycles_values(bpy, tmp_path):
