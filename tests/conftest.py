@@ -7,6 +7,14 @@ import pytest
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 
+def pytest_addoption(parser):
+    parser.addoption(
+        "--full",
+        action="store_true",
+        help="compare the shared scenes with their references at full sample counts (half an hour)",
+    )
+
+
 @pytest.fixture(scope="session")
 def shared():
     """The folder of scenes and references beside the checkout."""
