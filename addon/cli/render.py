@@ -6,6 +6,7 @@ scene as it renders (subdivision for rendering, objects hidden in renders, simpl
 
 import re
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 import bpy
@@ -118,6 +119,10 @@ def _check_outputs(arguments):
     frame = arguments.frames[0] if arguments.frames else arguments.frame or 0
     for path in arguments.output:
         check_writable(frame_path(path, frame))
+        if path.suffix.lower() == ".exr" and find_spec("OpenEXR") is None:
+            raise InputError(
+                f"-o {path}: the OpenEXR package is missing; install Aplanat from its extension zip"
+            )
     if arguments.stats:
         check_writable(arguments.stats)
 
