@@ -74,9 +74,17 @@ class Targets:
         import gpu
 
         size = census.texture_bytes(self.width, self.height, spec.texel_format, spec.layers)
-        texture = gpu.types.GPUTexture(
-            (self.width, self.height), layers=spec.layers, format=spec.texel_format
-        )
+        try:
+            texture = gpu.types.GPUTexture(
+                (self.width, self.height), layers=spec.layers, format=spec.texel_format
+            )
+        except RuntimeError as error:
+            raise DeviceLimitError(
+                "less than that",
+                f"a picture of {self.width} x {self.height} pixels needs {size / 2**30:.1f} GiB for"
+                f" '{spec.name}' beside {self.bytes / 2**30:.1f} GiB for what it has already"
+                " (render it in parts with a render border)",
+            ) from error
         self.textures[spec.name] = census.record("texture", texture, size)
         self.bytes += size
 

@@ -18,6 +18,19 @@ def test_a_picture_larger_than_the_device_allows_is_refused_with_advice():
         Targets(limit + 1, 4, [TargetSpec("image", "RGBA32F")])
 
 
+def test_a_picture_that_does_not_fit_into_memory_is_refused_with_advice(monkeypatch):
+    import gpu
+
+    def refuse(*_, **__):
+        raise RuntimeError("gpu.texture.new(...) failed")
+
+    targets = Targets(4096, 4096, [])
+    # Whether a device refuses by itself depends on the machine's memory.
+    monkeypatch.setattr(gpu.types, "GPUTexture", refuse)
+    with pytest.raises(DeviceLimitError, match=r"4096 x 4096 pixels needs 0.2 GiB .*border"):
+        targets.add(TargetSpec("image", "RGBA32F"))
+
+
 def test_released_targets_are_gone():
     with census.taken() as count:
         with Targets(8, 4, [TargetSpec("a", "RGBA32F"), TargetSpec("b", "R32F", 3)]) as targets:
