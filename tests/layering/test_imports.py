@@ -48,6 +48,9 @@ BLENDER_FACING = {
 BLENDER_FREE = {
     "scene.snapshot",
     "scene.surface_graph",
+    "scene.changes",
+    "scene.cryptomatte",
+    "scene.vertex_split",
     "cli.arguments",
     "cli.console",
     "cli.json_file",
