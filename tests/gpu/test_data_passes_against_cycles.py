@@ -1,8 +1,8 @@
 """Depth, Normal, Position and Vector mean in Aplanat what they mean in Cycles.
 
-Cycles takes its one sample of the pixel near the middle, and a rasteriser moves vertices to a grid of
-1/256 pixel: beside an edge the two may see different things. Pixels whose neighbourhood shows two
-objects are left out; inside, the tolerances are that grid's.
+Cycles takes its one sample of the pixel near the middle, and a rasteriser moves vertices to a grid
+of 1/256 pixel: beside an edge the two may see different things. Pixels whose neighbourhood shows
+two objects are left out; inside, the tolerances are that grid's.
 """
 
 import numpy as np

@@ -5,12 +5,14 @@ import json
 import numpy as np
 import pytest
 
+from addon.scene.cryptomatte import cryptomatte_id
 from tests.pass_pictures import (
     build_scene,
     render_passes_aplanat,
     render_passes_cycles,
     use_passes,
 )
+from tests.pictures import render_aplanat
 
 
 def coverage(passes, kind, identifier):
@@ -95,3 +97,29 @@ def _entry(header, layer, what):
         if key.startswith("cryptomatte/") and key.endswith("/name") and value == layer:
             return header[key.removesuffix("name") + what]
     raise AssertionError(f"no Cryptomatte metadata of {layer}")
+
+
+def test_the_cryptomatte_node_picks_an_object_by_name(aplanat_bpy):
+    bpy = aplanat_bpy
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = 72, 48
+    build_scene(scene)
+    use_passes(scene.view_layers[0], "cryptomatte_object")
+    tree = bpy.data.node_groups.new("pick", "CompositorNodeTree")
+    tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+    node = tree.nodes.new("CompositorNodeCryptomatteV2")
+    node.source = "RENDER"
+    node.scene = scene
+    node.layer_name = "ViewLayer.CryptoObject"
+    node.matte_id = "Cube"
+    output = tree.nodes.new("NodeGroupOutput")
+    tree.links.new(node.outputs["Matte"], output.inputs[0])
+    scene.compositing_node_group = tree
+    picked = render_aplanat(scene, 32)[..., 0]
+    scene.compositing_node_group = None
+    passes, _ = render_passes_aplanat(scene, 32)
+    identifier = np.float32(cryptomatte_id("Cube"))
+    # The compositor may work in half precision.
+    assert np.abs(picked - coverage(passes, "CryptoObject", identifier)).max() < 1e-3
+    assert picked.max() == pytest.approx(1.0, abs=1e-3)
