@@ -167,7 +167,7 @@ def ggx_table(size=32, samples=512):
     lift = 0.5 * (1.0 + stretched[..., 2])
     t2 = (1 - lift) * np.sqrt(1 - t1**2) + lift * (radius * np.sin(angle))
     t3 = np.sqrt(np.maximum(1 - t1**2 - t2**2, 0.0))
-    half = t1[..., None] * across - t2[..., None] * other + t3[..., None] * stretched
+    half = t1[..., None] * across + t2[..., None] * other + t3[..., None] * stretched
     half = half * np.stack(np.broadcast_arrays(alpha, alpha, 1.0 + 0 * alpha), axis=-1)
     half /= np.linalg.norm(half, axis=-1, keepdims=True)
     dot = (view * half).sum(axis=-1)

@@ -153,7 +153,12 @@ class ImageReader:
         working = color_spaces.working_space()
         is_byte = pixels.dtype == np.uint8
         data = space in color_spaces.DATA_SPACES
-        straight = is_byte
+        # Cycles reads files itself; what is packed, painted or generated it takes from Blender,
+        # which keeps 8-bit pixels straight and float pixels multiplied, and trusts the mode.
+        from_file = image.source != "GENERATED" and not image.packed_file and not image.is_dirty
+        straight = image.alpha_mode == "STRAIGHT"
+        if from_file:
+            straight = is_byte
         if image.alpha_mode == "NONE":
             pixels = pixels.copy()
             pixels[..., 3] = 255 if is_byte else 1.0

@@ -292,7 +292,8 @@ def _stated(reader, node, groups):
 @reads("TEX_IMAGE")
 def _image_texture(reader, node, groups):
     if node.image is None:
-        return {"Color": Constant((0.0,) * 3), "Alpha": Constant((0.0,))}
+        # As Cycles draws a node without image; EEVEE draws it in black.
+        return {"Color": Constant(MISSING_IMAGE_COLOR), "Alpha": Constant((1.0,))}
     use = reader.use_image(node)
     if use is None:
         return {"Color": Constant(MISSING_IMAGE_COLOR), "Alpha": Constant((1.0,))}

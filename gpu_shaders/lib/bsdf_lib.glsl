@@ -13,6 +13,19 @@ float ggx_distribution(float cos_h, float alpha)
   return a2 / (PI * t * t);
 }
 
+// Mean of the distribution over a disk of half vectors of radius `reach` around one whose cosine to
+// the normal is `cos_h`; sizes are tangents. **Ours**, exact in the plane of slopes: there GGX is
+// the stereographic image of a uniform sphere, on which a disk is a cap.
+float ggx_distribution_over_disk(float cos_h, float reach, float alpha)
+{
+  float cos2 = max(cos_h * cos_h, 1e-6);
+  float slope2 = max(1.0 / cos2 - 1.0, 0.0);
+  float t = max(reach, 1e-3 * alpha);
+  float cap = 0.5 * atan(2.0 * t * alpha, alpha * alpha + slope2 - t * t);
+  float mass = sin(cap);
+  return mass * mass / (PI * t * t * cos2 * cos2);
+}
+
 // Masking and shadowing over 4 cos_view cos_light.
 float ggx_visibility(float cos_view, float cos_light, float alpha)
 {

@@ -8,16 +8,20 @@
 #define EXTENSION_CLIP 2
 #define EXTENSION_MIRROR 3
 
+// i modulo size, not negative; GLSL leaves % of negative numbers open.
+int wrap_index(int i, int size)
+{
+  return i - size * int(floor(float(i) / float(size)));
+}
+
 // Texel index on an endless line of copies to an index in [0, size).
 int extend_texel(int i, int size, int extension)
 {
   if (extension == EXTENSION_REPEAT) {
-    int r = i % size;
-    return (r < 0) ? r + size : r;
+    return wrap_index(i, size);
   }
   if (extension == EXTENSION_MIRROR) {
-    int r = i % (2 * size);
-    r = (r < 0) ? r + 2 * size : r;
+    int r = wrap_index(i, 2 * size);
     return (r < size) ? r : 2 * size - 1 - r;
   }
   return clamp(i, 0, size - 1);
@@ -25,11 +29,13 @@ int extend_texel(int i, int size, int extension)
 
 vec4 image_texel(sampler2D tx, ivec2 texel, ivec2 size, int extension)
 {
-  if (extension == EXTENSION_CLIP && (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size)))) {
+  bool outside = any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size));
+  if (extension == EXTENSION_CLIP && outside) {
     return vec4(0.0);
   }
-  return texelFetch(
-      tx, ivec2(extend_texel(texel.x, size.x, extension), extend_texel(texel.y, size.y, extension)), 0);
+  ivec2 place = ivec2(extend_texel(texel.x, size.x, extension),
+                      extend_texel(texel.y, size.y, extension));
+  return texelFetch(tx, place, 0);
 }
 
 vec4 image_closest(sampler2D tx, vec2 uv, int extension)

@@ -140,19 +140,23 @@ vec3 glossy_light(Shading s, float roughness, Lobe a, Lobe b)
       continue;
     }
     Illumination incoming = light_illuminate(light, s.position);
-    vec3 towards = light_representative(light, incoming, s.position, mirrored);
-    float cos_light = dot(s.normal, towards);
+    // Half vectors of the light's disk fill half its angle, more across the plane of incidence.
+    float cos_d = dot(s.view, normalize(incoming.towards + s.view));
+    float reach = sqrt(incoming.sin2) / (1.0 + sqrt(1.0 - incoming.sin2)) *
+                  inversesqrt(max(cos_d, 0.05));
+    // A lobe narrower than the light sees the part of it that a mirror would show, a wide one all.
+    float narrow = reach * reach / (reach * reach + alpha * alpha);
+    vec3 shown = light_representative(light, incoming, s.position, mirrored);
+    float cos_light = mix(horizon_cosine(dot(s.normal, incoming.towards), incoming.sin2),
+                          max(dot(s.normal, shown), 0.0),
+                          narrow);
     if (cos_light <= 0.0) {
       continue;
     }
-    vec3 h = normalize(towards + s.view);
-    float cos_h = clamp(dot(s.normal, h), 0.0, 1.0);
-    float cos_d = clamp(dot(s.view, h), 0.0, 1.0);
-    // The light's size widens the lobe; its energy stays.
-    float tangent = sqrt(incoming.sin2 / max(1.0 - incoming.sin2, 1e-4));
-    float wide = clamp(alpha + 0.5 * tangent, 0.0, 1.0);
-    float narrow = alpha / wide;
-    float lobe = ggx_distribution(cos_h, alpha) * narrow * narrow *
+    cos_d = dot(s.view, normalize(mix(incoming.towards, shown, narrow) + s.view));
+    cos_d = clamp(cos_d, 0.0, 1.0);
+    float cos_h = clamp(dot(s.normal, normalize(incoming.towards + s.view)), 0.0, 1.0);
+    float lobe = ggx_distribution_over_disk(cos_h, reach, alpha) *
                  ggx_visibility(s.cos_view, cos_light, alpha) * cos_light;
     float rise_a = (a.eta > 0.0) ? fresnel_dielectric_rise(cos_d, a.eta) : fresnel_schlick(cos_d);
     float rise_b = (b.eta > 0.0) ? fresnel_dielectric_rise(cos_d, b.eta) : fresnel_schlick(cos_d);
