@@ -138,10 +138,15 @@ def _show_progress(engine, heard, renderer, seconds):
 
 
 def _finish(gpu, renderer, result, heard):
+    pictures = {}
     with heard.statistics.timed("read_back"):
-        pictures = gpu.call(renderer.read_passes)
-    fill_layer(result.layers[0], pictures)
-    return pictures
+        # Group by group: all passes of a large picture at once would need their memory twice.
+        for names in renderer.pass_groups():
+            found = gpu.call(partial(renderer.read_passes, names))
+            fill_layer(result.layers[0], found)
+            if heard.keeps_pictures:
+                pictures.update(found)
+    return {name: pictures[name] for name in renderer.plan.passes if name in pictures}
 
 
 def _layer_picture(scene, snapshot, pictures, metadata):

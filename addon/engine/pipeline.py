@@ -124,7 +124,7 @@ class FrameRenderer:
         if self._mattes:
             specs.append(TargetSpec("mattes", "RGBA32F"))
         if "Focus Matte" in self.plan.passes:
-            specs += [TargetSpec("focus_sum", "R32F"), TargetSpec("focus", "RGBA32F")]
+            specs.append(TargetSpec("focus_sum", "R32F"))
         if self._cryptomattes:
             layers = len(self._cryptomattes) * cryptomatte.slot_pairs(self._cryptomattes)
             specs.append(TargetSpec("tables", "RGBA32F", layers))
@@ -212,23 +212,42 @@ class FrameRenderer:
         self._targets.forget_framebuffers()
         return self._read_sum("sum", "image")
 
-    def read_passes(self):
-        """Return every pass of the plan, from the samples so far.
+    def pass_groups(self):
+        """Return the plan's passes in groups that are best read together.
+
+        Returns
+        -------
+        list of tuple of str
+        """
+        together = render_passes.made_by(self.plan.passes, "DATA")
+        groups = [(name,) for name in self.plan.passes if name not in together]
+        return [*groups, together] if together else groups
+
+    def read_passes(self, names=None):
+        """Return passes of the plan, from the samples so far.
+
+        Parameters
+        ----------
+        names : sequence of str, optional
+            Default: all.
 
         Returns
         -------
         dict of str to ndarray of shape (height, width, channels)
-            float32, bottom row first, by name, in the plan's order.
+            float32, bottom row first, by name, in the order of `names`.
         """
+        names = self.plan.passes if names is None else names
         self._targets.forget_framebuffers()
-        pictures = {"Combined": self._read_sum("sum", "image")}
-        if "Focus Matte" in self.plan.passes:
-            focus = self._read_sum("focus_sum", "focus")
-            pictures["Focus Matte"] = np.ascontiguousarray(focus[..., :1])
-        for name in render_passes.made_by(self.plan.passes, "CRYPTOMATTE"):
-            pictures[name] = self._read_cryptomatte(name[:-2], int(name[-2:]))
-        pictures.update(self._read_data(render_passes.made_by(self.plan.passes, "DATA")))
-        return {name: pictures[name] for name in self.plan.passes}
+        pictures = self._read_data(render_passes.made_by(names, "DATA"))
+        for name in names:
+            if name == "Combined":
+                pictures[name] = self._read_sum("sum", "image")
+            elif name == "Focus Matte":
+                focus = self._read_sum("focus_sum", "image")
+                pictures[name] = np.ascontiguousarray(focus[..., :1])
+            elif name not in pictures:
+                pictures[name] = self._read_cryptomatte(name[:-2], int(name[-2:]))
+        return {name: pictures[name] for name in names}
 
     def _read_sum(self, total, image):
         framebuffer = self._targets.framebuffer(image)
