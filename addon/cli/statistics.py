@@ -4,6 +4,7 @@ import sys
 
 import bpy
 
+from ..scene.camera import focus_distance
 from .version import version
 
 
@@ -22,7 +23,8 @@ def settings_in_force(scene, arguments=None):
     dict
     """
     render, own = scene.render, scene.aplanat
-    camera = scene.camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    camera = scene.camera.evaluated_get(depsgraph)
     data = camera.data
     dof = data.dof
     focus = dof.focus_object
@@ -57,7 +59,7 @@ def settings_in_force(scene, arguments=None):
         "depth_of_field": dof.use_dof,
         "fstop": dof.aperture_fstop,
         "focus_object": focus.name if focus else None,
-        "focus_distance_m": None if focus else dof.focus_distance,
+        "focus_distance_m": focus_distance(depsgraph, camera) if dof.use_dof else None,
         "aperture_blades": dof.aperture_blades,
         "aperture_rotation": dof.aperture_rotation,
         "aperture_ratio": dof.aperture_ratio,

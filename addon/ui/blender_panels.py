@@ -23,7 +23,7 @@ _ADDED = frozenset(
         "VIEWLAYER_PT_layer_passes",
     }
 )
-# Generic panels over properties that it does not read.
+# Generic panels over properties that it does not read, or for which it has its own.
 _LEFT_OUT = frozenset(
     {
         # The light panels of EEVEE, in its place, know temperature and exposure.
@@ -37,7 +37,8 @@ _LEFT_OUT = frozenset(
         "RENDER_PT_output_views",
     }
 )
-_LEFT_OUT_WORDS = ("freestyle", "lightprobe")
+# Freestyle, light probes; of Simplify there is one in its place.
+_LEFT_OUT_WORDS = ("freestyle", "lightprobe", "RENDER_PT_simplify")
 
 
 def fitting_panels():

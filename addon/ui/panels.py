@@ -29,7 +29,6 @@ class APLANAT_RENDER_PT_sampling(_EnginePanel, bpy.types.Panel):
 
     bl_label = "Sampling"
     bl_context = "render"
-    bl_order = -20
 
     def draw_header_preset(self, _context):
         """Draw the button of the presets."""
@@ -41,7 +40,7 @@ class APLANAT_RENDER_PT_sampling(_EnginePanel, bpy.types.Panel):
         column = self._column()
         column.prop(settings, "method")
         samples = column.column(align=True)
-        samples.prop(settings, "preview_samples", text="Lens Samples Viewport")
+        samples.prop(settings, "preview_samples", text="Viewport")
         samples.prop(settings, "render_samples", text="Render")
         column.prop(settings, "seed")
         pixel = column.column()
@@ -54,7 +53,6 @@ class APLANAT_RENDER_PT_film(_EnginePanel, bpy.types.Panel):
 
     bl_label = "Film"
     bl_context = "render"
-    bl_order = -19
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
@@ -67,7 +65,6 @@ class APLANAT_RENDER_PT_performance(_EnginePanel, bpy.types.Panel):
 
     bl_label = "Performance"
     bl_context = "render"
-    bl_order = -18
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
@@ -78,6 +75,31 @@ class APLANAT_RENDER_PT_performance(_EnginePanel, bpy.types.Panel):
         compositor = column.column()
         compositor.prop(render, "compositor_device", text="Compositor")
         compositor.prop(render, "compositor_precision", text="Precision")
+
+
+class APLANAT_RENDER_PT_simplify(_EnginePanel, bpy.types.Panel):
+    """Blender's simplification; Blender's own panel would stand above all others."""
+
+    bl_label = "Simplify"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        """Draw the switch."""
+        self.layout.prop(context.scene.render, "use_simplify", text="")
+
+    def draw(self, context):
+        """Draw Blender's settings."""
+        render = context.scene.render
+        column = self._column()
+        column.active = render.use_simplify
+        subdivision = column.column(align=True)
+        subdivision.prop(render, "simplify_subdivision", text="Max Subdivision Viewport")
+        subdivision.prop(render, "simplify_subdivision_render", text="Render")
+        particles = column.column(align=True)
+        particles.prop(render, "simplify_child_particles", text="Max Child Particles Viewport")
+        particles.prop(render, "simplify_child_particles_render", text="Render")
+        column.prop(render, "use_simplify_normals", text="Viewport Normals")
 
 
 class APLANAT_VIEWLAYER_PT_data(_EnginePanel, bpy.types.Panel):
@@ -160,6 +182,7 @@ CLASSES = (
     APLANAT_RENDER_PT_sampling,
     APLANAT_RENDER_PT_film,
     APLANAT_RENDER_PT_performance,
+    APLANAT_RENDER_PT_simplify,
     APLANAT_VIEWLAYER_PT_data,
     APLANAT_VIEWLAYER_PT_cryptomatte,
     APLANAT_OBJECT_PT_ray_visibility,

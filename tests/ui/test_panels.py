@@ -21,7 +21,7 @@ def engines(bpy, name):
         *("EEVEE_MATERIAL_PT_context_material", "EEVEE_WORLD_PT_surface"),
         *("WORLD_PT_context_world", "VIEWLAYER_PT_layer", "VIEWLAYER_PT_layer_passes"),
         *("RENDER_PT_format", "RENDER_PT_output", "RENDER_PT_color_management"),
-        *("RENDER_PT_simplify", "RENDER_PT_post_processing", "OBJECT_PT_visibility"),
+        *("APLANAT_RENDER_PT_simplify", "RENDER_PT_post_processing", "OBJECT_PT_visibility"),
         *("DATA_PT_context_mesh", "DATA_PT_uv_texture", "PARTICLE_PT_render"),
     ],
 )
