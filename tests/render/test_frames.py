@@ -205,23 +205,22 @@ def test_the_passes_reach_the_compositor_and_the_result(scene):
 def test_a_hundred_renders_leave_nothing_behind(scene):
     from addon.device import census
 
-    scene.render.resolution_x, scene.render.resolution_y = 24, 16
+    scene.render.resolution_x, scene.render.resolution_y = 48, 32
     use_passes(scene.view_layers[0], "z", "vector", "cryptomatte_object")
     scene.view_layers[0].aplanat.use_pass_focus_matte = True
+    growth = []
     with census.taken() as count:
-        for _ in range(100):
-            render(scene, 2)
-        gc.collect()
-        assert count.alive() == {}
-        # Blender itself and the driver grow by several MiB at first, with an engine that does
-        # nothing, too; after that by some 40 KiB in 100 renders.
-        before = _resident_kib()
-        for _ in range(100):
-            render(scene, 2)
-        gc.collect()
-        assert count.alive() == {}
-    # One leaked target of this size would be 600 KiB in 100 renders.
-    assert _resident_kib() - before < 400
+        for _ in range(4):
+            before = _resident_kib()
+            for _ in range(25):
+                render(scene, 2)
+            gc.collect()
+            assert count.alive() == {}
+            growth.append(_resident_kib() - before)
+    # A leaked target of this size would be 600 KiB in every 25 renders. Blender and the driver grow
+    # by several MiB at first, with an engine that does nothing, too, and the heap by fits and
+    # starts; but not every time.
+    assert min(growth) < 300, growth
 
 
 def _resident_kib():
