@@ -130,7 +130,8 @@ def _draw(engine, gpu, renderer, result, heard):
 
 def _show_progress(engine, heard, renderer, seconds):
     done, total = renderer.samples_done, renderer.plan.samples
-    text = f"Sample {done}/{total} | {seconds:.1f} s"
+    megabytes = (renderer.texture_bytes() + renderer.geometry_bytes()) / 2**20
+    text = f"Sample {done}/{total} | {seconds:.1f} s | GPU {megabytes:.0f} MB"
     engine.update_progress(done / total)
     engine.update_stats("", text)
     if heard.progress is not None:

@@ -111,7 +111,7 @@ class FrameRenderer:
             or (self._targets.width, self._targets.height) != size
             or self._specs != specs
         ):
-            self.release()
+            self._release_targets()
             self._targets = Targets(*size, specs)
             self._specs = specs
         self._targets.forget_framebuffers()
@@ -309,7 +309,12 @@ class FrameRenderer:
         return self._buffers.geometry_bytes()
 
     def release(self):
-        """Give the targets back to the device."""
+        """Give back to the device what nobody else holds; the renderer is of no use after it."""
+        self._release_targets()
+        self._buffers = None
+        self._all_draws = self._draws = self._all_glows = self._glows = ()
+
+    def _release_targets(self):
         if self._targets is not None:
             self._targets.release()
             self._targets = None
