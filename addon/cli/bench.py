@@ -14,7 +14,7 @@ from . import statistics
 from .json_file import write_json
 from .picture_metrics import compare, read_picture
 from .render import heard_render
-from .scene_setup import load_scene, use_engine
+from .scene_setup import check_camera, load_scene, use_engine
 from .shared_scenes import is_shared_name, shared_references, shared_scene
 from .whole_file import check_writable, removed_on_signals
 
@@ -62,9 +62,8 @@ def bench(arguments, console):
             raise InputError(f"--pictures: folder '{arguments.pictures}' does not exist")
         cases = [_case(word, arguments, console) for word in arguments.scene or ["toys"]]
         runs = [_run(case, arguments, console) for case in cases]
-        answer = {"command": "bench", **runs[-1].pop("machine"), "runs": runs}
+        answer = {"command": "bench", **statistics.machine(), "runs": runs}
         for run in runs:
-            run.pop("machine", None)
             console.say(_line(run))
         if arguments.output:
             write_json(arguments.output, answer)
@@ -90,6 +89,7 @@ def _case(word, arguments, console):
 def _run(case, arguments, console):
     scene = load_scene(case.file)
     use_engine(scene)
+    check_camera(scene)
     scene.render.resolution_x, scene.render.resolution_y = arguments.resolution
     scene.render.resolution_percentage = 100
     # What the references were rendered with.
@@ -109,7 +109,6 @@ def _run(case, arguments, console):
         "settings": settings,
         "cost_of_sample_in_pinhole_passes": _cost_of_sample(scene, uses_lens, case, console),
         **measured,
-        "machine": statistics.machine(heard.statistics),
     }
 
 

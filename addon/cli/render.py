@@ -16,7 +16,7 @@ from ..engine import outcome
 from ..errors import AplanatError, DeviceLimitError, InputError, RenderCancelledError
 from . import pictures, statistics
 from .json_file import write_json
-from .scene_setup import apply_options, check_lens, load_scene
+from .scene_setup import apply_frame, apply_options, load_scene
 from .whole_file import check_writable, removed_on_signals
 
 
@@ -48,11 +48,14 @@ def render(arguments, console):
         apply_options(scene, arguments)
         ensure_context()
         _check_device(scene)
-        warnings = _leave_out_sequencer(scene)
+        warnings = _leave_out(scene, console)
         if not arguments.output:
             _check_scene_output(scene)
         frames = []
         for frame in _frame_numbers(scene, arguments):
+            if not arguments.output and _is_kept(scene, frame):
+                console.say(f"frame {frame}: left as it is; the scene's Overwrite is off")
+                continue
             frames.append(_render_frame(scene, frame, arguments, console, warnings))
         summary = _summary(arguments, frames, warnings)
         if arguments.stats:
@@ -145,7 +148,7 @@ def _check_scene_output(scene):
             f"scene '{scene.name}' is set to write a movie; name picture files with -o, such as"
             " -o frame_####.png"
         )
-    folder = Path(scene.render.frame_path(frame=scene.frame_current)).parent
+    folder = _scene_path(scene, scene.frame_current).parent
     try:
         # As Blender does for the scene's own output path.
         folder.mkdir(parents=True, exist_ok=True)
@@ -157,12 +160,19 @@ def _check_scene_output(scene):
     check_writable(folder / "frame")
 
 
-def _leave_out_sequencer(scene):
-    editor = scene.sequence_editor
-    if not (scene.render.use_sequencer and editor and editor.strips):
-        return []
-    scene.render.use_sequencer = False
-    return [f"scene '{scene.name}': the video sequencer is left out; the 3D scene is rendered"]
+def _leave_out(scene, console):
+    left_out = []
+    editor, render = scene.sequence_editor, scene.render
+    if render.use_sequencer and editor and editor.strips:
+        render.use_sequencer = False
+        left_out.append("the video sequencer is left out; the 3D scene is rendered")
+    if render.use_multiview:
+        render.use_multiview = False
+        left_out.append("stereoscopy is left out; one picture is rendered")
+    lines = [f"scene '{scene.name}': {line}" for line in left_out]
+    for line in lines:
+        console.say(f"warning: {line}")
+    return lines
 
 
 def _frame_numbers(scene, arguments):
@@ -175,8 +185,7 @@ def _frame_numbers(scene, arguments):
 
 def _render_frame(scene, frame, arguments, console, warnings):
     start = time.perf_counter()
-    scene.frame_set(frame)
-    check_lens(scene, arguments)
+    apply_frame(scene, frame, arguments)
     settings = statistics.settings_in_force(scene, arguments)
     needs_layers = any(path.suffix.lower() == ".exr" for path in arguments.output)
     heard = heard_render(
@@ -196,14 +205,21 @@ def _render_frame(scene, frame, arguments, console, warnings):
         "frame": frame,
         "files": [str(path) for path in files],
         **work,
-        **statistics.machine(heard.statistics),
         "settings": settings,
     }
 
 
+def _scene_path(scene, frame):
+    return Path(bpy.path.abspath(scene.render.frame_path(frame=frame)))
+
+
+def _is_kept(scene, frame):
+    return not scene.render.use_overwrite and _scene_path(scene, frame).exists()
+
+
 def _write(scene, frame, arguments, heard):
     if not arguments.output:
-        path = Path(bpy.path.abspath(scene.render.frame_path(frame=frame)))
+        path = _scene_path(scene, frame)
         path.parent.mkdir(parents=True, exist_ok=True)
         pictures.save_as_set(path, scene)
         return [path]
@@ -220,20 +236,15 @@ def _write(scene, frame, arguments, heard):
 
 
 def _summary(arguments, frames, warnings):
-    machine_keys = ("aplanat", "blender", "gpu", "peak_memory_bytes")
-    machine = {key: frames[-1][key] for key in machine_keys}
-    per_frame = []
-    for frame in frames:
-        per_frame.append({key: value for key, value in frame.items() if key not in machine_keys})
     other = {"frame", "files", "settings"}
-    work = [{k: v for k, v in frame.items() if k not in other} for frame in per_frame]
+    work = [{key: value for key, value in frame.items() if key not in other} for frame in frames]
     return {
         "command": "render",
         "scene": str(arguments.scene),
         "files": [path for frame in frames for path in frame["files"]],
         "warnings": warnings,
-        **machine,
+        **statistics.machine(),
         **statistics.total_work(work),
-        "settings": frames[0]["settings"],
-        "frames": per_frame,
+        "settings": frames[0]["settings"] if frames else None,
+        "frames": frames,
     }

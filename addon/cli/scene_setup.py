@@ -76,9 +76,40 @@ def apply_options(scene, arguments):
     if arguments.camera:
         _use_camera(scene, arguments.camera)
     use_engine(scene)
+    check_size(scene)
+
+
+def apply_frame(scene, frame, arguments):
+    """Go to a frame and put the options of its camera's lens in force.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+    frame : int
+    arguments : argparse.Namespace
+
+    Raises
+    ------
+    InputError
+        If there is no camera, an option does not fit the scene, or its animation overrules it.
+    """
+    # Markers of the timeline may switch to another camera.
+    scene.frame_set(frame)
+    check_camera(scene)
     if arguments.fstop or arguments.focus is not None:
         _use_lens_options(scene, arguments)
-    check_size(scene)
+        _check_lens_options(scene, arguments)
+
+
+def check_camera(scene):
+    """Refuse a scene without a camera.
+
+    Raises
+    ------
+    CameraError
+    """
+    if scene.camera is None:
+        raise CameraError(f"scene '{scene.name}' has no camera; add one, or name one with --camera")
 
 
 def use_engine(scene):
@@ -87,11 +118,9 @@ def use_engine(scene):
     Raises
     ------
     InputError
-        If there is no camera to render from or no view layer to render.
+        If there is no view layer to render.
     """
     scene.render.engine = ENGINE_ID
-    if scene.camera is None:
-        raise CameraError(f"scene '{scene.name}' has no camera; add one, or name one with --camera")
     if not (scene.render.use_single_layer or any(layer.use for layer in scene.view_layers)):
         raise InputError(
             f"scene '{scene.name}': every view layer is switched off; switch one on (View Layer >"
@@ -116,27 +145,6 @@ def check_size(scene):
             f"a picture of {width} x {height} pixels needs about {math.ceil(needed / 2**30)} GB of"
             f" memory and this machine has {memory // 2**30}; choose a smaller resolution"
         )
-
-
-def check_lens(scene, arguments):
-    """Make sure that the options of the lens are in force in the evaluated scene.
-
-    Raises
-    ------
-    InputError
-        If the scene's animation overrules them.
-    """
-    camera = scene.camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    dof = camera.data.dof
-    values = [(arguments.fstop, dof.aperture_fstop, "--fstop")]
-    if isinstance(arguments.focus, float):
-        values.append((arguments.focus, dof.focus_distance, "--focus"))
-    for wanted, found, option in values:
-        if wanted and not math.isclose(wanted, found, rel_tol=1e-5):
-            raise InputError(
-                f"{option} {wanted:g}: camera '{camera.name}' keeps {found:g}, which its animation"
-                " or a driver sets; remove that from the file"
-            )
 
 
 def _use_camera(scene, name):
@@ -172,6 +180,20 @@ def _use_lens_options(scene, arguments):
             )
         dof.focus_object = target
         dof.focus_subtarget = ""
+
+
+def _check_lens_options(scene, arguments):
+    camera = scene.camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    dof = camera.data.dof
+    values = [(arguments.fstop, dof.aperture_fstop, "--fstop")]
+    if isinstance(arguments.focus, float):
+        values.append((arguments.focus, dof.focus_distance, "--focus"))
+    for wanted, found, option in values:
+        if wanted and not math.isclose(wanted, found, rel_tol=1e-5):
+            raise InputError(
+                f"{option} {wanted:g}: camera '{camera.name}' keeps {found:g}, which its animation"
+                " or a driver sets; remove that from the file"
+            )
 
 
 def _stop_animation(data, path):

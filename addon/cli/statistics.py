@@ -4,6 +4,7 @@ import sys
 
 import bpy
 
+from ..device.context import device_name
 from ..scene.camera import focus_distance
 from .version import version
 
@@ -110,12 +111,12 @@ def total_work(parts):
     return total
 
 
-def machine(statistics):
+def machine():
     """Return what rendered: versions, device and the process' peak memory."""
     return {
         "aplanat": version(),
         "blender": bpy.app.version_string,
-        "gpu": statistics.device,
+        "gpu": device_name(),
         "peak_memory_bytes": peak_memory(),
     }
 

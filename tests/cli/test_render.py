@@ -170,6 +170,59 @@ def test_without_output_the_scene_decides(aplanat, make_blend, tmp_path):
     assert sorted(os.listdir(tmp_path / "new")) == ["shot_0003.tif", "shot_0004.tif"]
 
 
+def test_existing_frames_stay_where_the_scene_says_so(aplanat, make_blend, tmp_path):
+    def set_output(_bpy, scene):
+        scene.render.filepath = str(tmp_path / "shot_")
+        scene.render.use_overwrite = False
+
+    (tmp_path / "shot_0003.png").write_text("mine")
+    done = aplanat("render", make_blend(set_output), "--frames", "3..4", "--json")
+    assert done.code == 0, done
+    assert (tmp_path / "shot_0003.png").read_text() == "mine"
+    assert [frame["frame"] for frame in done.answer["frames"]] == [4]
+    done = aplanat("render", make_blend(set_output), "--frames", "3..4", "--json")
+    assert (done.code, done.answer["frames"], done.answer["files"]) == (0, [], [])
+
+
+def test_sequencer_is_left_out_and_told(aplanat, make_blend, tmp_path):
+    def add_strip(_bpy, scene):
+        editor = scene.sequence_editor_create()
+        editor.strips.new_effect("Color", "COLOR", channel=1, frame_start=1, length=10)
+        scene.render.use_sequencer = True
+
+    path = tmp_path / "a.exr"
+    done = aplanat("render", make_blend(add_strip), "-o", path, "--json")
+    assert done.code == 0, done
+    assert any("sequencer" in line for line in done.answer["warnings"])
+    np.testing.assert_allclose(combined(path)[16, 24, :3], (0.9, 0.4, 0.1), atol=1e-6)
+
+
+def test_stereoscopy_is_left_out_and_told(aplanat, make_blend, tmp_path):
+    def see_with_two_eyes(_bpy, scene):
+        scene.render.use_multiview = True
+
+    path = tmp_path / "a.png"
+    done = aplanat("render", make_blend(see_with_two_eyes), "-o", path, "--json")
+    assert done.code == 0, done
+    assert any("stereoscopy" in line for line in done.answer["warnings"])
+    assert iio.imread(path).shape == (32, 48, 3)
+
+
+def test_markers_choose_the_camera_and_the_option_overrules_them(aplanat, make_blend, tmp_path):
+    def bind(_bpy, scene):
+        scene.timeline_markers.new("first", frame=1).camera = scene.objects["Second"]
+        scene.timeline_markers.new("then", frame=2).camera = scene.objects["Camera"]
+        scene.camera = None
+
+    words = ("render", make_blend(bind), "-o", tmp_path / "a_#.png", "--frames", "1..2", "--json")
+    done = aplanat(*words, "--fstop", "3")
+    assert done.code == 0, done
+    used = [frame["settings"] for frame in done.answer["frames"]]
+    assert [(one["camera"], one["fstop"]) for one in used] == [("Second", 3), ("Camera", 3)]
+    used = [f["settings"] for f in aplanat(*words, "--camera", "Camera").answer["frames"]]
+    assert [one["camera"] for one in used] == ["Camera", "Camera"]
+
+
 def test_options_are_in_force_and_told(aplanat, small_blend, tmp_path):
     stats = tmp_path / "s.json"
     done = aplanat(
