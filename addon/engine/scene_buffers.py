@@ -47,7 +47,6 @@ class SceneBuffers:
         )
         self._lights = None
         self._world = None
-        self._harmonics = None
         self._levels = None
         self._fixed = None
         self._materials = {}
@@ -97,12 +96,12 @@ class SceneBuffers:
             self.uploads["light_tables"] += 1
         world = content.world
         if self._world is None or self._world.image != world.image:
-            self._harmonics = self._levels = self.environment_image = None
+            self._levels = self.environment_image = None
             if world.image:
                 self._compute_environment(content.images[world.image])
                 yield
         if self._world != world:
-            self.environment_buffer = environment.environment_buffer(world, self._harmonics)
+            self.environment_buffer = environment.environment_buffer(world)
             self._world = world
         table_of_ggx, empty = self._fixed
         self.lighting = (
@@ -115,7 +114,6 @@ class SceneBuffers:
 
     def _compute_environment(self, image):
         pixels = environment.linear_pixels(image)
-        self._harmonics = environment.diffuse_harmonics(environment.shrink(pixels, 512))
         self._levels = environment.prefilter(pixels)
         if image.srgb or image.pixels.dtype == np.uint8:
             opaque = np.ones((*pixels.shape[:2], 1), np.float32)

@@ -1,13 +1,13 @@
 """The world as a light: diffuse and glossy light of an equirectangular image, made once an image.
 
-Diffuse light is kept as spherical harmonics up to order 2, which hold the light of a Lambertian
-surface to about a percent; glossy light as octahedral maps, one for each of a few roughnesses, of
-the image's mean over a GGX lobe seen along its axis (normal, view and mirrored direction alike).
-Multiplied by what the lobe reflects of white surroundings this is the split sum. The image's colour
-factor and rotation are applied when it is read, so that changing them computes nothing.
+Both are octahedral maps of the image's mean over a lobe around each direction: glossy ones of a GGX
+lobe seen along its axis (normal, view and mirrored direction alike), for each of a few roughnesses,
+and a diffuse one of the cosine lobe. Multiplied by what the lobe reflects of white surroundings the
+glossy light is the split sum. The image's colour factor and rotation are applied when the maps are
+read, so that changing them computes nothing.
 
-References: Ramamoorthi and Hanrahan, SIGGRAPH 2001; Karis, SIGGRAPH 2013 course; Krivanek and
-Colbert, GPU Gems 3, chapter 20 (samples of a lobe, each read from a level as coarse as the sample).
+References: Karis, SIGGRAPH 2013 course; Krivanek and Colbert, GPU Gems 3, chapter 20 (samples of a
+lobe, each read from a level as coarse as the sample).
 """
 
 from functools import cache
@@ -30,6 +30,8 @@ TILE = 128
 # Halvings of the image that the lobe's samples are read from.
 _PYRAMID = 6
 _LARGEST_SOURCE = 1024
+# Diffuse light is smooth: it is summed up from an image of this width.
+_SMALL_SOURCE = 96
 
 _PREFILTER = ShaderInfo(
     name="aplanat_environment",
@@ -37,7 +39,8 @@ _PREFILTER = ShaderInfo(
     fragment=shader_source.load("passes/environment_frag.glsl"),
     attributes=(("VEC2", "pos"),),
     outputs=(("VEC4", "out_color"),),
-    samplers=tuple(("FLOAT_2D", f"level_{i}_tx") for i in range(_PYRAMID)),
+    samplers=tuple(("FLOAT_2D", f"level_{i}_tx") for i in range(_PYRAMID))
+    + (("FLOAT_2D", "small_tx"),),
 )
 
 
@@ -50,31 +53,6 @@ def linear_pixels(image):
         high = ((encoded + 0.055) / 1.055) ** 2.4
         encoded = np.where(encoded < 0.04045, encoded / 12.92, high)
     return np.take(encoded.astype(np.float32), image.pixels[..., :3])
-
-
-def direction_grid(width, height):
-    """Return the directions of an equirectangular image's texels and their solid angles.
-
-    Parameters
-    ----------
-    width, height : int
-
-    Returns
-    -------
-    directions : ndarray of shape (height, width, 3)
-        Blender's convention: +x in the middle, z up; bottom row first.
-    solid_angles : ndarray of shape (height, 1)
-        In sr; they add up to 4 pi over the image.
-    """
-    longitude = (0.5 - (np.arange(width) + 0.5) / width) * 2.0 * np.pi
-    edges = (np.arange(height + 1) / height - 0.5) * np.pi
-    latitude = (edges[1:] + edges[:-1]) / 2
-    directions = np.empty((height, width, 3))
-    directions[..., 0] = np.cos(latitude)[:, None] * np.cos(longitude)
-    directions[..., 1] = np.cos(latitude)[:, None] * np.sin(longitude)
-    directions[..., 2] = np.sin(latitude)[:, None]
-    solid_angles = (np.sin(edges[1:]) - np.sin(edges[:-1])) * (2.0 * np.pi / width)
-    return directions, solid_angles[:, None]
 
 
 def shrink(pixels, largest):
@@ -104,32 +82,6 @@ def _halve(pixels):
     sums = np.add.reduceat(np.add.reduceat(pixels, rows, axis=0), columns, axis=1)
     counts = np.diff(np.append(rows, height))[:, None] * np.diff(np.append(columns, width))
     return (sums / counts[..., None]).astype(np.float32)
-
-
-def diffuse_harmonics(pixels):
-    """Project an image on the harmonics that `environment_diffuse` evaluates.
-
-    Parameters
-    ----------
-    pixels : ndarray of shape (height, width, 3)
-        Scene linear.
-
-    Returns
-    -------
-    ndarray of shape (9, 3)
-        Coefficients of the polynomials 1, y, z, x, xy, yz, 3z^2 - 1, xz, x^2 - y^2; the cosine lobe
-        over pi is included, so a constant image gives its own colour.
-    """
-    directions, solid_angles = direction_grid(pixels.shape[1], pixels.shape[0])
-    x, y, z = (directions[..., i] for i in range(3))
-    polynomials = np.stack(
-        [np.ones_like(x), y, z, x, x * y, y * z, 3 * z * z - 1, x * z, x * x - y * y]
-    )
-    # Squared normalisation of each real harmonic, times the lobe's 1, 2/3, 1/4.
-    c0, c1, c2 = 1 / (4 * np.pi), 3 / (4 * np.pi), 15 / (4 * np.pi)
-    scale = [c0, *[c1 * 2 / 3] * 3, c2 / 4, c2 / 4, 5 / (16 * np.pi) / 4, c2 / 4, c2 / 16]
-    weighted = pixels.astype(np.float64) * solid_angles[..., None]
-    return np.einsum("khw,hwc->kc", polynomials, weighted) * np.array(scale)[:, None]
 
 
 @cache
@@ -202,7 +154,7 @@ def ggx_texture():
 
 
 def prefilter(pixels):
-    """Make the glossy levels of an image.
+    """Make the glossy levels and the diffuse light of an image.
 
     Parameters
     ----------
@@ -212,21 +164,20 @@ def prefilter(pixels):
     Returns
     -------
     GPUTexture
-        `LEVELS` octahedral maps in a row.
+        `LEVELS` octahedral maps in a row, and one of the diffuse light.
     """
     level = shrink(pixels, _LARGEST_SOURCE)
-    textures = []
-    for _ in range(_PYRAMID):
-        padded = np.concatenate([level, np.ones((*level.shape[:2], 1), np.float32)], axis=2)
-        textures.append(texture_2d(padded))
+    textures = {"small_tx": _opaque_texture(shrink(level, _SMALL_SOURCE))}
+    for i in range(_PYRAMID):
+        textures[f"level_{i}_tx"] = _opaque_texture(level)
         level = _halve(level)
-    targets = Targets(TILE * LEVELS, TILE, [TargetSpec("levels", "RGBA16F")])
+    targets = Targets(TILE * (LEVELS + 1), TILE, [TargetSpec("levels", "RGBA16F")])
     with targets.framebuffer("levels").bind():
         state.overwrite()
         shader = compile_shader(_PREFILTER)
         shader.bind()
-        for i, texture in enumerate(textures):
-            shader.uniform_sampler(f"level_{i}_tx", texture)
+        for name, texture in textures.items():
+            shader.uniform_sampler(name, texture)
         geometry.fullscreen_batch().draw(shader)
     levels = targets["levels"]
     levels.filter_mode(True)
@@ -234,30 +185,29 @@ def prefilter(pixels):
     return levels
 
 
-def environment_buffer(world, harmonics):
+def _opaque_texture(pixels):
+    opaque = np.ones((*pixels.shape[:2], 1), np.float32)
+    return texture_2d(np.concatenate([pixels, opaque], axis=2))
+
+
+def environment_buffer(world):
     """Upload the block that lit surfaces and the background read.
 
     Parameters
     ----------
     world : World
-    harmonics : ndarray of shape (9, 3) or None
-        Of the world's image; None without one.
 
     Returns
     -------
     GPUUniformBuf
     """
-    coefficients = np.zeros((9, 4))
-    if harmonics is not None:
-        coefficients[:, :3] = harmonics
     rows = [(*row, 0.0) for row in world.rotation]
     return uniform_buffer(
         ENVIRONMENT_PARAMS.pack(
-            harmonics=coefficients,
             rotation_x=rows[0],
             rotation_y=rows[1],
             rotation_z=rows[2],
-            color=(*world.color, float(harmonics is not None)),
+            color=(*world.color, float(world.image != 0)),
         )
     )
 

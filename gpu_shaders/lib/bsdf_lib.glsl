@@ -35,6 +35,29 @@ float ggx_visibility(float cos_view, float cos_light, float alpha)
   return 0.5 / max(v + l, 1e-7);
 }
 
+// Masking of the view by the facets.
+float ggx_masking(float cosine, float alpha)
+{
+  float c2 = max(cosine * cosine, 1e-8);
+  return 2.0 / (1.0 + sqrt(1.0 + alpha * alpha * (1.0 / c2 - 1.0)));
+}
+
+// A facet's normal as the view sees them, in a frame whose z axis is the surface's normal.
+// Heitz, Sampling the GGX distribution of visible normals, JCGT 7(4), 2018.
+vec3 ggx_visible_normal(vec3 view, float alpha, vec2 u)
+{
+  vec3 v = normalize(vec3(alpha * view.xy, view.z));
+  float across = dot(v.xy, v.xy);
+  vec3 t1 = (across > 1e-12) ? vec3(-v.y, v.x, 0.0) * inversesqrt(across) : vec3(1.0, 0.0, 0.0);
+  vec3 t2 = cross(v, t1);
+  float radius = sqrt(u.x);
+  float p1 = radius * cos(2.0 * PI * u.y);
+  float lift = 0.5 * (1.0 + v.z);
+  float p2 = mix(sqrt(max(1.0 - p1 * p1, 0.0)), radius * sin(2.0 * PI * u.y), lift);
+  vec3 h = p1 * t1 + p2 * t2 + sqrt(max(1.0 - p1 * p1 - p2 * p2, 0.0)) * v;
+  return normalize(vec3(alpha * h.xy, max(h.z, 1e-6)));
+}
+
 float fresnel_schlick(float cosine)
 {
   float m = 1.0 - clamp(cosine, 0.0, 1.0);

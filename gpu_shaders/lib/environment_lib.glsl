@@ -1,11 +1,13 @@
-// The world as a light: an equirectangular image, its diffuse light as spherical harmonics, its
-// glossy light as a strip of octahedral maps, one a level of roughness.
+// The world as a light: an equirectangular image, and a strip of octahedral maps of its mean over
+// GGX lobes, one a level of roughness, and last over the cosine lobe of a diffuse surface.
 #ifndef ENVIRONMENT_LIB_GLSL
 #define ENVIRONMENT_LIB_GLSL
 
 #define ENVIRONMENT_PI 3.14159265358979
 // Must agree with passes/environment.py.
 #define ENVIRONMENT_LEVELS 8
+#define ENVIRONMENT_TILES 9.0
+#define ENVIRONMENT_DIFFUSE 8.0
 #define ENVIRONMENT_TILE 128.0
 // Texels around each map that repeat its other side, so that filtering does not leave it.
 #define ENVIRONMENT_GUTTER 1.0
@@ -46,24 +48,12 @@ vec3 octahedron_to_direction(vec2 place)
   return normalize(d);
 }
 
-// Reflected light over pi of a white surface; real spherical harmonics up to order 2 whose
-// coefficients hold the cosine lobe. Ramamoorthi and Hanrahan, SIGGRAPH 2001.
-vec3 environment_diffuse(vec4 harmonics[9], vec3 n)
-{
-  vec3 sum = harmonics[0].rgb;
-  sum += harmonics[1].rgb * n.y + harmonics[2].rgb * n.z + harmonics[3].rgb * n.x;
-  sum += harmonics[4].rgb * (n.x * n.y) + harmonics[5].rgb * (n.y * n.z);
-  sum += harmonics[6].rgb * (3.0 * n.z * n.z - 1.0) + harmonics[7].rgb * (n.x * n.z);
-  sum += harmonics[8].rgb * (n.x * n.x - n.y * n.y);
-  return max(sum, vec3(0.0));
-}
-
-// Mean of the surroundings over a lobe of a level's roughness.
-vec3 environment_level(sampler2D levels_tx, vec2 octahedron, float level)
+// Mean of the surroundings over the lobe of a tile.
+vec3 environment_level(sampler2D levels_tx, vec2 octahedron, float tile)
 {
   float inner = ENVIRONMENT_TILE - 2.0 * ENVIRONMENT_GUTTER;
   vec2 texel = (octahedron * 0.5 + 0.5) * inner + ENVIRONMENT_GUTTER;
-  vec2 uv = vec2((level * ENVIRONMENT_TILE + texel.x) / (ENVIRONMENT_TILE * float(ENVIRONMENT_LEVELS)),
+  vec2 uv = vec2((tile * ENVIRONMENT_TILE + texel.x) / (ENVIRONMENT_TILE * ENVIRONMENT_TILES),
                  texel.y / ENVIRONMENT_TILE);
   return texture(levels_tx, uv).rgb;
 }

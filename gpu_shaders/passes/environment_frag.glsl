@@ -1,13 +1,14 @@
-// The mean of an equirectangular image over GGX lobes: octahedral maps in a row, rougher to the
-// right, each with a gutter that repeats its other side.
-// Inputs: level_0_tx .. level_5_tx, the image and its halvings (equirectangular, scene linear).
+// The mean of an equirectangular image over GGX lobes and a cosine lobe: octahedral maps in a row,
+// rougher to the right, the cosine lobe last, each with a gutter that repeats its other side.
+// Inputs: level_0_tx .. level_5_tx, the image and its halvings (equirectangular, scene linear);
+// small_tx, one small enough to be summed up.
 // Outputs: scene-linear colour.
 // Source: Krivanek and Colbert, GPU Gems 3, chapter 20; Karis, SIGGRAPH 2013 course.
 #include "lib/bsdf_lib.glsl"
 #include "lib/environment_lib.glsl"
 #include "lib/texture_lib.glsl"
 
-#define SAMPLES 128
+#define SAMPLES 256
 
 vec3 equirect_radiance(sampler2D tx, vec2 uv)
 {
@@ -54,10 +55,28 @@ float radical_inverse(uint i)
   return float(bits >> 8u) * (1.0 / 16777216.0);
 }
 
+// The image over the cosine lobe, texel by texel.
+vec3 diffuse_mean(vec3 normal)
+{
+  ivec2 size = textureSize(small_tx, 0);
+  vec3 sum = vec3(0.0);
+  float weight = 0.0;
+  for (int y = 0; y < size.y; y++) {
+    float area = cos((float(y) + 0.5) / float(size.y) * PI - 0.5 * PI);
+    for (int x = 0; x < size.x; x++) {
+      vec3 light = equirect_to_direction((vec2(float(x), float(y)) + 0.5) / vec2(size));
+      float share = area * max(dot(normal, light), 0.0);
+      sum += texelFetch(small_tx, ivec2(x, y), 0).rgb * share;
+      weight += share;
+    }
+  }
+  return sum / max(weight, 1e-6);
+}
+
 void main()
 {
   float tile = floor(gl_FragCoord.x / ENVIRONMENT_TILE);
-  float roughness = (tile + 1.0) / float(ENVIRONMENT_LEVELS);
+  float roughness = min((tile + 1.0) / float(ENVIRONMENT_LEVELS), 1.0);
   float alpha = roughness * roughness;
   vec2 texel = vec2(gl_FragCoord.x - tile * ENVIRONMENT_TILE, gl_FragCoord.y) - ENVIRONMENT_GUTTER;
   vec2 place = texel / (ENVIRONMENT_TILE - 2.0 * ENVIRONMENT_GUTTER) * 2.0 - 1.0;
@@ -69,6 +88,10 @@ void main()
     place = vec2(-place.x, sign(place.y) * 2.0 - place.y);
   }
   vec3 normal = octahedron_to_direction(place);
+  if (tile > ENVIRONMENT_DIFFUSE - 0.5) {
+    out_color = vec4(diffuse_mean(normal), 1.0);
+    return;
+  }
   vec3 up = (abs(normal.z) < 0.9) ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
   vec3 tangent = normalize(cross(up, normal));
   vec3 bitangent = cross(normal, tangent);

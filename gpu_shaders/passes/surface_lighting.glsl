@@ -16,6 +16,12 @@
 // Mirrors are drawn this rough under lights, so that their highlights have a finite size.
 #define MIN_ALPHA 2e-4
 
+// Below this roughness a lobe is round enough for one look-up along its axis.
+#define SPLIT_ROUGHNESS 0.15
+#define FACETS 8
+#define FACET_OVERLAP 1.0
+#define GOLDEN_RATIO 0.61803399
+
 struct Shading {
   vec3 position;
   vec3 normal;  // shading normal on the side that is seen
@@ -69,7 +75,8 @@ vec3 diffuse_light(Shading s)
 {
   vec3 sum = environment_buf.color.rgb;
   if (environment_buf.color.w > 0.5) {
-    sum *= environment_diffuse(environment_buf.harmonics, environment_direction(s.normal));
+    vec2 place = direction_to_octahedron(environment_direction(s.normal));
+    sum *= environment_level(environment_levels_tx, place, ENVIRONMENT_DIFFUSE);
   }
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
@@ -83,57 +90,98 @@ vec3 diffuse_light(Shading s)
   return sum;
 }
 
-// Mean of the world over a lobe around the mirrored direction.
-vec3 environment_glossy(Shading s, float roughness)
+// The world in a direction, averaged over a lobe of a roughness.
+vec3 environment_radiance(vec3 direction, float roughness)
 {
-  if (environment_buf.color.w < 0.5) {
-    return environment_buf.color.rgb;
-  }
-  vec3 mirrored = 2.0 * dot(s.normal, s.view) * s.normal - s.view;
-  // The lobe of a rough surface leans from the mirrored direction towards the normal.
-  // Lagarde and de Rousiers, Moving Frostbite to physically based rendering, 2014.
-  float smoothness = 1.0 - roughness;
-  float lean = smoothness * (sqrt(smoothness) + roughness);
-  vec3 direction = environment_direction(normalize(mix(s.normal, mirrored, lean)));
-  vec2 place = direction_to_octahedron(direction);
+  vec3 local = environment_direction(direction);
+  vec2 place = direction_to_octahedron(local);
   float level = clamp(roughness, 0.0, 1.0) * float(ENVIRONMENT_LEVELS) - 1.0;
-  vec3 radiance;
   if (level < 0.0) {
-    vec3 sharp =
-        image_linear(environment_tx, direction_to_equirect(direction), EXTENSION_REPEAT).rgb;
-    radiance = mix(sharp, environment_level(environment_levels_tx, place, 0.0), level + 1.0);
+    vec3 sharp = image_linear(environment_tx, direction_to_equirect(local), EXTENSION_REPEAT).rgb;
+    return mix(sharp, environment_level(environment_levels_tx, place, 0.0), level + 1.0);
   }
-  else {
-    float lower = min(floor(level), float(ENVIRONMENT_LEVELS - 2));
-    radiance = mix(environment_level(environment_levels_tx, place, lower),
-                   environment_level(environment_levels_tx, place, lower + 1.0),
-                   level - lower);
-  }
-  return radiance * environment_buf.color.rgb;
+  float lower = min(floor(level), float(ENVIRONMENT_LEVELS - 2));
+  return mix(environment_level(environment_levels_tx, place, lower),
+             environment_level(environment_levels_tx, place, lower + 1.0),
+             level - lower);
+}
+
+float lobe_rise(Lobe lobe, float cosine)
+{
+  return (lobe.eta > 0.0) ? fresnel_dielectric_rise(cosine, lobe.eta) : fresnel_schlick(cosine);
+}
+
+vec3 lobe_repeat(Lobe lobe, vec3 albedo)
+{
+  return lobe.repeats ? ggx_multiple_scattering(albedo, lobe.f0 + (1.0 - lobe.f0) / 21.0) :
+                        vec3(1.0);
 }
 
 // What a lobe reflects of white surroundings.
 vec3 lobe_albedo(Lobe lobe, vec3 albedo)
 {
-  vec3 single = lobe.f0 * albedo.x + albedo.y;
-  if (!lobe.repeats) {
-    return single;
+  return (lobe.f0 * albedo.x + albedo.y) * lobe_repeat(lobe, albedo);
+}
+
+// Reflectance of two lobes at a facet.
+vec3 lobes_reflect(Lobe a, vec3 repeat_a, Lobe b, vec3 repeat_b, float cosine)
+{
+  return a.weight * repeat_a * mix(a.f0, vec3(1.0), lobe_rise(a, cosine)) +
+         b.weight * repeat_b * mix(b.f0, vec3(1.0), lobe_rise(b, cosine));
+}
+
+// The world reflected by two lobes: a few facets stand for all, each with the world averaged over
+// its share of the lobe. All pixels of a lens sample take the same facets, so that there is no
+// noise; other samples take others.
+vec3 environment_reflection(Shading s, float roughness, Lobe a, vec3 repeat_a, Lobe b, vec3 repeat_b)
+{
+  float alpha = roughness * roughness;
+  vec3 up = (abs(s.normal.z) < 0.9) ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
+  vec3 tangent = normalize(cross(up, s.normal));
+  vec3 bitangent = cross(s.normal, tangent);
+  vec3 view = vec3(dot(s.view, tangent), dot(s.view, bitangent), s.cos_view);
+  uint seed = hash_combine(floatBitsToUint(lens_sample.z), floatBitsToUint(lens_sample.w));
+  vec2 shift = vec2(hash_unit(seed), hash_unit(hash_uint(seed)));
+  float masking = ggx_masking(view.z, alpha);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < FACETS; i++) {
+    vec2 u = vec2((float(i) + shift.x) / float(FACETS), fract(float(i) * GOLDEN_RATIO + shift.y));
+    vec3 h = ggx_visible_normal(view, alpha, u);
+    float cos_d = clamp(dot(view, h), 0.0, 1.0);
+    vec3 light = 2.0 * cos_d * h - view;
+    if (light.z <= 0.0) {
+      continue;
+    }
+    // Solid angle of the facet's share, as the roughness of a lobe of that size.
+    float density = ggx_distribution(h.z, alpha) * masking / (4.0 * view.z);
+    float share = 1.0 / (4.0 * PI * float(FACETS) * max(density, 1e-6));
+    float level = min(sqrt(sqrt(FACET_OVERLAP * share)), roughness);
+    float passed = ggx_visibility(view.z, light.z, alpha) * 4.0 * view.z * light.z / masking;
+    vec3 direction = tangent * light.x + bitangent * light.y + s.normal * light.z;
+    sum += environment_radiance(direction, level) * passed *
+           lobes_reflect(a, repeat_a, b, repeat_b, cos_d);
   }
-  return single * ggx_multiple_scattering(albedo, lobe.f0 + (1.0 - lobe.f0) / 21.0);
+  return sum * environment_buf.color.rgb / float(FACETS);
 }
 
 // Light reflected by two lobes of one roughness.
 vec3 glossy_light(Shading s, float roughness, Lobe a, Lobe b)
 {
   vec3 albedo = ggx_albedo(ggx_tx, s.cos_view, roughness);
-  vec3 sum = environment_glossy(s, roughness) *
-             (a.weight * lobe_albedo(a, albedo) + b.weight * lobe_albedo(b, albedo));
-  vec3 repeat_a = a.repeats ? ggx_multiple_scattering(albedo, a.f0 + (1.0 - a.f0) / 21.0) :
-                              vec3(1.0);
-  vec3 repeat_b = b.repeats ? ggx_multiple_scattering(albedo, b.f0 + (1.0 - b.f0) / 21.0) :
-                              vec3(1.0);
-  float alpha = max(roughness * roughness, MIN_ALPHA);
+  vec3 repeat_a = lobe_repeat(a, albedo);
+  vec3 repeat_b = lobe_repeat(b, albedo);
   vec3 mirrored = 2.0 * dot(s.normal, s.view) * s.normal - s.view;
+  vec3 reflectance = a.weight * lobe_albedo(a, albedo) + b.weight * lobe_albedo(b, albedo);
+  vec3 sum = environment_buf.color.rgb * reflectance;
+  if (environment_buf.color.w > 0.5) {
+    if (roughness < SPLIT_ROUGHNESS) {
+      sum *= environment_radiance(mirrored, roughness);
+    }
+    else {
+      sum = environment_reflection(s, roughness, a, repeat_a, b, repeat_b);
+    }
+  }
+  float alpha = max(roughness * roughness, MIN_ALPHA);
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
     if (light.kind == LIGHT_NONE) {
@@ -158,10 +206,7 @@ vec3 glossy_light(Shading s, float roughness, Lobe a, Lobe b)
     float cos_h = clamp(dot(s.normal, normalize(incoming.towards + s.view)), 0.0, 1.0);
     float lobe = ggx_distribution_over_disk(cos_h, reach, alpha) *
                  ggx_visibility(s.cos_view, cos_light, alpha) * cos_light;
-    float rise_a = (a.eta > 0.0) ? fresnel_dielectric_rise(cos_d, a.eta) : fresnel_schlick(cos_d);
-    float rise_b = (b.eta > 0.0) ? fresnel_dielectric_rise(cos_d, b.eta) : fresnel_schlick(cos_d);
-    vec3 reflected = a.weight * repeat_a * mix(a.f0, vec3(1.0), rise_a) +
-                     b.weight * repeat_b * mix(b.f0, vec3(1.0), rise_b);
+    vec3 reflected = lobes_reflect(a, repeat_a, b, repeat_b, cos_d);
     sum += incoming.irradiance * (light.factors.y * lobe) * reflected;
   }
   return sum;

@@ -1,6 +1,5 @@
 // The world as a light.
 struct EnvironmentParams {
-  vec4 harmonics[9];    // rgb: diffuse light of the image, cosine lobe included
   vec4 rotation_x;      // xyz: rows that turn a world direction into the image's
   vec4 rotation_y;
   vec4 rotation_z;
