@@ -1,5 +1,7 @@
 """A card that fills the picture, seen square on, for comparing surfaces pixel by pixel; spheres."""
 
+import math
+
 import numpy as np
 
 from tests.pictures import render_aplanat, render_cycles
@@ -96,3 +98,77 @@ def both(scene, cycles_samples=16, bounces=0):
     ours = render_aplanat(scene, 1)
     cycles = render_cycles(scene, cycles_samples, "BLACKMAN_HARRIS", TINY_FILTER, bounces=bounces)
     return ours, cycles
+
+
+def sphere_scene(bpy, shaders, pixels=48):
+    """Smooth spheres in a row along x, one a shader (node, inputs), seen along +y.
+
+    They light and mirror nothing of each other.
+    """
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    shaders = list(shaders)
+    count = max(len(shaders), 1)
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = count * pixels, pixels
+    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    camera.location = (0.0, -12.0, 0.0)
+    camera.rotation_euler = (math.pi / 2, 0.0, 0.0)
+    camera.data.sensor_fit = "HORIZONTAL"
+    camera.data.lens = 36.0 * 12.0 / (2.2 * count)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    for i, (kind, inputs) in enumerate(shaders):
+        mesh = bpy.data.meshes.new(kind)
+        bmesh_sphere(mesh)
+        mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
+        material = bpy.data.materials.new(kind)
+        material.node_tree.nodes.clear()
+        tree = Tree(material.node_tree)
+        tree.surface(tree.node(kind, inputs).outputs[0])
+        mesh.materials.append(material)
+        ball = bpy.data.objects.new(kind, mesh)
+        ball.location.x = 2.2 * (i - (count - 1) / 2)
+        ball.visible_diffuse = ball.visible_glossy = False
+        scene.collection.objects.link(ball)
+    return scene
+
+
+def bmesh_sphere(mesh):
+    """Fill a mesh with a fine sphere of radius 1."""
+    import bmesh
+
+    form = bmesh.new()
+    bmesh.ops.create_uvsphere(form, u_segments=96, v_segments=48, radius=1.0)
+    form.to_mesh(mesh)
+    form.free()
+
+
+def add_light(bpy, kind, place, **settings):
+    """Add a light without shadow that shines at the origin."""
+    from mathutils import Vector
+
+    light = bpy.data.lights.new(kind, kind)
+    light.use_shadow = False
+    for name, value in settings.items():
+        setattr(light, name, value)
+    obj = bpy.data.objects.new(kind, light)
+    obj.location = place
+    obj.rotation_euler = (-Vector(place)).to_track_quat("-Z", "Y").to_euler()
+    bpy.context.scene.collection.objects.link(obj)
+    return obj
+
+
+def world_image(bpy, path, rotation=0.0):
+    """Surround the scene with an image turned about z, or with white where there is no path."""
+    world = bpy.data.worlds.new("world")
+    bpy.context.scene.world = world
+    world.node_tree.nodes.clear()
+    tree = Tree(world.node_tree, "ShaderNodeOutputWorld")
+    color = (1.0, 1.0, 1.0)
+    if path is not None:
+        place = tree.node("TexCoord").outputs["Generated"]
+        mapping = tree.node("Mapping", {"Vector": place, "Rotation": (0.0, 0.0, rotation)})
+        made = bpy.data.images.load(str(path))
+        color = tree.node("TexEnvironment", {"Vector": mapping.outputs[0]}, image=made).outputs[0]
+    tree.surface(tree.node("Background", {"Color": color}).outputs[0])
+    return world
