@@ -13,6 +13,9 @@ from ..errors import ShaderCompileError
 
 SHADER_ROOT = Path(__file__).resolve().parents[2] / "gpu_shaders"
 
+# Of each text that was put together, where its lines came from; as many as there are shaders.
+_places = {}
+
 _INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
 
 
@@ -34,7 +37,7 @@ def load(path):
     ShaderCompileError
         If the file or one of its includes is missing.
     """
-    return "\n".join(line for line, _, _ in located_lines(path)) + "\n"
+    return _remember(located_lines(path))
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,34 @@ def join(parts):
     -------
     str
     """
-    return "\n".join(line for line, _, _ in located_parts(parts)) + "\n"
+    return _remember(located_parts(parts))
+
+
+def locate(text, number):
+    """Say where a line of a text made by `load` or `join` came from.
+
+    Parameters
+    ----------
+    text : str
+    number : int
+        From 1.
+
+    Returns
+    -------
+    str
+        ``path:line``; ``line N`` of texts that were made elsewhere.
+    """
+    places = _places.get(text, ())
+    if 1 <= number <= len(places):
+        path, line = places[number - 1]
+        return f"{path}:{line}"
+    return f"line {number}"
+
+
+def _remember(lines):
+    text = "\n".join(line for line, _, _ in lines) + "\n"
+    _places[text] = tuple((path, number) for _, path, number in lines)
+    return text
 
 
 def located_parts(parts):

@@ -5,14 +5,13 @@ removed here; the number of shaders is bounded by the number of shapes of node t
 """
 
 import atexit
-import io
 import re
 import time
-from contextlib import redirect_stderr
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from ..errors import ShaderCompileError
-from . import shader_source
+from . import compiler_log, shader_source
 
 _cache = {}
 _seconds = [0.0]
@@ -98,6 +97,20 @@ def dispatch(shader, groups_x, groups_y, groups_z=1):
 def _compile(info):
     import gpu
 
+    try:
+        return gpu.shader.create_from_info(_create_info(info))
+    except Exception as error:
+        # Blender raises a plain Exception here, and prints the driver's log to its own console.
+        with compiler_log.caught_console() as console, suppress(Exception):
+            gpu.shader.create_from_info(_create_info(info))
+        stages = {"Vert": info.vertex, "Frag": info.fragment, "Comp": info.compute}
+        messages = compiler_log.locate_messages("".join(console), stages)
+        raise ShaderCompileError(info.name, messages or str(error)) from error
+
+
+def _create_info(info):
+    import gpu
+
     create = gpu.types.GPUShaderCreateInfo()
     if info.typedefs:
         create.typedef_source(info.typedefs)
@@ -132,13 +145,7 @@ def _compile(info):
             create.depth_write("ANY")
         create.vertex_source(info.vertex)
         create.fragment_source(info.fragment)
-    log = io.StringIO()
-    try:
-        with redirect_stderr(log):
-            return gpu.shader.create_from_info(create)
-    except Exception as error:
-        # Blender raises a plain Exception here, and prints the driver's log to its own console.
-        raise ShaderCompileError(info.name, f"{error} {log.getvalue()}".strip()) from error
+    return create
 
 
 def _interface_name(varyings):

@@ -153,7 +153,7 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
         varyings.append((kind, f"v_{name}"))
         forward.append(f"  v_{name} = {name};")
     vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
-    vertex += shader_source.load("passes/surface_vert.glsl")
+    vertex = shader_source.join((shader_source.Text(vertex), "passes/surface_vert.glsl"))
     structs = VIEW_PARAMS.source + target.structs
     uniforms = [("ViewParams", "view_buf"), *target.uniforms]
     samplers = [("FLOAT_2D", "instances_tx"), *target.samplers]

@@ -59,7 +59,7 @@ def read_light(light, matrix):
 
 
 def _emission(tree, notes):
-    """The factor of a light's node tree: of one Emission with constant inputs."""
+    """Return the factor of a light's node tree: of one Emission with constant inputs."""
     output = tree.get_output_node("EEVEE")
     socket = output and source_of(output.inputs["Surface"], ())[0]
     if not socket or not socket.is_output:
