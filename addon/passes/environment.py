@@ -31,7 +31,7 @@ TILE = 128
 _PYRAMID = 6
 _LARGEST_SOURCE = 1024
 # Diffuse light is smooth: it is summed up from an image of this width.
-_SMALL_SOURCE = 96
+_SMALL_SOURCE = 48
 
 _PREFILTER = ShaderInfo(
     name="aplanat_environment",

@@ -8,7 +8,7 @@
 #include "lib/environment_lib.glsl"
 #include "lib/texture_lib.glsl"
 
-#define SAMPLES 256
+#define SAMPLES 64
 
 vec3 equirect_radiance(sampler2D tx, vec2 uv)
 {

@@ -18,7 +18,7 @@
 
 // Below this roughness a lobe is round enough for one look-up along its axis.
 #define SPLIT_ROUGHNESS 0.15
-#define FACETS 8
+#define FACETS 6
 #define FACET_OVERLAP 1.0
 #define GOLDEN_RATIO 0.61803399
 
