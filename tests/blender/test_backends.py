@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests import surface_scenes
 from tests.pictures import ssim
 
 REPO = Path(__file__).resolve().parents[2]
@@ -48,8 +49,47 @@ def toys_blend(shared, tmp_path_factory):
     return path
 
 
+@pytest.fixture(scope="session")
+def toys_lit_blend(shared, tmp_path_factory):
+    path = tmp_path_factory.mktemp("toys_lit") / "toys_lit.blend"
+    script = shared / "scenes/build_scenes.py"
+    build(script, "--scene", "toys", "--look", "lit", "--out", path)
+    return path
+
+
+@pytest.fixture(scope="session")
+def surfaces_blend(aplanat_bpy, tmp_path_factory):
+    """Every kind of closure, light and value node that there is a shader text for."""
+    bpy = aplanat_bpy
+    glossy = {"Color": (0.9, 0.7, 0.5), "Roughness": 0.3}
+    half = {"Base Color": (0.2, 0.5, 0.9), "Alpha": 0.5}
+    kinds = [("BsdfDiffuse", {}), ("BsdfGlossy", glossy), ("BsdfPrincipled", half)]
+    scene = surface_scenes.sphere_scene(bpy, [*kinds, *[("Emission", {})] * 3])
+    for kind in ("SUN", "POINT", "SPOT", "AREA"):
+        surface_scenes.add_light(bpy, kind, (3.0, -5.0, 4.0), energy=50.0)
+    balls = [obj for obj in scene.objects if obj.type == "MESH"][-3:]
+    trees = [surface_scenes.Tree(ball.active_material.node_tree) for ball in balls]
+    for tree in trees:
+        tree.output = next(n for n in tree.tree.nodes if n.type == "OUTPUT_MATERIAL")
+    through, light = (trees[0].node(kind).outputs[0] for kind in ("BsdfTransparent", "Emission"))
+    parts = {"Shader": through, "Shader_001": light}
+    trees[0].surface(trees[0].node("AddShader", parts).outputs[0])
+    parts = {"Shader": trees[1].node("Holdout").outputs[0]}
+    parts["Shader_001"] = trees[1].node("Emission", {"Color": (0.2, 0.8, 0.4)}).outputs[0]
+    trees[1].surface(trees[1].node("MixShader", parts).outputs[0])
+    uv = trees[2].node("TexCoord").outputs["UV"]
+    inputs = {"Vector": uv, "Rotation": (0.1, 0.2, 0.3), "Scale": (2.0, 3.0, 1.0)}
+    vector = trees[2].node("Mapping", inputs, vector_type="NORMAL").outputs[0]
+    picture = surface_scenes.image(bpy, "picture", surface_scenes.random_pixels(4, alpha=True))
+    texture = trees[2].node("TexImage", {"Vector": vector}, image=picture)
+    trees[2].emission(texture.outputs["Color"], texture.outputs["Alpha"])
+    path = tmp_path_factory.mktemp("surfaces") / "surfaces.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    return path
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["demo", "toys"])
+@pytest.mark.parametrize("scene", ["demo", "toys", "toys_lit", "surfaces"])
 def test_vulkan_agrees_with_opengl(scene, blender, request, tmp_path):
     blend = request.getfixturevalue(f"{scene}_blend")
     pictures = {}
