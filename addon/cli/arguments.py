@@ -21,14 +21,14 @@ MAX_FRAME = 1048574
 ENDINGS = (".exr", ".png")
 
 _LATER = {
-    "lens": "0.2 (real lenses)",
-    "capture": "0.6 (depth layers)",
-    "refocus": "0.6 (depth layers)",
-    "--lens": "0.2 (real lenses)",
-    "--method adaptive": "0.3 (fast defocus)",
-    "--subsamples": "0.3 (fast defocus)",
-    "--method layered": "0.6 (depth layers)",
-    "--layers": "0.6 (depth layers)",
+    "lens": "real lenses",
+    "capture": "depth layers",
+    "refocus": "depth layers",
+    "--lens": "real lenses",
+    "--method adaptive": "fast defocus",
+    "--subsamples": "fast defocus",
+    "--method layered": "depth layers",
+    "--layers": "depth layers",
 }
 
 
@@ -85,7 +85,7 @@ def wants_json(words):
 
 
 def _not_yet(what, key):
-    return InputError(f"{what} is not in version {version()}; it comes with release {_LATER[key]}")
+    return InputError(f"{what} is not in version {version()}; it comes later, with {_LATER[key]}")
 
 
 def _check_render(arguments):
