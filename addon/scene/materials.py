@@ -100,5 +100,7 @@ class MaterialReader:
         for socket, what in (("Volume", "volume"), ("Displacement", "displacement")):
             if reader.linked(output, socket, ()):
                 reader.note(f"{what} is not drawn")
+        if material.use_backface_culling:
+            reader.note("backface culling is not done; both sides are drawn, as in Cycles")
         self._report += reader.report
         return graph
