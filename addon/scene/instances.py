@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import SnapshotError
-from .lights import read_light
+from .lights import MAX_LIGHTS, read_light
 
 # Object types with a surface or substance of their own that the engine cannot draw: in words,
 # the view layer's switch for them, and how to tell an empty one.
@@ -236,6 +236,9 @@ class _Reader:
         return self._space is None or obj.visible_in_viewport_get(self._space)
 
     def _read_light(self, obj, matrix):
+        if len(self.out.lights) == MAX_LIGHTS:
+            self._note(obj.name, f"more than {MAX_LIGHTS} lights; this one does not shine")
+            return
         light, notes = read_light(obj.data, matrix)
         if light is not None:
             self.out.lights.append(light)

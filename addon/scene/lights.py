@@ -12,6 +12,8 @@ from .material_nodes import constant
 from .node_tree import source_of
 from .snapshot import Light
 
+# A row each of the light table: textures of this height exist on every device.
+MAX_LIGHTS = 8192
 # Of a spot whose edge is sharp, in cosines: far below a pixel.
 _SHARPEST_EDGE = 1e-6
 
