@@ -20,15 +20,18 @@ class TargetSpec:
     texel_format : str
     layers : int
         Of an array texture; 0 is a plain one.
+    scale : int
+        How many times larger than the others it is, along each side.
     """
 
     name: str
     texel_format: str
     layers: int = 0
+    scale: int = 1
 
 
 class Targets:
-    """Textures of one size, by name, and frame buffers over sets of them.
+    """Textures of one size or whole multiples of it, by name, and frame buffers over sets of them.
 
     Parameters
     ----------
@@ -73,10 +76,11 @@ class Targets:
         """Make one more texture."""
         import gpu
 
-        size = census.texture_bytes(self.width, self.height, spec.texel_format, spec.layers)
+        width, height = self.width * spec.scale, self.height * spec.scale
+        size = census.texture_bytes(width, height, spec.texel_format, spec.layers)
         try:
             texture = gpu.types.GPUTexture(
-                (self.width, self.height), layers=spec.layers, format=spec.texel_format
+                (width, height), layers=spec.layers, format=spec.texel_format
             )
         except RuntimeError as error:
             raise DeviceLimitError(

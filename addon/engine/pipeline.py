@@ -14,13 +14,6 @@ from ..device.uniforms import uniform_buffer
 from ..passes import accumulate, background, cryptomatte, data, resolve, surface
 from . import culling, render_passes
 
-_COLOR_TARGETS = (
-    TargetSpec("sample", "RGBA32F"),
-    TargetSpec("sample_depth", "DEPTH_COMPONENT32F"),
-    TargetSpec("sum", "RGBA32F"),
-    TargetSpec("image", "RGBA32F"),
-)
-
 # Samples that may wait in the device's queue: the queue's memory, too, is bounded.
 _SAMPLES_IN_FLIGHT = 32
 
@@ -120,9 +113,15 @@ class FrameRenderer:
                 self._targets.clear(name, (0.0, 0.0, 0.0, 0.0))
 
     def _target_specs(self):
-        specs = [*_COLOR_TARGETS]
+        fine = self.plan.subpixels
+        specs = [
+            TargetSpec("sample", "RGBA32F", scale=fine),
+            TargetSpec("sample_depth", "DEPTH_COMPONENT32F", scale=fine),
+            TargetSpec("sum", "RGBA32F"),
+            TargetSpec("image", "RGBA32F"),
+        ]
         if self._mattes:
-            specs.append(TargetSpec("mattes", "RGBA32F"))
+            specs.append(TargetSpec("mattes", "RGBA32F", scale=fine))
         if "Focus Matte" in self.plan.passes:
             specs.append(TargetSpec("focus_sum", "R32F"))
         if self._cryptomattes:
@@ -147,6 +146,7 @@ class FrameRenderer:
     def _render_sample(self, index):
         plan, targets = self.plan, self._targets
         lens_sample = (*plan.lens_positions[index].tolist(), *plan.jitter[index].tolist())
+        weights = plan.subpixel_weights[index]
         framebuffer = targets.framebuffer("sample", depth="sample_depth")
         with framebuffer.bind():
             framebuffer.clear(color=self._background, depth=1.0)
@@ -171,12 +171,12 @@ class FrameRenderer:
         with framebuffer.bind():
             surface.draw_glows(self._glows, self._view, self._buffers.instances, lens_sample)
         with targets.framebuffer("sum").bind():
-            accumulate.accumulate(self._fullscreen, targets["sample"])
+            accumulate.accumulate(self._fullscreen, targets["sample"], weights)
         if "focus_sum" in targets:
             with targets.framebuffer("focus_sum").bind():
-                accumulate.accumulate_focus(self._fullscreen, targets["mattes"])
+                accumulate.accumulate_focus(self._fullscreen, targets["mattes"], weights)
         if self._cryptomattes:
-            cryptomatte.count(targets["mattes"], targets["tables"], self._cryptomattes)
+            cryptomatte.count(targets["mattes"], targets["tables"], self._cryptomattes, weights)
         self.draw_calls += len(self._draws) + len(self._glows) + self._shows_image + 1
         self.draw_calls += "focus_sum" in targets
         self.triangles += self._triangles_per_sample
@@ -204,8 +204,12 @@ class FrameRenderer:
 
     def _resolve(self, total, origin=(0, 0), pixel_size=1):
         state.overwrite()
-        samples = max(self.samples_done, 1)
-        resolve.resolve(self._fullscreen, self._targets[total], samples, origin, pixel_size)
+        weight = self._weight()
+        resolve.resolve(self._fullscreen, self._targets[total], weight, origin, pixel_size)
+
+    def _weight(self):
+        # A first sample whose places all lie outside a narrow box filter weighs nothing.
+        return self.plan.weight(self.samples_done) or 1.0
 
     def read_image(self):
         """Return the picture so far, shape (height, width, 4), bottom row first."""
@@ -265,7 +269,7 @@ class FrameRenderer:
                 self._cryptomattes,
                 kind,
                 index,
-                max(self.samples_done, 1),
+                self._weight(),
             )
         return readback.read_color(framebuffer, self.plan.width, self.plan.height)
 
@@ -330,5 +334,5 @@ def _view_params(plan):
         view_inverse=np.linalg.inv(plan.view),
         projection=plan.projection,
         lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
-        film=(plan.width, plan.height, *plan.origin),
+        film=(plan.width * plan.subpixels, plan.height * plan.subpixels, *plan.origin),
     )

@@ -4,11 +4,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..sampling.pixel_filter import subpixel_weights
 from ..sampling.sequence import lens_samples, pixel_offsets
 
 # Diagonals of the picture over the diameter of the largest circle of confusion that counts as
 # sharp: the usual criterion of depth-of-field tables (0.029 mm for 36 x 24 mm).
 _SHARP_CIRCLES_PER_DIAGONAL = 1500.0
+
+# Sub-pixels along a side of a pixel: as many as two vectors of weights hold.
+_MOST_SUBPIXELS = 4
+# A lens sample's raster, in pixels (20 bytes each), and its longer side: within any device's means.
+_LARGEST_RASTER = 1 << 24
+_LONGEST_RASTER = 8192
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +39,10 @@ class FramePlan:
         Places on the lens, in m.
     jitter : ndarray of shape (N, 2)
         Sub-pixel movement in clip units of the region.
+    subpixels : int
+        Sub-pixels along each side of a pixel in a lens sample's raster; see `subpixels`.
+    subpixel_weights : ndarray of shape (N, 2, subpixels)
+        Of the columns and rows of sub-pixels; see `sampling.pixel_filter.subpixel_weights`.
     lens_extent : ndarray of shape (2,)
         Half the width and height of the opening, in m.
     coc_scale : float
@@ -56,6 +67,8 @@ class FramePlan:
     focus_distance: float
     lens_positions: np.ndarray
     jitter: np.ndarray
+    subpixels: int
+    subpixel_weights: np.ndarray
     lens_extent: np.ndarray
     coc_scale: float
     sharp_radius: float
@@ -69,6 +82,10 @@ class FramePlan:
     def samples(self):
         """Number of lens samples."""
         return len(self.lens_positions)
+
+    def weight(self, samples):
+        """Return the summed weight of the first `samples` lens samples."""
+        return float(self.subpixel_weights[:samples].sum(axis=2).prod(axis=1).sum())
 
 
 def region_projection(projection, film):
@@ -91,6 +108,32 @@ def region_projection(projection, film):
     crop[0, 3] = (film.width - 2 * x - width) / width
     crop[1, 3] = (film.height - 2 * y - height) / height
     return crop @ projection
+
+
+def subpixels(content, width, height):
+    """Choose how finely a lens sample is rasterised.
+
+    Where triangles are smaller than pixels, one place a pixel sees one triangle of many, and the
+    average over the lens samples stays noisy. The raster is therefore made about as fine as the
+    geometry, so that its cost stays in proportion to that of the triangles.
+
+    Parameters
+    ----------
+    content : SceneContent
+    width, height : int
+        Of the rendered region, in pixels.
+
+    Returns
+    -------
+    int
+        Sub-pixels along each side of a pixel.
+    """
+    triangles = sum(len(content.meshes[g.mesh].triangles) * g.count for g in content.groups)
+    wanted = min(int(np.ceil(np.sqrt(triangles / (width * height)))), _MOST_SUBPIXELS)
+    affordable = min(
+        int(np.sqrt(_LARGEST_RASTER / (width * height))), _LONGEST_RASTER // max(width, height)
+    )
+    return max(1, min(wanted, affordable))
 
 
 def sharp_radius(width, height):
@@ -157,7 +200,10 @@ def plan_frame(snapshot):
         points = lens_samples(0, count, lens.iris, sampling.seed)
         positions, focus = points * lens.aperture_radius, lens.focus_distance
         extent = lens.aperture_radius * np.array([1.0 / lens.iris.ratio, 1.0])
-    offsets = pixel_offsets(0, count, film.filter_kind, film.filter_size_px, sampling.seed)
+    fine = subpixels(snapshot.content, width, height)
+    filter_kind, filter_size = film.filter_kind, film.filter_size_px
+    offsets = pixel_offsets(0, count, filter_kind, filter_size, sampling.seed, fine)
+    weights = [subpixel_weights(axis, filter_kind, filter_size, fine) for axis in offsets.T]
     projection = region_projection(camera.projection, film)
     current = (camera.view, camera.projection)
     previous, following = (
@@ -176,6 +222,8 @@ def plan_frame(snapshot):
         lens_positions=positions,
         # A sample at +x in the pixel sees what lies to its right: the picture moves to the left.
         jitter=-2.0 * offsets / np.array([width, height]),
+        subpixels=fine,
+        subpixel_weights=np.stack(weights, axis=1),
         lens_extent=extent,
         coc_scale=scale,
         sharp_radius=sharp_radius(film.width, film.height),

@@ -1,54 +1,67 @@
-"""Adding a lens sample to the sums (methods 1)."""
+"""Adding a lens sample to the sums (methods 1).
+
+A lens sample's raster has a grid of sub-pixels for each pixel of the sums; their weights make the
+pixel filter (see `sampling.pixel_filter`).
+"""
 
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
 
-_COLOR = ShaderInfo(
-    name="aplanat_accumulate",
-    vertex=shader_source.load("passes/fullscreen_vert.glsl"),
-    fragment=shader_source.load("passes/accumulate_frag.glsl"),
-    attributes=(("VEC2", "pos"),),
-    outputs=(("VEC4", "out_color"),),
-    samplers=(("FLOAT_2D", "sample_tx"),),
-)
 
-_FOCUS = ShaderInfo(
-    name="aplanat_accumulate_focus",
-    vertex=shader_source.load("passes/fullscreen_vert.glsl"),
-    fragment=shader_source.load("passes/focus_frag.glsl"),
-    attributes=(("VEC2", "pos"),),
-    outputs=(("FLOAT", "out_share"),),
-    samplers=(("FLOAT_2D", "mattes_tx"),),
-)
+def _info(name, fragment, output, sampler, subpixels):
+    return ShaderInfo(
+        name=name,
+        vertex=shader_source.load("passes/fullscreen_vert.glsl"),
+        fragment=shader_source.load(fragment),
+        attributes=(("VEC2", "pos"),),
+        outputs=(output,),
+        samplers=(("FLOAT_2D", sampler),),
+        push_constants=(("VEC4", "columns"), ("VEC4", "rows")),
+        defines=(("SUBPIXELS", str(subpixels)),),
+    )
 
 
-def accumulate(fullscreen, sample):
+def padded(weights):
+    """Return up to 4 weights as a vector of 4."""
+    return (*map(float, weights), 0.0, 0.0, 0.0)[:4]
+
+
+def accumulate(fullscreen, sample, weights):
     """Add a colour texture to the bound frame buffer.
 
     Parameters
     ----------
     fullscreen : GPUBatch
     sample : GPUTexture
-        Of the frame buffer's size.
+        ``k`` times as large as the frame buffer, along each side.
+    weights : ndarray of shape (2, k)
+        Of the columns and the rows of a pixel's sub-pixels.
     """
-    _add(fullscreen, _COLOR, "sample_tx", sample)
+    output = ("VEC4", "out_color")
+    info = ("aplanat_accumulate", "passes/accumulate_frag.glsl", output, "sample_tx")
+    _add(fullscreen, info, sample, weights)
 
 
-def accumulate_focus(fullscreen, mattes):
+def accumulate_focus(fullscreen, mattes, weights):
     """Add a sample's share of sharpness to the bound frame buffer of one channel.
 
     Parameters
     ----------
     fullscreen : GPUBatch
     mattes : GPUTexture
-        Second target of `surface.COLOR_AND_MATTES`.
+        Second target of `surface.COLOR_AND_MATTES`, as large as the sample.
+    weights : ndarray of shape (2, k)
     """
-    _add(fullscreen, _FOCUS, "mattes_tx", mattes)
+    output = ("FLOAT", "out_share")
+    info = ("aplanat_accumulate_focus", "passes/focus_frag.glsl", output, "mattes_tx")
+    _add(fullscreen, info, mattes, weights)
 
 
-def _add(fullscreen, info, name, texture):
+def _add(fullscreen, info, texture, weights):
     state.additive()
-    shader = compile_shader(info)
+    shader = compile_shader(_info(*info, len(weights[0])))
     shader.bind()
-    shader.uniform_sampler(name, texture)
+    shader.uniform_sampler(info[-1], texture)
+    shader.uniform_float("columns", padded(weights[0]))
+    shader.uniform_float("rows", padded(weights[1]))
     fullscreen.draw(shader)

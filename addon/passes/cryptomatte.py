@@ -13,6 +13,7 @@ SIGGRAPH 2015.
 
 from ..device import shader_source
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
+from .accumulate import padded
 
 # Channel of `surface.COLOR_AND_MATTES`' second target that holds the id.
 CHANNELS = {"CryptoObject": 0, "CryptoMaterial": 1}
@@ -32,14 +33,19 @@ def slot_pairs(kinds):
     return max(kinds.values()) + _SPARE_PAIRS
 
 
-def _count_info(pairs):
+def _count_info(pairs, subpixels):
     return ShaderInfo(
         name="aplanat_cryptomatte_count",
         compute=shader_source.load("passes/cryptomatte_comp.glsl"),
         samplers=(("FLOAT_2D", "mattes_tx"),),
         images=(("RGBA32F", "FLOAT_2D_ARRAY", "tables_img", ("READ", "WRITE")),),
-        push_constants=(("INT", "kinds"), ("IVEC2", "channels")),
-        defines=(("SLOT_PAIRS", str(pairs)),),
+        push_constants=(
+            ("VEC4", "columns"),
+            ("VEC4", "rows"),
+            ("IVEC2", "channels"),
+            ("INT", "kinds"),
+        ),
+        defines=(("SLOT_PAIRS", str(pairs)), ("SUBPIXELS", str(subpixels))),
         local_size=(_GROUP, _GROUP, 1),
     )
 
@@ -57,7 +63,7 @@ def _rank_info(pairs):
     )
 
 
-def count(mattes, tables, kinds):
+def count(mattes, tables, kinds, weights):
     """Count the ids of a lens sample.
 
     Parameters
@@ -68,18 +74,24 @@ def count(mattes, tables, kinds):
         ``slot_pairs(kinds)`` layers a kind, cleared to zero before the first sample.
     kinds : dict of str to int
         As `render_passes.cryptomatte_kinds` gives them.
+    weights : ndarray of shape (2, k)
+        Of the columns and rows of a pixel's sub-pixels; `mattes` is ``k`` times as large.
     """
-    shader = compile_shader(_count_info(slot_pairs(kinds)))
+    subpixels = len(weights[0])
+    shader = compile_shader(_count_info(slot_pairs(kinds), subpixels))
     channels = [CHANNELS[kind] for kind in kinds]
     shader.bind()
     shader.uniform_sampler("mattes_tx", mattes)
     shader.image("tables_img", tables)
     shader.uniform_int("kinds", len(channels))
     shader.uniform_int("channels", (channels + [0])[:2])
-    dispatch(shader, -(-mattes.width // _GROUP), -(-mattes.height // _GROUP))
+    shader.uniform_float("columns", padded(weights[0]))
+    shader.uniform_float("rows", padded(weights[1]))
+    width, height = mattes.width // subpixels, mattes.height // subpixels
+    dispatch(shader, -(-width // _GROUP), -(-height // _GROUP))
 
 
-def draw_ranks(fullscreen, tables, kinds, kind, index, samples):
+def draw_ranks(fullscreen, tables, kinds, kind, index, weight):
     """Draw one pass of two ranks into the bound frame buffer.
 
     Parameters
@@ -91,7 +103,8 @@ def draw_ranks(fullscreen, tables, kinds, kind, index, samples):
         ``"CryptoObject"`` or ``"CryptoMaterial"``.
     index : int
         0 holds ranks 0 and 1, 1 holds 2 and 3, ...
-    samples : int
+    weight : float
+        Summed weight of the samples.
     """
     pairs = slot_pairs(kinds)
     shader = compile_shader(_rank_info(pairs))
@@ -99,5 +112,5 @@ def draw_ranks(fullscreen, tables, kinds, kind, index, samples):
     shader.uniform_sampler("tables_tx", tables)
     shader.uniform_int("first_layer", list(kinds).index(kind) * pairs)
     shader.uniform_int("rank", 2 * index)
-    shader.uniform_float("scale", 1.0 / samples)
+    shader.uniform_float("scale", 1.0 / weight)
     fullscreen.draw(shader)

@@ -14,7 +14,7 @@ _INFO = ShaderInfo(
 )
 
 
-def resolve(fullscreen, total, samples, origin=(0, 0), pixel_size=1):
+def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1):
     """Draw the mean of the samples into the bound frame buffer.
 
     Parameters
@@ -22,7 +22,8 @@ def resolve(fullscreen, total, samples, origin=(0, 0), pixel_size=1):
     fullscreen : GPUBatch
     total : GPUTexture
         Sum of the samples.
-    samples : int
+    weight : float
+        Summed weight of the samples.
     origin : tuple of 2 int
         Where the picture's lower left pixel goes, in pixels of the frame buffer.
     pixel_size : int
@@ -31,7 +32,7 @@ def resolve(fullscreen, total, samples, origin=(0, 0), pixel_size=1):
     shader = compile_shader(_INFO)
     shader.bind()
     shader.uniform_sampler("sum_tx", total)
-    shader.uniform_float("scale", 1.0 / samples)
+    shader.uniform_float("scale", 1.0 / weight)
     shader.uniform_int("origin", origin)
     shader.uniform_int("pixel_size", pixel_size)
     fullscreen.draw(shader)

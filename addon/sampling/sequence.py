@@ -9,7 +9,7 @@ import numpy as np
 
 from .halton import halton
 from .iris import iris_points
-from .pixel_filter import filter_offsets
+from .pixel_filter import filter_offsets, movement_size
 
 LENS_BASES = (2, 7)
 PIXEL_BASES = (3, 5)
@@ -39,7 +39,7 @@ def lens_samples(first, count, iris, seed=0):
     return iris_points(halton(first, count, LENS_BASES, _shift(seed, 2, 1)), iris)
 
 
-def pixel_offsets(first, count, kind, size_px, seed=0):
+def pixel_offsets(first, count, kind, size_px, seed=0, subpixels=1):
     """Return sub-pixel positions for samples `first` to `first + count - 1`.
 
     Parameters
@@ -48,6 +48,8 @@ def pixel_offsets(first, count, kind, size_px, seed=0):
     kind : {'BLACKMAN_HARRIS', 'BOX'}
     size_px : float
     seed : int
+    subpixels : int
+        Along each side of a pixel; they move together.
 
     Returns
     -------
@@ -55,4 +57,4 @@ def pixel_offsets(first, count, kind, size_px, seed=0):
         Offsets from the pixel's centre, in pixels, x right and y up.
     """
     uniform = halton(first, count, PIXEL_BASES, _shift(seed, 2, 2))
-    return filter_offsets(uniform, kind, size_px)
+    return filter_offsets(uniform, kind, movement_size(kind, size_px, subpixels))

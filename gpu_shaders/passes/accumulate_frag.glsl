@@ -1,6 +1,9 @@
-// Copies one lens sample; the blend state adds it to the sum.
-// Inputs: sample_tx (same size as the target). Outputs: the sample. Source: methods 1 (HA90).
+// One lens sample's pixels from its sub-pixels; the blend state adds them to the sum.
+// Inputs: sample_tx (SUBPIXELS times as large as the target); columns, rows (weights of sub-pixels).
+// Outputs: the weighted sample. Source: methods 1 (HA90).
+#include "lib/subpixel_lib.glsl"
+
 void main()
 {
-  out_color = texelFetch(sample_tx, ivec2(gl_FragCoord.xy), 0);
+  out_color = subpixel_sum(sample_tx, ivec2(gl_FragCoord.xy), columns, rows);
 }

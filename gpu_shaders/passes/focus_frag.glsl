@@ -1,6 +1,9 @@
-// Copies one lens sample's share of sharpness; the blend state adds it to the sum.
-// Inputs: mattes_tx (same size as the target). Outputs: the share, 0 to 1. Source: methods 1.
+// One lens sample's share of sharpness; the blend state adds it to the sum.
+// Inputs: mattes_tx (SUBPIXELS times as large as the target); columns, rows (weights of sub-pixels).
+// Outputs: the share, 0 to 1 times the weights. Source: methods 1.
+#include "lib/subpixel_lib.glsl"
+
 void main()
 {
-  out_share = texelFetch(mattes_tx, ivec2(gl_FragCoord.xy), 0).w;
+  out_share = subpixel_sum(mattes_tx, ivec2(gl_FragCoord.xy), columns, rows).w;
 }

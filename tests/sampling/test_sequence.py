@@ -2,7 +2,14 @@ import numpy as np
 import pytest
 
 from addon.sampling.iris import Iris
-from addon.sampling.pixel_filter import blackman_harris, filter_offsets
+from addon.sampling.pixel_filter import (
+    blackman_harris,
+    filter_density,
+    filter_offsets,
+    movement_size,
+    subpixel_centers,
+    subpixel_weights,
+)
 from addon.sampling.sequence import lens_samples, pixel_offsets
 
 
@@ -44,3 +51,25 @@ def test_blackman_harris_offsets_have_the_window_s_variance():
     offsets = filter_offsets(np.stack([uniform, uniform], axis=-1), "BLACKMAN_HARRIS", 1.5)
     # The support is twice the size.
     assert offsets.var() == pytest.approx(variance * 3.0**2, rel=1e-3)
+
+
+@pytest.mark.parametrize("kind, size", [("BOX", 1.0), ("BOX", 2.3), ("BLACKMAN_HARRIS", 1.5)])
+@pytest.mark.parametrize("subpixels", [1, 2, 4])
+def test_weighted_subpixels_make_the_same_filter_as_single_samples(kind, size, subpixels):
+    """Moments of the weighted places against the filter's own, by numerical integration."""
+    uniform = (np.arange(40000) + 0.5) / 40000
+    moved = filter_offsets(uniform, kind, movement_size(kind, size, subpixels))
+    weights = subpixel_weights(moved, kind, size, subpixels)
+    places = moved[:, None] + subpixel_centers(subpixels)
+    x = np.linspace(-size, size, 40001)
+    density = filter_density(x, kind, size)
+    for moment in (0, 2, 4):
+        mean = (weights * places**moment).sum() / len(uniform)
+        expected = (density * x**moment).sum() * (x[1] - x[0])
+        # The movement's table has 2048 steps over the filter's support.
+        assert mean == pytest.approx(expected, rel=3e-3)
+
+
+def test_a_box_of_one_pixel_needs_no_weights():
+    moved = pixel_offsets(0, 512, "BOX", 1.0, subpixels=4)[:, 0]
+    assert np.array_equal(subpixel_weights(moved, "BOX", 1.0, 4), np.full((512, 4), 0.25))
