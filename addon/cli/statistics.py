@@ -76,6 +76,7 @@ def work(statistics):
     return {
         "seconds": {stage: round(seconds, 6) for stage, seconds in statistics.seconds.items()},
         "lens_samples": statistics.lens_samples,
+        "subpixels": statistics.subpixels,
         "draw_calls": statistics.draw_calls,
         "triangles_submitted": statistics.triangles_submitted,
         "triangles_full_detail": statistics.triangles_full_detail,
@@ -98,13 +99,13 @@ def work(statistics):
 
 
 def total_work(parts):
-    """Add the work of several frames, key by key; of what is held at a time, take the most."""
+    """Add the work of several frames, key by key; of what is no sum, take the most."""
     total = {}
     for part in parts:
         for key, value in part.items():
             if isinstance(value, dict):
                 total[key] = total_work([total.get(key, {}), value])
-            elif key.endswith("_bytes"):
+            elif key.endswith(("_bytes", "subpixels")):
                 total[key] = max(total.get(key, 0), value)
             else:
                 total[key] = total.get(key, 0) + value

@@ -63,6 +63,7 @@ def render_view_layer(engine, depsgraph, heard):
                 pictures = _finish(gpu, renderer, result, heard)
         finally:
             statistics.lens_samples += renderer.samples_done
+            statistics.subpixels = max(statistics.subpixels, plan.subpixels)
             statistics.draw_calls += renderer.draw_calls
             statistics.triangles_submitted += renderer.triangles
             statistics.triangles_full_detail += renderer.triangles_full_detail

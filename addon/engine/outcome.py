@@ -28,6 +28,8 @@ class RenderStatistics:
         By stage: ``extract``, ``plan``, ``upload``, ``draw``, ``resolve``, ``read_back``.
     lens_samples : int
         Of all view layers together.
+    subpixels : int
+        Along each side of a pixel in a lens sample's raster, of the finest view layer.
     draw_calls : int
     triangles_submitted, triangles_full_detail : int
         Over all lens samples; the second is what full detail for every sample would have taken.
@@ -46,6 +48,7 @@ class RenderStatistics:
 
     seconds: dict[str, float] = field(default_factory=dict)
     lens_samples: int = 0
+    subpixels: int = 1
     draw_calls: int = 0
     triangles_submitted: int = 0
     triangles_full_detail: int = 0
