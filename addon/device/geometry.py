@@ -30,7 +30,6 @@ class MeshBuffers:
     ----------
     batches : dict of int to (GPUBatch, int)
         Batch and number of triangles, by slot.
-    triangle_count : int
     bounds : ndarray of shape (2, 3)
         Lower and upper corner in object space.
     bytes : int
@@ -53,7 +52,6 @@ class MeshBuffers:
             vertices.attr_fill(name, np.ascontiguousarray(values, np.float32))
         vertex_bytes = 4 * sum(values.size for values in columns.values())
         census.record("vertex_buffer", vertices, vertex_bytes)
-        self.triangle_count = len(mesh.triangles)
         self.bounds = mesh.bounds
         self.bytes = vertex_bytes + 4 * mesh.triangles.size
         self.batches = {}

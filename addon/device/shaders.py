@@ -6,7 +6,6 @@ removed here; the number of shaders is bounded by the number of shapes of node t
 
 import atexit
 import re
-import time
 from contextlib import suppress
 from dataclasses import dataclass, field
 
@@ -14,7 +13,6 @@ from ..errors import ShaderCompileError
 from . import compiler_log, shader_source
 
 _cache = {}
-_seconds = [0.0]
 # The device goes before Python does when the process ends; no shader may outlive it.
 atexit.register(_cache.clear)
 
@@ -71,20 +69,13 @@ def compile_shader(info):
     """
     shader = _cache.get(info)
     if shader is None:
-        start = time.perf_counter()
         shader = _cache[info] = _compile(info)
-        _seconds[0] += time.perf_counter() - start
     return shader
 
 
 def compiled_count():
     """Return how many shaders this process has compiled."""
     return len(_cache)
-
-
-def compile_seconds():
-    """Return how long this process has compiled shaders, in s."""
-    return _seconds[0]
 
 
 def dispatch(shader, groups_x, groups_y, groups_z=1):

@@ -11,8 +11,6 @@ support 8).
 
 import numpy as np
 
-FILTERS = ("BLACKMAN_HARRIS", "BOX")
-
 # The table's resolution: its error in position is below 1/1000 of the filter width.
 _TABLE_SIZE = 2048
 

@@ -77,15 +77,12 @@ class MaterialReader:
 
     def _snapshot(self, material, known):
         if material is None:
-            values = ("", DEFAULT_GRAPH, 0, False)
+            name, graph = "", DEFAULT_GRAPH
         else:
-            graph = self._graph(material)
-            values = (material.name, graph, material.pass_index, material.use_backface_culling)
-        if known and values == (known.name, known.graph, known.pass_index, known.culls_back):
+            name, graph = material.name, self._graph(material)
+        if known and (name, graph) == (known.name, known.graph):
             return known
-        name, graph, pass_index, culls_back = values
-        identifier = cryptomatte_id(name) if name else 0.0
-        return MaterialSnapshot(next_uid(), name, graph, identifier, pass_index, culls_back)
+        return MaterialSnapshot(next_uid(), name, graph, cryptomatte_id(name) if name else 0.0)
 
     def _graph(self, material):
         tree = material.node_tree

@@ -92,17 +92,12 @@ class MaterialSnapshot:
     graph : SurfaceGraph
     cryptomatte_id : float
         Hash of the name as the Cryptomatte specification defines it.
-    pass_index : int
-    culls_back : bool
-        Triangles seen from behind are not drawn.
     """
 
     uid: int
     name: str
     graph: SurfaceGraph
     cryptomatte_id: float = 0.0
-    pass_index: int = 0
-    culls_back: bool = False
 
 
 @dataclass(frozen=True, eq=False)
