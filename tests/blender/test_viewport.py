@@ -139,7 +139,7 @@ def test_camera_moves_upload_nothing_and_leak_nothing(stage):
             space.shading.type = "SOLID"
             redraw(1)
             space.shading.type = "RENDERED"
-            redraw(100, move)
+            redraw(300, move)
             scene = next(iter(module("engine.viewport")._viewed_scenes.values()))
             content = id(scene._extractor._content)
             uploads = dict(scene.buffers.uploads)
@@ -155,8 +155,9 @@ def test_camera_moves_upload_nothing_and_leak_nothing(stage):
     assert before[0] == after[0]
     assert before[0]
     assert uploads and content
-    # A picture of this view takes 0.7 MB; the allocator's own fluctuation is larger.
-    assert after[1] - before[1] < 8
+    # A picture of this view takes 0.7 MB: one lost a redraw would be 700 MB, and smaller objects are
+    # counted by the census. Blender's and the driver's allocators grow by up to 9 MB here (seen).
+    assert after[1] - before[1] < 24
     stage.run("bpy.context.scene.render.preview_pixel_size = 'AUTO'")
 
 
