@@ -155,7 +155,7 @@ def test_camera_moves_upload_nothing_and_leak_nothing(stage):
     assert before[0] == after[0]
     assert before[0]
     assert uploads and content
-    # A picture of this view takes 0.7 MB: one lost a redraw would be 700 MB, and smaller objects are
+    # A picture of this view takes 0.7 MB: one lost a redraw would be 700 MB; smaller objects are
     # counted by the census. Blender's and the driver's allocators grow by up to 9 MB here (seen).
     assert after[1] - before[1] < 24
     stage.run("bpy.context.scene.render.preview_pixel_size = 'AUTO'")
