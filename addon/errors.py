@@ -21,6 +21,36 @@ class CameraError(InputError):
     """A camera that is missing or of a kind that the engine does not render."""
 
 
+class PrescriptionError(InputError):
+    """A lens prescription, or a setting of one, with which no rays can be traced."""
+
+
+class LensFileError(InputError):
+    """A lens file that cannot be loaded: everything that is wrong with it, and the warnings.
+
+    Parameters
+    ----------
+    file_name : str
+    findings : sequence
+        Errors, each with ``code``, ``path`` and ``message`` (see `addon.lens_io.findings`).
+    warnings : sequence
+        Warnings of the same kind.
+    """
+
+    def __init__(self, file_name, findings, warnings=()):
+        first = findings[0]
+        where = f"{first.path}: " if first.path else ""
+        more = f" (and {len(findings) - 1} more)" if len(findings) > 1 else ""
+        super().__init__(f"{file_name}: {first.code} {where}{first.message}{more}")
+        self.file_name = file_name
+        self.findings = tuple(findings)
+        self.warnings = tuple(warnings)
+
+
+class GlassNotFoundError(InputError, LookupError):
+    """A glass name that the catalogue does not have."""
+
+
 class SnapshotError(InputError):
     """Scene data that cannot be rendered, such as coordinates that are not finite."""
 

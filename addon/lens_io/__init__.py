@@ -1,0 +1,1 @@
+"""Lens files: readers, writer, importers, the library of lenses, profiles on disk."""

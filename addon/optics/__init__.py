@@ -1,0 +1,1 @@
+"""Real lenses: prescription, rays, first-order values, pupils, bokeh profiles; pure numpy."""
