@@ -33,6 +33,22 @@ def confined(x, y, width, height):
         gpu.state.viewport_set(*viewport)
 
 
+@contextmanager
+def scissored(x, y, width, height):
+    """Leave everything outside a rectangle of the bound frame buffer as it is, for a `with` block.
+
+    Unlike `confined`, where a point lands does not depend on the rectangle, to the last bit.
+    """
+    import gpu
+
+    gpu.state.scissor_test_set(True)
+    gpu.state.scissor_set(x, y, width, height)
+    try:
+        yield
+    finally:
+        gpu.state.scissor_test_set(False)
+
+
 def opaque():
     """Nearest surface wins: depth test and write, no blending."""
     import gpu

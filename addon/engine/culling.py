@@ -69,27 +69,24 @@ def seen(spheres, plan):
     return visible
 
 
-def runs(visible, first, count, triangles):
-    """Return the runs of rows of a draw that are worth drawing.
+def runs(rows, triangles):
+    """Return the runs of rows that are worth drawing together.
 
     Parameters
     ----------
-    visible : ndarray of shape (I,)
-        bool, of the whole instance table.
-    first, count : int
-        Rows of the draw.
-    triangles : int
-        Of one instance.
+    rows : ndarray of shape (R,)
+        Rising; what is to be drawn.
+    triangles : float
+        Of one instance; inf if nothing may be drawn in passing.
 
     Returns
     -------
     list of (int, int)
         First row and number of rows.
     """
-    rows = first + np.flatnonzero(visible[first : first + count])
     if len(rows) == 0:
         return []
-    longest_gap = _TRIANGLES_PER_DRAW_CALL // max(triangles, 1)
+    longest_gap = int(_TRIANGLES_PER_DRAW_CALL / max(triangles, 1))
     breaks = np.flatnonzero(np.diff(rows) > longest_gap + 1)
     starts = rows[np.concatenate([[0], breaks + 1])]
     ends = rows[np.concatenate([breaks, [len(rows) - 1]])]

@@ -64,9 +64,12 @@ def render_view_layer(engine, depsgraph, heard):
         finally:
             statistics.lens_samples += renderer.samples_done
             statistics.subpixels = max(statistics.subpixels, plan.subpixels)
-            statistics.draw_calls += renderer.draw_calls
-            statistics.triangles_submitted += renderer.triangles
-            statistics.triangles_full_detail += renderer.triangles_full_detail
+            counts = renderer.counts
+            statistics.draw_calls += counts.draw_calls
+            statistics.triangles_submitted += counts.triangles
+            statistics.triangles_full_detail += counts.triangles_full_detail
+            statistics.sprites_drawn += counts.sprites_drawn
+            statistics.sprites_copied += counts.sprites_copied
             statistics.shaders_compiled += compiled_count() - compiled_before
             statistics.texture_bytes = max(statistics.texture_bytes, renderer.texture_bytes())
             statistics.geometry_bytes = max(statistics.geometry_bytes, renderer.geometry_bytes())

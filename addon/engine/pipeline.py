@@ -4,15 +4,15 @@ Only the sums of the samples and the Cryptomatte tables outlive a sample, so mem
 on their number.
 """
 
-from dataclasses import replace
-
 import numpy as np
 
 from ..device import geometry, readback, state
 from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
 from ..passes import accumulate, background, cryptomatte, data, resolve, surface
-from . import culling, render_passes
+from . import render_passes
+from .scene_drawing import SceneDrawing
+from .subsampling import SubsampleBlur
 
 # Samples that may wait in the device's queue: the queue's memory, too, is bounded.
 _SAMPLES_IN_FLIGHT = 32
@@ -31,15 +31,12 @@ class FrameRenderer:
     Attributes
     ----------
     samples_done : int
-    draw_calls : int
-    triangles, triangles_full_detail : int
-        Submitted so far, and what every instance for every sample would have taken.
     """
 
     def __init__(self, plan, snapshot, buffers):
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
-        self._content = None
+        self._content = self._levels = self._drawing = self._blur = None
         self._mattes = False
         self._targets = None
         self.restart(plan, snapshot)
@@ -55,46 +52,26 @@ class FrameRenderer:
         """
         self.plan = plan
         self.samples_done = 0
-        self.draw_calls = 0
-        self.triangles = 0
-        self.triangles_full_detail = 0
         self._cryptomattes = render_passes.cryptomatte_kinds(plan.passes)
         mattes = bool(render_passes.made_by(plan.passes, "MATTE", "CRYPTOMATTE"))
-        if snapshot.content is not self._content or mattes != self._mattes:
-            self._mattes = mattes
-            self._prepare(snapshot.content)
-        self._visible = culling.seen(self._spheres, plan)
-        self._draws = self._cull(self._all_draws)
-        self._glows = self._cull(self._all_glows)
-        self._triangles_per_sample = sum(
-            d.triangles * d.count for d in (*self._draws, *self._glows)
-        )
+        levels = self._buffers.levels_version
+        if (snapshot.content, mattes, levels) != (self._content, self._mattes, self._levels):
+            self._content, self._mattes, self._levels = snapshot.content, mattes, levels
+            target = surface.COLOR_AND_MATTES if mattes else surface.COLOR
+            self._drawing = SceneDrawing(snapshot.content, self._buffers, target)
+        self._drawing.aim(plan)
         self._view = uniform_buffer(_view_params(plan))
         world = snapshot.content.world
         self._background = (0.0,) * 4 if snapshot.film.transparent else (*world.color, 1.0)
         self._shows_image = bool(world.image) and not snapshot.film.transparent
+        nearest = self._drawing.nearest
+        self._blur = SubsampleBlur(plan, nearest, self._shows_image) if plan.blurs else None
         self._prepare_targets()
 
-    def _prepare(self, content):
-        target = surface.COLOR_AND_MATTES if self._mattes else surface.COLOR
-        self._all_draws = surface.build_draws(content, self._buffers, target)
-        self._all_glows = surface.build_glow_draws(content, self._buffers, target)
-        self._full_detail_per_sample = sum(
-            d.triangles * d.count for d in (*self._all_draws, *self._all_glows)
-        )
-        bounds = {uid: mesh.bounds for uid, mesh in self._buffers.meshes.items()}
-        self._spheres = culling.BoundingSpheres(content, bounds)
-        self._content = content
-
-    def _cull(self, draws):
-        return [
-            draw if (first, count) == (draw.first, draw.count)
-            else replace(draw, first=first, count=count)
-            for draw in draws
-            for first, count in culling.runs(
-                self._visible, draw.first, draw.count, draw.triangles
-            )
-        ]  # fmt: skip
+    @property
+    def counts(self):
+        """Work done since the frame began, as `DrawingCounts`."""
+        return self._drawing.counts
 
     def _prepare_targets(self):
         size = (self.plan.width, self.plan.height)
@@ -127,6 +104,9 @@ class FrameRenderer:
         if self._cryptomattes:
             layers = len(self._cryptomattes) * cryptomatte.slot_pairs(self._cryptomattes)
             specs.append(TargetSpec("tables", "RGBA32F", layers))
+        specs += self._drawing.scratch_specs(self._mattes)
+        if self._blur:
+            specs += self._blur.specs()
         return tuple(specs)
 
     def advance(self, samples):
@@ -145,8 +125,8 @@ class FrameRenderer:
 
     def _render_sample(self, index):
         plan, targets = self.plan, self._targets
-        lens_sample = (*plan.lens_positions[index].tolist(), *plan.jitter[index].tolist())
-        weights = plan.subpixel_weights[index]
+        if self._blur and index == 0:
+            self._find_bounds()
         framebuffer = targets.framebuffer("sample", depth="sample_depth")
         with framebuffer.bind():
             framebuffer.clear(color=self._background, depth=1.0)
@@ -154,33 +134,55 @@ class FrameRenderer:
             # What surrounds the scene has no id, and is as sharp as its distance makes it.
             targets.clear("mattes", (0.0, 0.0, 0.0, self._empty_focus()))
             framebuffer = targets.framebuffer("sample", "mattes", depth="sample_depth")
-        with framebuffer.bind():
-            state.opaque()
-            surface.draw_sample(
-                self._draws, self._view, self._buffers.instances, lens_sample, index
-            )
+        self._drawing.draw(index, framebuffer, self._view, targets)
         if self._shows_image:
             with targets.framebuffer("sample", depth="sample_depth").bind():
-                background.draw(
-                    self._fullscreen,
-                    self._view,
-                    self._buffers.environment_buffer,
-                    self._buffers.environment_image,
-                    lens_sample,
-                )
+                self._draw_background(plan.lens_sample(index))
+        self._drawing.draw_glows(index, framebuffer, self._view)
+        self._add_sample(index)
+        self.counts.triangles_full_detail += self._drawing.full_detail
+
+    def _find_bounds(self):
+        targets = self._targets
+        framebuffer = targets.framebuffer("sample", depth="sample_depth")
         with framebuffer.bind():
-            surface.draw_glows(self._glows, self._view, self._buffers.instances, lens_sample)
+            framebuffer.clear(depth=1.0)
+        self._drawing.draw_coarsest(framebuffer, self._view)
+        self._blur.find_bounds(self._fullscreen, targets)
+        if self._shows_image:
+            with targets.framebuffer("backdrop").bind():
+                self._draw_background((0.0, 0.0, 0.0, 0.0), background.draw_alone)
+
+    def _draw_background(self, lens_sample, draw=background.draw):
+        buffers = self._buffers
+        draw(
+            self._fullscreen,
+            self._view,
+            buffers.environment_buffer,
+            buffers.environment_image,
+            lens_sample,
+        )
+        self.counts.draw_calls += 1
+
+    def _add_sample(self, index):
+        plan, targets = self.plan, self._targets
+        weights = plan.subpixel_weights[index]
         with targets.framebuffer("sum").bind():
-            accumulate.accumulate(self._fullscreen, targets["sample"], weights)
+            if self._blur:
+                backdrop = targets["backdrop"] if self._shows_image else self._background
+                self._blur.add(self._fullscreen, targets, index, backdrop)
+            else:
+                accumulate.accumulate(self._fullscreen, targets["sample"], weights)
+        # The mattes are those of the sample's own place, with the weight of all it stands for.
+        places = np.array([[1.0 + plan.subsample_counts[index]], [1.0]])
         if "focus_sum" in targets:
             with targets.framebuffer("focus_sum").bind():
-                accumulate.accumulate_focus(self._fullscreen, targets["mattes"], weights)
+                accumulate.accumulate_focus(self._fullscreen, targets["mattes"], weights * places)
         if self._cryptomattes:
-            cryptomatte.count(targets["mattes"], targets["tables"], self._cryptomattes, weights)
-        self.draw_calls += len(self._draws) + len(self._glows) + self._shows_image + 1
-        self.draw_calls += "focus_sum" in targets
-        self.triangles += self._triangles_per_sample
-        self.triangles_full_detail += self._full_detail_per_sample
+            cryptomatte.count(
+                targets["mattes"], targets["tables"], self._cryptomattes, weights * places
+            )
+        self.counts.draw_calls += 1 + ("focus_sum" in targets)
 
     def _empty_focus(self):
         sharp = self.plan.sharp_radius
@@ -278,8 +280,7 @@ class FrameRenderer:
             return {}
         plan = self.plan
         vector = "Vector" in names
-        draws = surface.build_draws(self._content, self._buffers, data.target(vector))
-        draws = self._cull(draws)
+        draws = self._drawing.full_detail_draws(data.target(vector))
         bindings = [("data_buf", data.data_params(
             plan.previous, plan.next, plan.width, plan.height, plan.alpha_threshold
         ))]  # fmt: skip
@@ -296,7 +297,7 @@ class FrameRenderer:
                 framebuffer.clear(depth=1.0)
                 state.opaque()
                 data.draw(draws, self._view, self._buffers.instances, tuple(bindings))
-            self.draw_calls += len(draws)
+            self.counts.draw_calls += len(draws)
             pictures = {
                 name: readback.read_color(targets.framebuffer(name), plan.width, plan.height)
                 for name in {data.PLACES[name][0] for name in names}
@@ -315,8 +316,7 @@ class FrameRenderer:
     def release(self):
         """Give back to the device what nobody else holds; the renderer is of no use after it."""
         self._release_targets()
-        self._buffers = None
-        self._all_draws = self._draws = self._all_glows = self._glows = ()
+        self._buffers = self._drawing = self._blur = None
 
     def _release_targets(self):
         if self._targets is not None:

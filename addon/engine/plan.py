@@ -6,6 +6,7 @@ import numpy as np
 
 from ..sampling.pixel_filter import subpixel_weights
 from ..sampling.sequence import lens_samples, pixel_offsets
+from ..sampling.subsamples import subsample_offsets
 
 # Diagonals of the picture over the diameter of the largest circle of confusion that counts as
 # sharp: the usual criterion of depth-of-field tables (0.029 mm for 36 x 24 mm).
@@ -43,6 +44,14 @@ class FramePlan:
         Sub-pixels along each side of a pixel in a lens sample's raster; see `subpixels`.
     subpixel_weights : ndarray of shape (N, 2, subpixels)
         Of the columns and rows of sub-pixels; see `sampling.pixel_filter.subpixel_weights`.
+    subsample_offsets : ndarray of shape (N, K, 2)
+        Places on the lens that a sample stands for besides its own, relative to it, in m.
+    subsample_counts : ndarray of shape (N,)
+        int; how many of them each sample has.
+    level_bias : float or None
+        Subtracted from the level of detail; None draws everything in full detail.
+    reuse_grid : int
+        Cells along a pixel in which samples share a drawing; 0 shares none.
     lens_extent : ndarray of shape (2,)
         Half the width and height of the opening, in m.
     coc_scale : float
@@ -69,6 +78,10 @@ class FramePlan:
     jitter: np.ndarray
     subpixels: int
     subpixel_weights: np.ndarray
+    subsample_offsets: np.ndarray
+    subsample_counts: np.ndarray
+    level_bias: float | None
+    reuse_grid: int
     lens_extent: np.ndarray
     coc_scale: float
     sharp_radius: float
@@ -85,7 +98,36 @@ class FramePlan:
 
     def weight(self, samples):
         """Return the summed weight of the first `samples` lens samples."""
-        return float(self.subpixel_weights[:samples].sum(axis=2).prod(axis=1).sum())
+        own = self.subpixel_weights[:samples].sum(axis=2).prod(axis=1)
+        return float((own * (1 + self.subsample_counts[:samples])).sum())
+
+    def lens_sample(self, index):
+        """Return a sample's place on the lens in m and its jitter in clip units, 4 numbers."""
+        return (*self.lens_positions[index].tolist(), *self.jitter[index].tolist())
+
+    @property
+    def blurs(self):
+        """Whether any lens sample is blurred over subsamples."""
+        return bool(self.subsample_counts.any())
+
+    @property
+    def sweep(self):
+        """How far surfaces move between two places on the lens; see ``lib/sweep_lib.glsl``.
+
+        Returns
+        -------
+        ndarray of shape (4,)
+            In texels a metre: constant, x and y, and per unit of the depth buffer.
+        """
+        size = np.array([self.width, self.height]) * self.subpixels
+        scale = np.diag(self.projection)[:2] * size / 2.0
+        slope, offset = self.projection[2, 2:]
+        focus = self.focus_distance
+        if self.orthographic:
+            constant, linear = (offset + 1.0) / (slope * focus) - 1.0, -2.0 / (slope * focus)
+        else:
+            constant, linear = 1.0 / focus - (slope - 1.0) / offset, -2.0 / offset
+        return np.concatenate([scale * constant, scale * linear])
 
 
 def region_projection(projection, film):
@@ -194,13 +236,19 @@ def plan_frame(snapshot):
     x, y, width, height = film.region
     count = sampling.lens_samples
     lens = camera.lens
+    adaptive = sampling.method == "ADAPTIVE"
     if lens is None or lens.aperture_radius == 0.0:
         positions, focus, extent = np.zeros((count, 2)), 1.0, np.zeros(2)
+        offsets_on_lens, places = np.zeros((count, 0, 2)), np.zeros(count, int)
     else:
-        points = lens_samples(0, count, lens.iris, sampling.seed)
-        positions, focus = points * lens.aperture_radius, lens.focus_distance
+        subsamples = sampling.subsamples if adaptive else 0
+        points = lens_samples(0, count * (1 + subsamples), lens.iris, sampling.seed)
+        points = points * lens.aperture_radius
+        positions, focus = points[:count], lens.focus_distance
+        offsets_on_lens, places = subsample_offsets(positions, points[count:])
         extent = lens.aperture_radius * np.array([1.0 / lens.iris.ratio, 1.0])
-    fine = subpixels(snapshot.content, width, height)
+    # Subsamples and levels of detail take the place of a finer raster.
+    fine = 1 if adaptive else subpixels(snapshot.content, width, height)
     filter_kind, filter_size = film.filter_kind, film.filter_size_px
     offsets = pixel_offsets(0, count, filter_kind, filter_size, sampling.seed, fine)
     weights = [subpixel_weights(axis, filter_kind, filter_size, fine) for axis in offsets.T]
@@ -224,6 +272,10 @@ def plan_frame(snapshot):
         jitter=-2.0 * offsets / np.array([width, height]),
         subpixels=fine,
         subpixel_weights=np.stack(weights, axis=1),
+        subsample_offsets=offsets_on_lens,
+        subsample_counts=places,
+        level_bias=sampling.level_bias if adaptive and sampling.uses_levels else None,
+        reuse_grid=sampling.reuse_grid if adaptive else 0,
         lens_extent=extent,
         coc_scale=scale,
         sharp_radius=sharp_radius(film.width, film.height),

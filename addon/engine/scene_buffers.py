@@ -25,6 +25,10 @@ class SceneBuffers:
     ----------
     meshes : dict of int to MeshBuffers
     images : dict of int to GPUTexture
+    levels : dict of int to tuple of MeshBuffers
+        Levels of detail from 1 up, by the mesh's uid.
+    levels_version : int
+        Grows when levels are added.
     instances : GPUTexture
     lighting : tuple of (str, GPUUniformBuf or GPUTexture)
         What lit surfaces read of the lights and the world.
@@ -38,6 +42,8 @@ class SceneBuffers:
     def __init__(self):
         self.meshes = {}
         self.images = {}
+        self.levels = {}
+        self.levels_version = 0
         self.instances = None
         self.lighting = ()
         self.environment_buffer = None
@@ -65,6 +71,7 @@ class SceneBuffers:
         self._content = None
         for uid in self.meshes.keys() - content.meshes.keys():
             del self.meshes[uid]
+            self.levels.pop(uid, None)
         for uid in self.images.keys() - content.images.keys():
             del self.images[uid]
         for key in [k for k in self._materials if k[0] not in content.materials]:
@@ -122,6 +129,23 @@ class SceneBuffers:
             self.environment_image = self.images[image.uid]
         self.uploads["environments"] += 1
 
+    def mesh_levels(self, uid):
+        """Return the buffers of a mesh at each level of detail that is here, from 0 up."""
+        return (self.meshes[uid], *self.levels.get(uid, ()))
+
+    def add_levels(self, uid, levels):
+        """Upload the levels of detail of a mesh.
+
+        Parameters
+        ----------
+        uid : int
+            Of a mesh of the content.
+        levels : sequence of MeshSnapshot
+            From level 1 up.
+        """
+        self.levels[uid] = tuple(MeshBuffers(level) for level in levels)
+        self.levels_version += 1
+
     def texture_bytes(self):
         """Return how many bytes the images and the instance table take on the device."""
         textures = [*self.images.values(), *([self.instances] if self.instances else [])]
@@ -129,7 +153,8 @@ class SceneBuffers:
 
     def geometry_bytes(self):
         """Return how many bytes the meshes take on the device."""
-        return sum(mesh.bytes for mesh in self.meshes.values())
+        levels = (level for levels in self.levels.values() for level in levels)
+        return sum(mesh.bytes for mesh in (*self.meshes.values(), *levels))
 
     def neighbouring_instances(self, instances):
         """Return the instance tables of the previous and the next frame.

@@ -96,6 +96,10 @@ class Draw:
         What a lit surface reads of the lights and the world, the same for all of them.
     material_id : float or None
         Cryptomatte id, where the shader reads it.
+    group : int
+        Which of the content's groups is drawn.
+    level : int
+        Its level of detail.
     """
 
     shader: object
@@ -108,6 +112,8 @@ class Draw:
     transparent: bool
     lighting: tuple = ()
     material_id: float | None = None
+    group: int = 0
+    level: int = 0
 
 
 def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, glow=False):
@@ -200,6 +206,7 @@ def build_draws(content, buffers, target=COLOR):
     Returns
     -------
     list of Draw
+        At every level of detail that the device has of a mesh.
     """
     return _list_draws(content, buffers, target, glow=False)
 
@@ -212,9 +219,9 @@ def build_glow_draws(content, buffers, target=COLOR):
 def _list_draws(content, buffers, target, glow):
     draws = []
     shaders = {}
-    for group in content.groups:
+    for number, level, group, buffer in _levels_of_groups(content, buffers):
         mesh = content.meshes[group.mesh]
-        for slot, (batch, count) in buffers.meshes[group.mesh].batches.items():
+        for slot, (batch, count) in buffer.batches.items():
             material = content.materials[group.materials[slot]]
             code = surface_code.generate(material.graph, mesh.attributes)
             if glow and (group.holdout or not code.glows):
@@ -246,10 +253,18 @@ def _list_draws(content, buffers, target, glow):
                     if target.names_material and not group.holdout and not glow
                     else None
                 ),
+                group=number,
+                level=level,
             )
-            draws.append(((order, material.uid, group.mesh, slot), draw))
+            draws.append(((order, material.uid, group.mesh, slot, level), draw))
     draws.sort(key=lambda item: item[0])
     return [draw for _, draw in draws]
+
+
+def _levels_of_groups(content, buffers):
+    for number, group in enumerate(content.groups):
+        for level, buffer in enumerate(buffers.mesh_levels(group.mesh)):
+            yield number, level, group, buffer
 
 
 def draw_glows(draws, view_buffer, instances, lens_sample):

@@ -263,14 +263,29 @@ class Sampling:
 
     Parameters
     ----------
-    method : {'REFERENCE'}
+    method : {'REFERENCE', 'ADAPTIVE'}
     lens_samples : int
     seed : int
+    subsamples : int
+        Places on the lens that each lens sample stands for besides its own, on the average.
+    uses_levels : bool
+        Blurred objects are drawn at a lower level of detail.
+    level_bias : float
+        Subtracted from the level of detail.
+    least_triangles : int
+        No level of detail has fewer.
+    reuse_grid : int
+        Cells along a pixel in which lens samples share a drawing; 0 shares none.
     """
 
     method: str = "REFERENCE"
     lens_samples: int = 128
     seed: int = 0
+    subsamples: int = 0
+    uses_levels: bool = True
+    level_bias: float = 0.0
+    least_triangles: int = 256
+    reuse_grid: int = 2
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,142 @@
+"""Which level of detail every instance is drawn at, and for which lens samples (methods 3).
+
+The level is a real number: with 2.3 the first 70 % of a frame's lens samples draw level 2, the rest
+level 3. Any stretch of the sample sequence is spread evenly over the lens, so both levels are
+blurred alike, and nothing pops when the number changes.
+
+References
+----------
+Jeong, Kim and Lee, CGF 2013, section 4.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# Triangles are counted once a side: half of them face away.
+_FACING_SHARE = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Extents:
+    """How far the instances reach from the camera, and how large they are.
+
+    Parameters
+    ----------
+    nearest, farthest : ndarray of shape (I,)
+        Least and largest depth of the corners of the bounding box, m.
+    center_depth, radius : ndarray of shape (I,)
+        Of the sphere round those corners, m.
+    """
+
+    nearest: np.ndarray
+    farthest: np.ndarray
+    center_depth: np.ndarray
+    radius: np.ndarray
+
+
+def world_corners(content, bounds):
+    """Return the corners of the instances' bounding boxes in world space.
+
+    Parameters
+    ----------
+    content : SceneContent
+    bounds : dict of int to ndarray of shape (2, 3)
+        Of each mesh, by uid, in object space.
+
+    Returns
+    -------
+    ndarray of shape (I, 8, 3)
+    """
+    world = content.instances.world.astype(np.float64)
+    corners = np.zeros((len(world), 8, 3))
+    for group in content.groups:
+        rows = slice(group.first, group.first + group.count)
+        low, high = np.asarray(bounds[group.mesh], np.float64)
+        choice = np.array(np.meshgrid((0, 1), (0, 1), (0, 1), indexing="ij")).reshape(3, 8).T
+        box = np.where(choice == 0, low, high)
+        corners[rows] = np.einsum("iab,cb->ica", world[rows, :3, :3], box)
+        corners[rows] += world[rows, None, :3, 3]
+    return corners
+
+
+def extents(corners, view):
+    """Measure the instances as a camera sees them.
+
+    Parameters
+    ----------
+    corners : ndarray of shape (I, 8, 3)
+        See `world_corners`.
+    view : ndarray of shape (4, 4)
+        World to camera space.
+
+    Returns
+    -------
+    Extents
+    """
+    depth = -(corners @ view[2, :3] + view[2, 3])
+    center = corners.mean(axis=1)
+    return Extents(
+        nearest=depth.min(axis=1),
+        farthest=depth.max(axis=1),
+        center_depth=-(center @ view[2, :3] + view[2, 3]),
+        radius=np.linalg.norm(corners - center[:, None], axis=2).max(axis=1),
+    )
+
+
+def coc_radius(depth, plan):
+    """Return the signed radius of the circle of confusion in pixels, along the vertical."""
+    defocus = plan.coc_scale * (depth - plan.focus_distance) / plan.focus_distance
+    return defocus if plan.orthographic else defocus / np.maximum(depth, 1e-9)
+
+
+def choose_levels(seen, triangles, plan, bias=0.0):
+    """Choose the level of detail of every instance.
+
+    Parameters
+    ----------
+    seen : Extents
+    triangles : ndarray of shape (I,)
+        Of the mesh at full detail.
+    plan : FramePlan
+    bias : float
+        Subtracted from the level.
+
+    Returns
+    -------
+    ndarray of shape (I,)
+        Not negative; 0 where a part is in focus or behind the camera.
+    """
+    front = (seen.nearest > 0.0) | plan.orthographic
+    near, far = (coc_radius(np.where(front, d, 1.0), plan) for d in (seen.nearest, seen.farthest))
+    smallest = np.where(near * far <= 0.0, 0.0, np.minimum(np.abs(near), np.abs(far)))
+    # An anamorphic opening is narrower than it is high.
+    narrowing = plan.lens_extent[0] / max(plan.lens_extent[1], 1e-30)
+    blur_area = np.pi * smallest**2 * narrowing
+    scale = plan.projection[1, 1] * plan.height / 2.0
+    size = scale * seen.radius
+    if not plan.orthographic:
+        size = size / np.maximum(seen.center_depth, 1e-9)
+    triangle_area = np.pi * size**2 / np.maximum(_FACING_SHARE * triangles, 1e-9)
+    ratio = blur_area / np.maximum(triangle_area, 1e-30)
+    level = np.log2(np.maximum(ratio, 1e-30)) - bias
+    return np.where(front & (smallest > 0.0), np.maximum(level, 0.0), 0.0)
+
+
+def level_for_sample(levels, sample, samples):
+    """Return the level that each instance is drawn at for one lens sample.
+
+    Parameters
+    ----------
+    levels : ndarray of shape (I,)
+    sample, samples : int
+        Which one, of how many.
+
+    Returns
+    -------
+    ndarray of shape (I,)
+        int64.
+    """
+    lower = np.floor(levels)
+    coarser = sample >= np.round((1.0 - (levels - lower)) * samples)
+    return (lower + coarser).astype(np.int64)

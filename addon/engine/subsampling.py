@@ -1,0 +1,97 @@
+"""Subsample blur in the frame: which depths can reach each pixel, and the blur of each sample.
+
+References
+----------
+Jeong, Kim and Lee, CGF 2013, section 6.
+"""
+
+import numpy as np
+
+from ..device.targets import TargetSpec
+from ..device.textures import texture_2d
+from ..passes import nbuffer, subsample
+
+
+class SubsampleBlur:
+    """Blurs the lens samples of a frame.
+
+    Parameters
+    ----------
+    plan : FramePlan
+    nearest : float
+        Least depth of anything that can be seen, m.
+    shows_image : bool
+        What is behind everything is an image.
+    """
+
+    def __init__(self, plan, nearest, shows_image):
+        self._plan = plan
+        self._shows_image = shows_image
+        self._nearest = float(self._window_depth(max(nearest, 0.0)))
+        offsets = np.zeros((*plan.subsample_offsets.shape[:2], 4))
+        offsets[..., :2] = plan.subsample_offsets
+        self._offsets = texture_2d(offsets)
+        self._spread = np.abs(plan.subsample_offsets).max(axis=(0, 1))
+        blur = max(abs(self._coc(self._nearest)), abs(self._coc(1.0)))
+        self._layers = nbuffer.layers(min(blur + 1.0, max(plan.width, plan.height)))
+
+    def _window_depth(self, depth):
+        plan = self._plan
+        clip = plan.projection @ np.array([0.0, 0.0, -depth, 1.0])
+        return np.clip(clip[2] / max(clip[3], 1e-9) * 0.5 + 0.5, 0.0, 1.0)
+
+    def _coc(self, window_depth):
+        sweep = self._plan.sweep
+        return np.abs(self._plan.lens_extent * (sweep[:2] + sweep[2:] * window_depth)).max()
+
+    def specs(self):
+        """Return the targets that it needs beside the sample's."""
+        return (
+            TargetSpec("depth_levels", "RG32F", self._layers),
+            TargetSpec("blur_bounds", "RG32F"),
+            *[TargetSpec("backdrop", "RGBA32F")] * self._shows_image,
+        )
+
+    def find_bounds(self, fullscreen, targets):
+        """Find which depths can reach each pixel.
+
+        Parameters
+        ----------
+        fullscreen : GPUBatch
+        targets : Targets
+            Its ``sample_depth`` is that of the scene seen from the lens' centre.
+        """
+        plan = self._plan
+        nbuffer.build(targets["sample_depth"], targets["depth_levels"], self._layers)
+        with targets.framebuffer("blur_bounds").bind():
+            nbuffer.draw_bounds(
+                fullscreen,
+                targets["depth_levels"],
+                plan.sweep,
+                plan.lens_extent,
+                (self._nearest, 1.0),
+            )
+
+    def add(self, fullscreen, targets, index, backdrop):
+        """Blur a lens sample and add it to the bound frame buffer.
+
+        Parameters
+        ----------
+        fullscreen : GPUBatch
+        targets : Targets
+        index : int
+        backdrop : tuple of 4 float or GPUTexture
+            What is behind everything: a colour, or a picture of it from the lens' centre.
+        """
+        plan = self._plan
+        subsample.blur(
+            fullscreen,
+            (targets["sample"], targets["sample_depth"], targets["blur_bounds"], self._offsets),
+            sweep=plan.sweep,
+            backdrop=backdrop,
+            lens_sample=plan.lens_sample(index),
+            spread=self._spread,
+            weight=float(plan.subpixel_weights[index].prod()),
+            index=index,
+            count=int(plan.subsample_counts[index]),
+        )

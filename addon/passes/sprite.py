@@ -1,0 +1,66 @@
+"""Drawings of one object that several lens samples share: kept as sprites, copied (methods 4)."""
+
+from ..device import shader_source, state
+from ..device.shaders import ShaderInfo, compile_shader
+
+
+def _info(stores, mattes):
+    outputs = [("VEC4", "out_color")]
+    outputs += [("VEC4", "out_mattes")] * mattes
+    outputs += [("FLOAT", "out_depth")] * stores
+    samplers = [("FLOAT_2D", "color_tx"), ("FLOAT_2D", "depth_tx")]
+    samplers += [("FLOAT_2D", "mattes_tx")] * mattes
+    defines = [("STORE", "1")] * stores + [("MATTES", "1")] * mattes
+    return ShaderInfo(
+        name="aplanat_sprite",
+        vertex=shader_source.load("passes/fullscreen_vert.glsl"),
+        fragment=shader_source.load("passes/sprite_frag.glsl"),
+        attributes=(("VEC2", "pos"),),
+        outputs=tuple(outputs),
+        samplers=tuple(samplers),
+        push_constants=(("IVEC2", "origin"),),
+        defines=tuple(defines),
+        writes_depth=not stores,
+    )
+
+
+def store(fullscreen, color, depth, mattes, origin):
+    """Copy a rectangle of a drawing into the bound frame buffer of a sprite.
+
+    Parameters
+    ----------
+    fullscreen : GPUBatch
+    color, depth : GPUTexture
+    mattes : GPUTexture or None
+    origin : tuple of 2 int
+        Lower left texel of the rectangle.
+    """
+    state.overwrite()
+    _draw(fullscreen, True, color, depth, mattes, origin)
+
+
+def copy(fullscreen, color, depth, mattes, origin):
+    """Copy a sprite into the bound frame buffer of a lens sample, nearest surface first.
+
+    Parameters
+    ----------
+    fullscreen : GPUBatch
+    color, depth : GPUTexture
+        Of the sprite; its depth is a colour.
+    mattes : GPUTexture or None
+    origin : tuple of 2 int
+        Texel of the sprite that comes to lie at texel 0, 0.
+    """
+    state.opaque()
+    _draw(fullscreen, False, color, depth, mattes, origin)
+
+
+def _draw(fullscreen, stores, color, depth, mattes, origin):
+    shader = compile_shader(_info(stores, mattes is not None))
+    shader.bind()
+    shader.uniform_sampler("color_tx", color)
+    shader.uniform_sampler("depth_tx", depth)
+    if mattes is not None:
+        shader.uniform_sampler("mattes_tx", mattes)
+    shader.uniform_int("origin", origin)
+    fullscreen.draw(shader)
