@@ -32,6 +32,8 @@ class MeshBuffers:
         Batch and number of triangles, by slot.
     bounds : ndarray of shape (2, 3)
         Lower and upper corner in object space.
+    triangles : int
+        Of all slots.
     bytes : int
     """
 
@@ -53,6 +55,7 @@ class MeshBuffers:
         vertex_bytes = 4 * sum(values.size for values in columns.values())
         census.record("vertex_buffer", vertices, vertex_bytes)
         self.bounds = mesh.bounds
+        self.triangles = len(mesh.triangles)
         self.bytes = vertex_bytes + 4 * mesh.triangles.size
         self.batches = {}
         for slot, first, count in mesh.slots:

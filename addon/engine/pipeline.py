@@ -104,7 +104,7 @@ class FrameRenderer:
         if self._cryptomattes:
             layers = len(self._cryptomattes) * cryptomatte.slot_pairs(self._cryptomattes)
             specs.append(TargetSpec("tables", "RGBA32F", layers))
-        specs += self._drawing.scratch_specs(self._mattes)
+        specs += self._drawing.specs()
         if self._blur:
             specs += self._blur.specs()
         return tuple(specs)
@@ -307,7 +307,7 @@ class FrameRenderer:
     def texture_bytes(self):
         """Return how many bytes targets, images and instances hold on the device."""
         targets = self._targets.bytes if self._targets else 0
-        return targets + self._buffers.texture_bytes()
+        return targets + self._buffers.texture_bytes() + self._drawing.texture_bytes()
 
     def geometry_bytes(self):
         """Return how many bytes the meshes hold on the device."""

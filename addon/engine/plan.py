@@ -1,12 +1,13 @@
 """From a snapshot to a frame plan: every number a frame needs, decided before anything is drawn."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..sampling.pixel_filter import subpixel_weights
 from ..sampling.sequence import lens_samples, pixel_offsets
 from ..sampling.subsamples import subsample_offsets
+from .quality import settle
 
 # Diagonals of the picture over the diameter of the largest circle of confusion that counts as
 # sharp: the usual criterion of depth-of-field tables (0.029 mm for 36 x 24 mm).
@@ -232,7 +233,15 @@ def plan_frame(snapshot):
     -------
     FramePlan
     """
-    film, camera, sampling = snapshot.film, snapshot.camera, snapshot.sampling
+    sampling = snapshot.sampling
+    if sampling.method == "ADAPTIVE" and sampling.target_error is not None:
+        first = _plan(snapshot, replace(sampling, lens_samples=1, subsamples=0))
+        sampling = settle(sampling, snapshot, first)
+    return _plan(snapshot, sampling)
+
+
+def _plan(snapshot, sampling):
+    film, camera = snapshot.film, snapshot.camera
     x, y, width, height = film.region
     count = sampling.lens_samples
     lens = camera.lens
@@ -245,7 +254,7 @@ def plan_frame(snapshot):
         points = lens_samples(0, count * (1 + subsamples), lens.iris, sampling.seed)
         points = points * lens.aperture_radius
         positions, focus = points[:count], lens.focus_distance
-        offsets_on_lens, places = subsample_offsets(positions, points[count:])
+        offsets_on_lens, places = subsample_offsets(positions, points[count:], sampling.progressive)
         extent = lens.aperture_radius * np.array([1.0 / lens.iris.ratio, 1.0])
     # Subsamples and levels of detail take the place of a finer raster.
     fine = 1 if adaptive else subpixels(snapshot.content, width, height)

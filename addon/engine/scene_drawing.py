@@ -1,26 +1,20 @@
 """Drawing the surfaces of a scene for one lens sample after another.
 
-Decides, from the plan, at which level of detail each instance is drawn for each sample, which
-samples share a drawing, and keeps the sprites that are shared.
+Decides, from the plan, at which level of detail each instance is drawn for each sample, and which
+samples share a drawing.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..device import geometry, state
-from ..device.targets import Targets, TargetSpec
+from ..device import state
 from ..device.textures import texture_2d
-from ..passes import sprite as sprites
 from ..passes import surface
 from . import culling
-from .levels import choose_levels, coc_radius, extents, level_for_sample, world_corners
-from .reuse import find_sprites
+from .levels import choose_levels, extents, level_for_sample, world_corners
 from .scene_buffers import instance_texels
-
-# On the device, for sprites that wait for their next lens sample.
-_SPRITE_BYTES = 256 << 20
-_SPRITE_TEXEL_BYTES = 36
+from .shared_drawings import SharedDrawings
 
 
 @dataclass
@@ -50,10 +44,21 @@ class SceneDrawing:
     buffers : SceneBuffers
         Updated to it.
     target : passes.surface.SurfaceTarget
+
+    Attributes
+    ----------
+    counts : DrawingCounts
+        Since the frame began.
+    nearest : float
+        Least depth of anything that can be seen, m.
+    levels : ndarray of shape (I,)
+        Level of detail of each instance in this frame.
+    full_detail : int
+        Triangles of everything at full detail, once.
     """
 
     def __init__(self, content, buffers, target):
-        self.content = content
+        self._content = content
         self._buffers = buffers
         self._draws = surface.build_draws(content, buffers, target)
         self._glows = surface.build_glow_draws(content, buffers, target)
@@ -63,125 +68,79 @@ class SceneDrawing:
         bounds = {uid: mesh.bounds for uid, mesh in buffers.meshes.items()}
         self._spheres = culling.BoundingSpheres(content, bounds)
         self._corners = world_corners(content, bounds)
+        self._group_of = np.zeros(len(self._corners), np.int64)
+        for number, group in enumerate(content.groups):
+            self._group_of[group.first : group.first + group.count] = number
         self._triangles = [
-            [sum(count for _, count in level.batches.values()) for level in
-             buffers.mesh_levels(group.mesh)]
+            [level.triangles for level in buffers.mesh_levels(group.mesh)]
             for group in content.groups
-        ]  # fmt: skip
+        ]
+        self._by_level = {}
+        for draw in self._draws:
+            self._by_level.setdefault((draw.group, draw.level), []).append(draw)
         # Decided by chance a sample, or added to what is behind: such surfaces share nothing.
         self._unshared = {d.group for d in self._draws if d.transparent}
         self._unshared |= {d.group for d in self._glows}
-        self._fullscreen = geometry.fullscreen_batch()
-        self._kept = {}
-        self._pool = {}
-        self.counts = DrawingCounts()
+        self._shared = SharedDrawings("MATTES" in target.defines)
 
     def aim(self, plan):
-        """Prepare a frame: levels, sprites, order of the instances.
+        """Prepare a frame: levels, shared drawings, order of the instances.
 
         Parameters
         ----------
         plan : FramePlan
         """
-        self.plan = plan
+        self._plan = plan
         self.counts = DrawingCounts()
-        self._kept = {}
-        visible = self._visible = culling.seen(self._spheres, plan)
-        self._seen = extents(self._corners, plan.view)
-        self.nearest = float(self._seen.nearest[visible].min(initial=np.inf))
-        self._levels = self._choose_levels()
-        self._sprites = self._find_sprites(visible) if plan.reuse_grid else {}
-        shared = np.zeros(len(visible), bool)
-        shared[[row for row in self._sprites]] = True
-        self._order_rows(visible, shared)
+        self._visible = culling.seen(self._spheres, plan)
+        seen = extents(self._corners, plan.view)
+        self.nearest = float(seen.nearest[self._visible].min(initial=np.inf))
+        self.levels = self._choose_levels(seen)
+        self._shared.forget()
+        if plan.reuse_grid:
+            candidates = [
+                int(row)
+                for row in np.flatnonzero(self._visible)
+                if self._group_of[row] not in self._unshared
+            ]
+            self._shared.find(
+                candidates, self._corners, seen, self.levels, self._triangles_of, plan
+            )
+        self._order_rows()
 
-    def _choose_levels(self):
-        plan = self.plan
-        deepest = np.zeros(len(self._corners), np.int64)
-        triangles = np.zeros(len(self._corners))
-        for group, counts in zip(self.content.groups, self._triangles, strict=True):
-            rows = slice(group.first, group.first + group.count)
-            deepest[rows] = len(counts) - 1
-            triangles[rows] = counts[0]
+    def _triangles_of(self, row):
+        return self._triangles[self._group_of[row]]
+
+    def _choose_levels(self, seen):
+        plan = self._plan
+        deepest = np.array([len(counts) - 1 for counts in self._triangles], int)[self._group_of]
         if plan.level_bias is None or not deepest.any():
             return np.zeros(len(self._corners))
-        return np.minimum(choose_levels(self._seen, triangles, plan, plan.level_bias), deepest)
+        full = np.array([counts[0] for counts in self._triangles], float)[self._group_of]
+        return np.minimum(choose_levels(seen, full, plan, plan.level_bias), deepest)
 
-    def _find_sprites(self, visible):
-        plan = self.plan
-        if plan.subpixels != 1:
-            return {}
-        seen = self._seen
-        near, far = coc_radius(seen.nearest, plan), coc_radius(seen.farthest, plan)
-        largest = np.where(np.abs(near) > np.abs(far), near, far)
-        found = {}
-        budget = _SPRITE_BYTES
-        samples = range(plan.samples)
-        # No cell can be shared by two samples if there are many more cells than samples.
-        limit = np.sqrt(plan.samples) + 1.0
-        for number, group in enumerate(self.content.groups):
-            if number in self._unshared:
-                continue
-            for row in range(group.first, group.first + group.count):
-                if not visible[row] or seen.nearest[row] <= 0.0 or abs(largest[row]) > limit:
-                    continue
-                rectangle = self._rectangle(row)
-                if rectangle is None:
-                    continue
-                row_level = self._levels[row : row + 1]
-                levels = np.array(
-                    [level_for_sample(row_level, i, plan.samples)[0] for i in samples]
-                )
-                for shared in find_sprites(
-                    row, float(largest[row]), levels, self._triangles[number], rectangle, plan
-                ):
-                    size = shared.pixels * _SPRITE_TEXEL_BYTES
-                    if size <= budget:
-                        budget -= size
-                        for member in shared.members:
-                            found.setdefault(row, {})[member] = shared
-        return found
-
-    def _rectangle(self, row):
-        """Return what an instance may cover in the raster of any sample, or None if nothing."""
-        plan = self.plan
-        eye = self._corners[row] @ plan.view[:3, :3].T + plan.view[:3, 3]
-        clip = np.column_stack([eye, np.ones(8)]) @ plan.projection.T
-        if (clip[:, 3] <= 0.0).any():
-            return None
-        size = np.array([plan.width, plan.height])
-        places = (clip[:, :2] / clip[:, 3:] + 1.0) / 2.0 * size
-        blur = np.abs(coc_radius(-eye[:, 2], plan))[:, None] * plan.lens_extent
-        blur = blur / max(plan.lens_extent[1], 1e-30)
-        margin = np.abs(plan.jitter).max(axis=0, initial=0.0) * size / 2.0 + 2.0
-        low = np.floor((places - blur).min(axis=0) - margin)
-        high = np.ceil((places + blur).max(axis=0) + margin)
-        low, high = np.clip(low, 0, size), np.clip(high, 0, size)
-        if (high <= low).any():
-            return None
-        return (*low.astype(int).tolist(), *(high - low).astype(int).tolist())
-
-    def _order_rows(self, visible, shared):
+    def _order_rows(self):
         """Put rows in an order in which those of one level are neighbours, where levels differ."""
-        count = len(visible)
-        lower = np.floor(self._levels)
-        change = self._levels - lower
+        count = len(self._visible)
+        drawn = self._visible.copy()
+        drawn[self._shared.rows] = False
+        lower = np.floor(self.levels)
+        change = self.levels - lower
         order = np.arange(count)
-        self._rows = {}
-        for number, group in enumerate(self.content.groups):
+        self._rows = []
+        for group in self._content.groups:
             rows = np.arange(group.first, group.first + group.count)
-            drawn = visible[rows] & ~shared[rows]
-            kept = rows[drawn]
-            places = drawn.nonzero()[0]
-            if np.ptp(self._levels[kept]) > 0.0 if len(kept) else False:
+            kept = rows[drawn[rows]]
+            places = kept
+            if len(kept) and np.ptp(self.levels[kept]) > 0.0:
                 kept = kept[np.lexsort((change[kept], lower[kept]))]
-                order[rows] = np.concatenate([kept, rows[~drawn]])
-                places = np.arange(len(kept))
-            self._rows[number] = (group.first + places, lower[kept], change[kept])
+                order[rows] = np.concatenate([kept, rows[~drawn[rows]]])
+                places = group.first + np.arange(len(kept))
+            self._rows.append((places, lower[kept], change[kept]))
         self._table = self._buffers.instances
         self._place = np.arange(count)
         if not np.array_equal(order, self._place):
-            instances = self.content.instances
+            instances = self._content.instances
             ordered = replace(
                 instances,
                 world=instances.world[order],
@@ -190,25 +149,35 @@ class SceneDrawing:
             self._table = texture_2d(instance_texels(ordered))
             self._place[order] = np.arange(count)
 
-    def _runs(self, draw, index):
-        """Return the runs of rows of the ordered table that a draw covers for a sample."""
-        places, lower, change = self._rows[draw.group]
-        if len(places) == 0:
-            return []
-        coarser = index >= np.round((1.0 - change) * self.plan.samples)
-        at_level = places[(lower + coarser).astype(np.int64) == draw.level]
-        # Between rows of one level only what cannot be seen may be drawn in passing.
-        gap_cost = draw.triangles if len(at_level) == len(places) else np.inf
-        return culling.runs(at_level, gap_cost)
-
     def _list(self, draws, index):
-        listed = [
-            draw if (first, count) == (draw.first, draw.count)
+        """List the draw calls for a sample, without what shares drawings."""
+        plan = self._plan
+        levels = [
+            level_for_sample(lower + change, index, plan.samples) for _, lower, change in self._rows
+        ]
+        return [run for draw in draws for run in self._runs(draw, levels[draw.group] == draw.level)]
+
+    def _runs(self, draw, chosen):
+        places = self._rows[draw.group][0]
+        # Between rows of one level only what cannot be seen may be drawn in passing.
+        passing = draw.triangles if chosen.all() else np.inf
+        return [
+            draw
+            if (first, count) == (draw.first, draw.count)
             else replace(draw, first=first, count=count)
-            for draw in draws
-            for first, count in self._runs(draw, index)
-        ]  # fmt: skip
-        return listed
+            for first, count in culling.runs(places[chosen], passing)
+        ]
+
+    def _of_row(self, row, level):
+        place = int(self._place[row])
+        draws = self._by_level.get((int(self._group_of[row]), int(level)), ())
+        return [replace(draw, first=place, count=1) for draw in draws]
+
+    def _draw(self, listed, view, lens_sample, index):
+        self.counts.draw_calls += len(listed)
+        self.counts.triangles += sum(d.triangles * d.count for d in listed)
+        state.opaque()
+        surface.draw_sample(listed, view, self._table, lens_sample, index)
 
     def draw(self, index, framebuffer, view, targets):
         """Draw the opaque surfaces for a lens sample.
@@ -220,121 +189,51 @@ class SceneDrawing:
             The sample's, cleared.
         view : GPUUniformBuf
         targets : Targets
-            With those of `scratch_specs` where anything is shared.
+            With those of `specs`.
         """
+        plan, shared = self._plan, self._shared
         listed = self._list(self._draws, index)
-        alone = [row for row, shared in self._sprites.items() if index not in shared]
-        for row in alone:
-            listed += self._draws_of_row(row, index)
-        self._count(listed)
+        for row in shared.rows:
+            if row not in shared.rows_of(index):
+                level = level_for_sample(self.levels[row], index, plan.samples)
+                listed += self._of_row(row, level)
         with framebuffer.bind():
-            state.opaque()
-            surface.draw_sample(listed, view, self._table, self.plan.lens_sample(index), index)
-        for row, shared in self._sprites.items():
-            if index in shared:
-                self._copy(shared[index], index, framebuffer, view, targets)
+            self._draw(listed, view, plan.lens_sample(index), index)
+
+        def draw_parent(sprite):
+            drawn = self._of_row(sprite.row, sprite.level)
+            self._draw(drawn, view, plan.lens_sample(sprite.parent), sprite.parent)
+
+        before = shared.drawn + shared.copied
+        shared.copy(index, framebuffer, targets, draw_parent)
+        self.counts.draw_calls += shared.drawn + shared.copied - before
+        self.counts.sprites_drawn = shared.drawn
+        self.counts.sprites_copied = shared.copied
 
     def draw_glows(self, index, framebuffer, view):
         """Add the light of surfaces that glow to what a lens sample shows behind them."""
         listed = self._list(self._glows, index)
-        self._count(listed)
+        self.counts.draw_calls += len(listed)
+        self.counts.triangles += sum(d.triangles * d.count for d in listed)
         with framebuffer.bind():
-            surface.draw_glows(listed, view, self._table, self.plan.lens_sample(index))
+            surface.draw_glows(listed, view, self._table, self._plan.lens_sample(index))
 
     def draw_coarsest(self, framebuffer, view):
         """Draw everything at its coarsest level, from the lens' centre, for its depth alone."""
-        coarsest = []
-        for draw in self._draws:
-            count = len(self._rows[draw.group][1])
-            if draw.level == len(self._triangles[draw.group]) - 1 and count:
-                coarsest.append(replace(draw, first=draw.first, count=count))
-        for row in self._sprites:
-            group = self._group_of(row)
-            level = len(self._triangles[group]) - 1
-            coarsest += self._at_row(row, level)
-        self._count(coarsest)
-        with framebuffer.bind():
-            state.opaque()
-            surface.draw_sample(coarsest, view, self._table, (0.0, 0.0, 0.0, 0.0), 0)
-
-    def _count(self, listed):
-        self.counts.draw_calls += len(listed)
-        self.counts.triangles += sum(d.triangles * d.count for d in listed)
-
-    def _group_of(self, row):
-        return next(
-            number
-            for number, group in enumerate(self.content.groups)
-            if group.first <= row < group.first + group.count
-        )
-
-    def _draws_of_row(self, row, index):
-        level = level_for_sample(self._levels[row : row + 1], index, self.plan.samples)[0]
-        return self._at_row(row, int(level))
-
-    def _at_row(self, row, level):
-        group, place = self._group_of(row), int(self._place[row])
-        return [
-            replace(draw, first=place, count=1)
+        coarsest = [
+            run
             for draw in self._draws
-            if draw.group == group and draw.level == level
+            if draw.level == len(self._triangles[draw.group]) - 1
+            for run in self._runs(draw, np.ones(len(self._rows[draw.group][0]), bool))
         ]
+        for row in self._shared.rows:
+            coarsest += self._of_row(row, len(self._triangles_of(row)) - 1)
+        with framebuffer.bind():
+            self._draw(coarsest, view, (0.0, 0.0, 0.0, 0.0), 0)
 
-    def _copy(self, shared, index, framebuffer, view, targets):
-        kept = self._kept.get(id(shared))
-        if kept is None:
-            kept = self._kept[id(shared)] = self._make(shared, view, targets)
-        x, y, width, height = shared.rectangle
-        across, up = shared.members[index]
-        with framebuffer.bind(), state.confined(x + across, y + up, width, height):
-            sprites.copy(
-                self._fullscreen,
-                kept["color"],
-                kept["depth"],
-                kept["mattes"] if "mattes" in kept else None,
-                (-x - across, -y - up),
-            )
-        self.counts.sprites_copied += 1
-        self.counts.draw_calls += 1
-        if index == max(shared.members):
-            self._pool.setdefault((width, height), []).append(self._kept.pop(id(shared)))
-
-    def _make(self, shared, view, targets):
-        """Draw a sprite for its parent, and keep its rectangle."""
-        listed = self._at_row(shared.row, shared.level)
-        self._count(listed)
-        mattes = "scratch_mattes" in targets
-        names = ("scratch", "scratch_mattes") if mattes else ("scratch",)
-        framebuffer = targets.framebuffer(*names, depth="scratch_depth")
-        x, y, width, height = shared.rectangle
-        with framebuffer.bind(), state.scissored(x, y, width, height):
-            framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
-            state.opaque()
-            lens_sample = self.plan.lens_sample(shared.parent)
-            surface.draw_sample(listed, view, self._table, lens_sample, shared.parent)
-        spare = self._pool.get((width, height))
-        kept = spare.pop() if spare else Targets(width, height, _sprite_specs(mattes))
-        kept.forget_framebuffers()
-        names = ("color", "mattes", "depth") if mattes else ("color", "depth")
-        with kept.framebuffer(*names).bind():
-            sprites.store(
-                self._fullscreen,
-                targets["scratch"],
-                targets["scratch_depth"],
-                targets["scratch_mattes"] if mattes else None,
-                (x, y),
-            )
-        self.counts.sprites_drawn += 1
-        self.counts.draw_calls += 1
-        return kept
-
-    def scratch_specs(self, mattes):
+    def specs(self):
         """Return the targets that drawing needs beside the sample's."""
-        if not self._sprites:
-            return ()
-        names = [("scratch", "RGBA32F"), ("scratch_depth", "DEPTH_COMPONENT32F")]
-        names += [("scratch_mattes", "RGBA32F")] * mattes
-        return tuple(TargetSpec(name, kind) for name, kind in names)
+        return self._shared.specs()
 
     def full_detail_draws(self, target):
         """Return the draws, at full detail, of what can be seen, for another target.
@@ -348,7 +247,7 @@ class SceneDrawing:
         list of Draw
             With rows of the content's own instance table.
         """
-        draws = surface.build_draws(self.content, self._buffers, target)
+        draws = surface.build_draws(self._content, self._buffers, target)
         return [
             replace(draw, first=first, count=count)
             for draw in draws
@@ -359,7 +258,6 @@ class SceneDrawing:
             )
         ]
 
-
-def _sprite_specs(mattes):
-    specs = [TargetSpec("color", "RGBA32F"), TargetSpec("depth", "R32F")]
-    return [*specs, *[TargetSpec("mattes", "RGBA32F")] * mattes]
+    def texture_bytes(self):
+        """Return how many bytes shared drawings take on the device."""
+        return self._shared.bytes()

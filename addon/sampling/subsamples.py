@@ -3,18 +3,47 @@
 The frame's whole sequence is longer than the number of samples that are drawn. Each further place
 belongs to the drawn sample nearest to it, so that all places together are as evenly spread as the
 sequence is, over whatever shape the iris has.
+
+A picture that may be looked at before it is done divides its samples into nested intervals, each as
+long as all before it: the places of an interval are spread over its own samples, so that the lens
+is covered evenly at the end of each.
 """
 
 import numpy as np
 
+# The samples of a progressive picture's first interval: with fewer, each would stand for so much of
+# the lens that what it cannot see is missed.
+FIRST_INTERVAL = 8
 
-def subsample_offsets(drawn, further):
+
+def intervals(samples, progressive):
+    """Return the intervals of samples that share out further places.
+
+    Parameters
+    ----------
+    samples : int
+    progressive : bool
+
+    Returns
+    -------
+    list of (int, int)
+        First sample, and the one after the last.
+    """
+    ends = [samples]
+    while progressive and ends[0] > FIRST_INTERVAL:
+        ends.insert(0, max(FIRST_INTERVAL, (ends[0] + 1) // 2))
+    return list(zip([0, *ends[:-1]], ends, strict=True))
+
+
+def subsample_offsets(drawn, further, progressive=False):
     """Give every further place to the nearest sample that is drawn.
 
     Parameters
     ----------
     drawn : ndarray of shape (N, 2)
-    further : ndarray of shape (M, 2)
+    further : ndarray of shape (N S, 2)
+        As many for each interval as its samples need.
+    progressive : bool
 
     Returns
     -------
@@ -24,11 +53,11 @@ def subsample_offsets(drawn, further):
         int; how many places each sample has.
     """
     nearest = np.empty(len(further), np.int64)
-    # In pieces: the table of distances of 4096 samples and their subsamples would take gigabytes.
-    for start in range(0, len(further), 1024):
-        piece = further[start : start + 1024]
-        distance = np.square(piece[:, None] - drawn[None]).sum(axis=2)
-        nearest[start : start + 1024] = distance.argmin(axis=1)
+    each = len(further) // max(len(drawn), 1)
+    for first, end in intervals(len(drawn), progressive):
+        nearest[first * each : end * each] = first + _nearest(
+            further[first * each : end * each], drawn[first:end]
+        )
     counts = np.bincount(nearest, minlength=len(drawn))
     order = np.argsort(nearest, kind="stable")
     owner = nearest[order]
@@ -36,3 +65,12 @@ def subsample_offsets(drawn, further):
     offsets = np.zeros((len(drawn), int(counts.max(initial=0)), 2))
     offsets[owner, rank] = further[order] - drawn[owner]
     return offsets, counts
+
+
+def _nearest(places, drawn):
+    # In pieces: the whole table of distances of 4096 samples would take gigabytes.
+    pieces = [
+        np.square(places[start : start + 1024, None] - drawn[None]).sum(axis=2).argmin(axis=1)
+        for start in range(0, len(places), 1024)
+    ]
+    return np.concatenate(pieces) if pieces else np.empty(0, np.int64)

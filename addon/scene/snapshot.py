@@ -266,26 +266,33 @@ class Sampling:
     method : {'REFERENCE', 'ADAPTIVE'}
     lens_samples : int
     seed : int
+    target_error : float or None
+        What the adaptive method aims at, as 1 - SSIM; it then chooses the numbers below itself, and
+        `lens_samples`. None leaves them as they are.
     subsamples : int
         Places on the lens that each lens sample stands for besides its own, on the average.
+    reuse_grid : int
+        Cells along a pixel in which lens samples share a drawing; 0 shares none.
     uses_levels : bool
         Blurred objects are drawn at a lower level of detail.
     level_bias : float
         Subtracted from the level of detail.
     least_triangles : int
         No level of detail has fewer.
-    reuse_grid : int
-        Cells along a pixel in which lens samples share a drawing; 0 shares none.
+    progressive : bool
+        The picture may be looked at before all samples are drawn.
     """
 
     method: str = "REFERENCE"
     lens_samples: int = 128
     seed: int = 0
+    target_error: float | None = None
     subsamples: int = 0
+    reuse_grid: int = 2
     uses_levels: bool = True
     level_bias: float = 0.0
     least_triangles: int = 256
-    reuse_grid: int = 2
+    progressive: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -62,21 +62,20 @@ def test_a_sphere_holds_its_mesh_under_any_scale():
 
 
 @given(st.lists(st.booleans(), min_size=1, max_size=60), st.integers(1, 500))
-def test_runs_hold_every_visible_row_of_the_draw_and_nothing_else_than_small_gaps(flags, triangles):
-    visible = np.array([True, *flags, True])
-    first, count = 1, len(flags)
-    rows = [
-        row
-        for start, length in culling.runs(visible, first, count, triangles)
-        for row in range(start, start + length)
-    ]
+def test_runs_hold_every_row_and_nothing_else_than_small_gaps(flags, triangles):
+    wanted = np.flatnonzero(flags)
+    runs = culling.runs(wanted, triangles)
+    rows = [row for start, length in runs for row in range(start, start + length)]
     assert len(rows) == len(set(rows))
-    assert set(np.flatnonzero(flags) + 1) <= set(rows)
-    assert all(first <= row < first + count for row in rows)
-    drawn_in_vain = sum(not visible[row] for row in rows)
-    calls = len(culling.runs(visible, first, count, triangles))
-    assert drawn_in_vain * triangles <= 100 * max(sum(flags) - calls, 0)
+    assert set(wanted) <= set(rows)
+    assert all(wanted[0] <= row <= wanted[-1] for row in rows)
+    drawn_in_vain = len(rows) - len(wanted)
+    assert drawn_in_vain * triangles <= 100 * max(len(wanted) - len(runs), 0)
 
 
-def test_nothing_visible_is_no_run():
-    assert culling.runs(np.zeros(5, bool), 0, 5, 10) == []
+def test_runs_without_gaps_hold_nothing_else():
+    assert culling.runs(np.array([1, 2, 4, 7, 8]), np.inf) == [(1, 2), (4, 1), (7, 2)]
+
+
+def test_no_row_is_no_run():
+    assert culling.runs(np.array([], int), 10) == []
