@@ -1,0 +1,128 @@
+"""Numpy twins of N-buffers, blur bounds and subsample blur."""
+
+import numpy as np
+
+
+def nbuffers(depth, count):
+    """Least and largest value over squares that begin at each texel.
+
+    Parameters
+    ----------
+    depth : ndarray of shape (height, width)
+    count : int
+        Layers; layer i has squares of 2^i texels.
+
+    Returns
+    -------
+    ndarray of shape (count, height, width, 2)
+        As far as the squares lie in the picture.
+    """
+    height, width = depth.shape
+    layers = np.empty((count, height, width, 2), depth.dtype)
+    for i in range(count):
+        for y in range(height):
+            for x in range(width):
+                square = depth[y : y + 2**i, x : x + 2**i]
+                layers[i, y, x] = square.min(), square.max()
+    return layers
+
+
+def sweep_px(move, sweep, depth):
+    """How far a surface moves between two places on the lens, in texels."""
+    return np.asarray(move) * (sweep[:2] + sweep[2:] * depth)
+
+
+def square_extremes(depth, x, y, reach):
+    """Least and largest value within `reach` texels of one."""
+    square = depth[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1]
+    return square.min(), square.max()
+
+
+def blur_bounds(depth, sweep, opening, depth_range, iterations=3):
+    """Nearest and farthest depth that can reach each pixel through the lens.
+
+    Parameters
+    ----------
+    depth : ndarray of shape (height, width)
+    sweep : ndarray of shape (4,)
+    opening : ndarray of shape (2,)
+    depth_range : tuple of 2 float
+    iterations : int
+
+    Returns
+    -------
+    ndarray of shape (height, width, 2)
+    """
+    bounds = np.empty((*depth.shape, 2))
+    for y, x in np.ndindex(depth.shape):
+        low, high = depth_range
+        for _ in range(iterations):
+            reach = max(
+                np.abs(sweep_px(opening, sweep, low)).max(),
+                np.abs(sweep_px(opening, sweep, high)).max(),
+            )
+            low, high = square_extremes(depth, x, y, int(np.ceil(reach)) + 1)
+        bounds[y, x] = low, high
+    return bounds
+
+
+def subsample_sum(color, depth, bounds, offsets, sweep, backdrop, tolerance=1.0):
+    """Sum of a lens sample's picture and of those seen from places beside its own.
+
+    Parameters
+    ----------
+    color : ndarray of shape (height, width, 4)
+    depth : ndarray of shape (height, width)
+    bounds : ndarray of shape (height, width, 2)
+    offsets : ndarray of shape (K, 2)
+        In m.
+    sweep, backdrop : ndarray of shape (4,)
+    tolerance : float
+        In texels.
+
+    Returns
+    -------
+    total : ndarray of shape (height, width, 4)
+    margin : ndarray of shape (height, width)
+        How far the nearest decision was from turning out otherwise, in texels.
+    """
+    height, width = depth.shape
+    total = np.zeros((height, width, 4))
+    margin = np.full((height, width), np.inf)
+    spread = np.abs(offsets).max(axis=0)
+    for y, x in np.ndindex(depth.shape):
+        low, high = bounds[y, x]
+        reach = max(np.abs(sweep_px(spread, sweep, d)).max() for d in (low, high))
+        margin[y, x] = abs(reach - 0.5)
+        if reach <= 0.5:
+            total[y, x] = color[y, x] * (len(offsets) + 1)
+            continue
+        total[y, x] = color[y, x]
+        center = np.array([x, y]) + 0.5
+        for move in offsets:
+            value, sure = _cast(center, color, depth, (low, high), move, sweep, tolerance)
+            if value is None:
+                value = backdrop if high >= 1.0 else color[y, x]
+            total[y, x] += value
+            margin[y, x] = min(margin[y, x], sure)
+    return total, margin
+
+
+def _cast(center, color, depth, bounds, move, sweep, tolerance):
+    height, width = depth.shape
+    near, far = (sweep_px(move, sweep, d) for d in bounds)
+    way = near - far
+    length = np.abs(way).max()
+    steps = int(np.ceil(length))
+    # One step, whatever the rounding, if nothing lies before or behind.
+    sure = abs(length - np.round(length)) if length > 0.0 else np.inf
+    for k in range(steps + 1):
+        place = center - near + way * (k / max(steps, 1))
+        sure = min(sure, np.abs(place - np.round(place)).min())
+        x, y = np.clip(np.floor(place).astype(int), 0, (width - 1, height - 1))
+        miss = np.array([x, y]) + 0.5 + sweep_px(move, sweep, depth[y, x]) - center
+        distance = np.abs(miss).max()
+        sure = min(sure, abs(distance - tolerance))
+        if distance <= tolerance:
+            return color[y, x], sure
+    return None, sure
