@@ -31,7 +31,7 @@ class Library:
         -------
         tuple of str
         """
-        return tuple(sorted(self._paths()))
+        return tuple(sorted(self.paths()))
 
     def path_of(self, lens_id):
         """Return the file of a lens.
@@ -49,7 +49,7 @@ class Library:
         LensFileError
             If no folder has it (E01, with near names).
         """
-        paths = self._paths()
+        paths = self.paths()
         if lens_id in paths:
             return paths[lens_id]
         from difflib import get_close_matches
@@ -77,14 +77,21 @@ class Library:
         LensFileError
             If there is no such lens, or with every error of its file.
         """
-        paths = self._paths()
+        paths = self.paths()
         if str(lens) in paths:
             return read_lens(paths[str(lens)])
         if _looks_like_path(lens):
             return read_lens(lens)
         return read_lens(self.path_of(str(lens)))
 
-    def _paths(self):
+    def paths(self):
+        """Return the file of every lens.
+
+        Returns
+        -------
+        dict of str to Path
+            By id.
+        """
         paths = {}
         for folder in reversed(self.folders):
             paths.update(_lens_files(folder))
