@@ -1,0 +1,45 @@
+"""Refractive indices of the media along a lens."""
+
+import math
+
+import numpy as np
+
+from ..errors import PrescriptionError
+from .glass import Air
+
+
+def indices(configuration, wavelength_nm):
+    """Return the indices in front of the lens and behind each surface.
+
+    Parameters
+    ----------
+    configuration : Configuration
+    wavelength_nm : float
+
+    Returns
+    -------
+    tuple of float
+        One more than there are surfaces; the first is 1, air in front of the lens.
+
+    Raises
+    ------
+    PrescriptionError
+        If the wavelength is not a positive number, or a glass has no real positive index there.
+    """
+    wavelength = float(wavelength_nm)
+    if not (math.isfinite(wavelength) and wavelength > 0.0):
+        raise PrescriptionError(f"wavelength {wavelength:g} nm must be a number greater than 0")
+    found = [1.0]
+    for number, surface in enumerate(configuration.surfaces, 1):
+        if isinstance(surface.glass, Air):
+            found.append(1.0)
+            continue
+        with np.errstate(all="ignore"):
+            index = float(surface.glass.index(wavelength))
+        if not (math.isfinite(index) and index > 0.0):
+            raise PrescriptionError(
+                f"the glass behind surface {number} has no real refractive index at"
+                f" {wavelength:g} nm; choose a wavelength where it is transparent"
+            )
+        found.append(index)
+    return tuple(found)
