@@ -1,8 +1,8 @@
 """Focusing a lens: where its sensor stands, or how far its focus group has moved.
 
-The sensor lies at the paraxial image of the axial object point, for the d line. A group that moves
-by s towards the scene changes two distances of the prescription by -s and +s. The object is in focus
-where one entry of the matrix from object to sensor is 0, and that is quadratic in s.
+The sensor lies at the paraxial image of the axial object point, for the d line. A group that
+moves by s towards the scene changes two distances by -s and +s. The object is in focus where
+one entry of the matrix from object to sensor is 0, and that is quadratic in s.
 """
 
 import math
