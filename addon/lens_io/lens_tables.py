@@ -1,7 +1,9 @@
 """The tables of a lens file besides its surfaces: lens, diaphragm, zoom and focus."""
 
+from dataclasses import replace
+
 from ..optics.prescription import Diaphragm, FocusGroup, ZoomPosition
-from .surface_tables import NOT_NEGATIVE, POSITIVE, check_rim
+from .surface_tables import NOT_NEGATIVE, POSITIVE, check_asphere, check_rim
 from .toml_table import Range, Table, nearest, show
 
 LENS_KEYS = (
@@ -210,6 +212,7 @@ def _position(table, nominal, surface_tables):
                 before = len(table.findings.errors)
                 path = table.at("stop_semi_diameter_mm")
                 check_rim(surface, stop, path, table.findings)
+                check_asphere(replace(surface, semi_diameter=stop), path, table.findings)
                 known = known and len(table.findings.errors) == before
     if not known:
         return None

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ..optics.prescription import Surface
 from .material import read_material
+from .optical_checks import asphere_fault
 from .toml_table import Range, Table, nearest, show
 
 SURFACE_KEYS = (
@@ -108,6 +109,26 @@ def check_rim(surface, semi_diameter, path, findings):
         )
 
 
+def check_asphere(surface, path, findings):
+    """Note an asphere whose sag is not finite everywhere inside its rim (E16).
+
+    Parameters
+    ----------
+    surface : Surface
+    path : str
+        Of the asphere, or of the semi-diameter that makes it too wide.
+    findings : Findings
+    """
+    failing = asphere_fault(surface)
+    if failing is not None:
+        findings.add(
+            "E16",
+            path,
+            f"the sag of the asphere is not a finite number at {failing:.6g} mm from the axis, "
+            f"inside the rim of {surface.semi_diameter:.6g} mm",
+        )
+
+
 def _read_surface(table):
     radius = _read_radius(table)
     needed = [
@@ -124,6 +145,7 @@ def _read_surface(table):
         return None
     surface = Surface(*needed, id=table.values.get("id"), curved_along=curved_along)
     check_rim(surface, surface.semi_diameter, table.at("semi_diameter_mm"), table.findings)
+    check_asphere(surface, table.at("asphere"), table.findings)
     return surface
 
 

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import LensFileError
-from ..optics.prescription import Prescription
+from ..optics.prescription import Configuration, Prescription
 from . import toml_document
 from .findings import Finding
 from .lens_tables import read_diaphragm, read_focus, read_lens_table, read_zoom
+from .optical_checks import CheckedPosition, check_dispersion, check_position
 from .surface_tables import read_surfaces
 from .toml_table import Findings, Table, show
 
@@ -99,15 +100,27 @@ def _read_document(values, findings):
     surface_tables = read_surfaces(document)
     zoom = read_zoom(document, surface_tables)
     focus = read_focus(document, surface_tables)
-    if findings.errors:
-        return None
+    surfaces = () if surface_tables is None else tuple(surface_tables.surfaces)
+    check_dispersion(surfaces, findings)
+    if surface_tables is not None and surface_tables.sound:
+        for position in _checked_positions(document, surfaces, lens, zoom):
+            check_position(position, findings)
     return Prescription(
-        **lens,
-        surfaces=tuple(surface_tables.surfaces),
-        diaphragm=diaphragm,
-        zoom=tuple(zoom),
-        focus=focus,
+        **lens, surfaces=surfaces, diaphragm=diaphragm, zoom=tuple(zoom), focus=focus
     )
+
+
+def _checked_positions(document, surfaces, lens, zoom):
+    """Yield what can be traced: each zoom position that is known, or the lens without zoom."""
+    if "zoom" not in document:
+        nominal = (lens[name] for name in ("focal_length", "f_number", "half_field_deg"))
+        yield CheckedPosition(Configuration(surfaces, *nominal))
+        return
+    for number, position in enumerate(zoom, 1):
+        if position is not None:
+            yield CheckedPosition(
+                position.applied(surfaces), f"zoom[{number}]", frozenset(position.thicknesses)
+            )
 
 
 def _check_format(document):

@@ -44,15 +44,12 @@ class Range:
     low, high : float
     above, below : bool
         Whether the bound itself is left out.
-    code : str
-        Of the error for a number outside.
     """
 
     low: float = -math.inf
     high: float = math.inf
     above: bool = False
     below: bool = False
-    code: str = "E09"
 
     def __contains__(self, value):
         """Tell whether a number is allowed."""
@@ -138,7 +135,7 @@ class Table:
         value = self._typed(key, int, "an integer", default)
         if value is None or value is default or allowed is None or value in allowed:
             return value
-        self.add(allowed.code, key, f"{show(value)} must be {allowed}")
+        self.add("E09", key, f"{show(value)} must be {allowed}")
         return None
 
     def text(self, key, default=None):
@@ -227,7 +224,7 @@ def checked_number(value, path, findings, allowed=None, infinite=False):
         findings.add("E08", path, f"{key} is {number}{size}; it must be {wanted}")
         return None
     if allowed is not None and number not in allowed:
-        findings.add(allowed.code, path, f"{number!r} must be {allowed}")
+        findings.add("E09", path, f"{number!r} must be {allowed}")
         return None
     return number
 
