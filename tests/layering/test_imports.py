@@ -21,7 +21,7 @@ ROOMS = {
     "lens_io": {"files", "optics", "bokeh", "sampling"},
     # Drawings of lenses, with a plotting library that is imported inside functions.
     "plots": {"optics", "bokeh", "sampling", "lens_io"},
-    "scene.snapshot": {"sampling", "scene.surface_graph"},
+    "scene.snapshot": {"sampling", "optics", "scene.surface_graph"},
     "scene.surface_graph": set(),
     "device": set(),
     "passes": {"device", "sampling", "scene.surface_graph", "scene.snapshot"},
