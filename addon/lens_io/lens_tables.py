@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from ..optics.prescription import Diaphragm, FocusGroup, ZoomPosition
 from .surface_tables import NOT_NEGATIVE, POSITIVE, check_asphere, check_rim
-from .toml_table import Range, Table, nearest, show
+from .toml_table import Range, Table, key_path, nearest, show
 
 LENS_KEYS = (
     "name",
@@ -170,7 +170,8 @@ def read_zoom(document, surface_tables):
         None if table is None else _position(table, values, surface_tables)
         for table, values in zip(tables, nominal, strict=True)
     ]
-    _check_same_ids(tables, surface_tables)
+    for number in _check_same_ids(tables, surface_tables):
+        positions[number - 1] = None
     _check_rising(tables, [values.get("focal_length") for values in nominal])
     return positions
 
@@ -220,9 +221,9 @@ def _position(table, nominal, surface_tables):
 
 
 def _check_same_ids(tables, surface_tables):
-    """Compare the ids of each position with those of the first that has any."""
+    """Compare the ids of each position with the first one's; return those that differ."""
     known = None if surface_tables is None else surface_tables.numbers
-    first = None
+    first, different = None, []
     for number, table in enumerate(tables, 1):
         inner = None if table is None else table.values.get("thickness_mm")
         if not isinstance(inner, dict):
@@ -230,15 +231,18 @@ def _check_same_ids(tables, surface_tables):
         ids = {name for name in inner if known is None or name in known}
         if first is None:
             first, first_number = ids, number
+        if ids != first:
+            different.append(number)
         for name in sorted(ids ^ first):
             verb = "does not set" if name in first else "sets"
             other = "does" if name in first else "does not"
             table.findings.add(
                 "E21",
-                f"{table.at('thickness_mm')}.{name}",
+                key_path(table.at("thickness_mm"), name),
                 f"zoom position {_title(table)} {verb} the distance behind {show(name)}, which "
                 f"position {first_number} {other}; every position must set the same ids",
             )
+    return different
 
 
 def _check_rising(tables, focal_lengths):

@@ -47,8 +47,7 @@ def read_material(surface):
         table = Table(value, surface.at("material"), surface.findings, MATERIAL_KEYS)
         glass = _from_table(table)
         return glass if glass is None or _is_usable(glass, table) else None
-    # Reading it as text notes the type found.
-    surface.text("material")
+    surface.wrong_type("material", "text or a table")
     return None
 
 

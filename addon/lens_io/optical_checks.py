@@ -25,6 +25,8 @@ BACK_FOCUS_TOLERANCE = 0.05
 CHECKED_FIELD = 0.7
 # Rims that overlap by less touch: mm, above the rounding of sags and below every tolerance.
 LEAST_OVERLAP = 1.0e-9
+# Radius of the entrance pupil, mm: beyond these a stop has no image that light could fill.
+SMALLEST_OPENING, LARGEST_OPENING = 1.0e-9, 1.0e9
 # Rays along the diameter of the first surface, rounds of search between two of them, and rays along
 # the side of a square grid on it.
 FAN, ROUNDS, GRID = 401, 3, 41
@@ -165,9 +167,12 @@ def _check_opening(position, findings):
             findings.add("E25", position.whole(stop), str(error))
             continue
         height = 0.5 * diameter
-        if not math.isfinite(height):
+        if not SMALLEST_OPENING <= height <= LARGEST_OPENING:
             findings.add(
-                "E25", position.whole(stop), f"the entrance pupil of stop {stop} is too large"
+                "E25",
+                position.whole(stop),
+                f"the stop (surface {stop}) has an image of {height:.3g} mm radius in object "
+                f"space; it must be {SMALLEST_OPENING:g} to {LARGEST_OPENING:g} mm",
             )
             continue
         origin = [0.0, height, 0.0] if meridian == "y" else [height, 0.0, 0.0]

@@ -69,7 +69,7 @@ def read_surfaces(document):
         findings.add(
             "E11",
             "surface",
-            f"the file has {len(rows)} surfaces; it must have {FEWEST_SURFACES} to "
+            f"the file has {len(rows)} surface{'s' * (len(rows) != 1)}; it must have {FEWEST_SURFACES} to "
             f"{MOST_SURFACES}{more}",
         )
     tables = [
@@ -79,7 +79,7 @@ def read_surfaces(document):
     surfaces = [None if table is None else _read_surface(table) for table in tables]
     _check_stops(rows, findings)
     numbers = _read_ids(rows, tables)
-    sound = all(
+    sound = None not in surfaces and all(
         error.code == "E05" or error.path.endswith("].id") for error in findings.errors[before:]
     )
     return SurfaceTables(surfaces, numbers, sound and findings.left_out == 0)

@@ -26,6 +26,11 @@ class Findings:
     warnings: list[Finding] = field(default_factory=list)
     left_out: int = 0
 
+    @property
+    def is_full(self):
+        """Whether further errors are counted only."""
+        return len(self.errors) >= MOST_FINDINGS
+
     def add(self, code, path, message):
         """Note an error, or a warning if the code starts with W."""
         kept = self.warnings if code.startswith("W") else self.errors
@@ -82,10 +87,11 @@ class Table:
         self.values = values
         self.path = path
         self.findings = findings
-        if keys is not None:
-            for key in values:
-                if key not in keys:
-                    self.add("E05", key, f"the key {show(key)} is not known{_hint(key, keys)}")
+        for key in () if keys is None else values:
+            if key not in keys:
+                # Likeness takes time, which a finding that is not listed is not worth.
+                hint = "" if findings.is_full else _hint(key, keys)
+                self.add("E05", key, f"the key {show(key)} is not known{hint}")
 
     def __contains__(self, key):
         """Tell whether the table has a key."""
@@ -213,15 +219,15 @@ def checked_number(value, path, findings, allowed=None, infinite=False):
     if isinstance(value, bool) or not isinstance(value, int | float):
         findings.add("E07", path, _wrong_type(value, "a number"))
         return None
+    key = path.rpartition(".")[2]
     try:
         number = float(value)
     except OverflowError:
-        number = math.copysign(math.inf, value)
+        findings.add("E08", path, f"{key} is {show(value)}; it must be a finite number")
+        return None
     if math.isnan(number) or (math.isinf(number) and not infinite):
-        key = path.rpartition(".")[2]
-        size = "" if isinstance(value, float) else " (too large a number)"
         wanted = "a number or inf" if infinite else "a finite number"
-        findings.add("E08", path, f"{key} is {number}{size}; it must be {wanted}")
+        findings.add("E08", path, f"{key} is {number}; it must be {wanted}")
         return None
     if allowed is not None and number not in allowed:
         findings.add("E09", path, f"{number!r} must be {allowed}")

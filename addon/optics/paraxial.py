@@ -261,6 +261,29 @@ def magnification(configuration, object_to_first_vertex, wavelength_nm=REFERENCE
     return 1.0 / _spread(c, d, object_to_first_vertex)
 
 
+def sensor_z(configuration):
+    """Return where the sensor stands.
+
+    Parameters
+    ----------
+    configuration : Configuration
+
+    Returns
+    -------
+    float
+        mm from the vertex of surface 1; of the paraxial focus for an object at infinity where the
+        last distance is 0, that is, not told.
+
+    Raises
+    ------
+    PrescriptionError
+        If the last distance is not told and the lens has no power.
+    """
+    if configuration.surfaces[-1].thickness > 0.0:
+        return configuration.sensor
+    return configuration.vertices[-1] + image_distance(configuration, math.inf)
+
+
 def _vertex_curvature(surface, meridian):
     if surface.curved_along not in (None, meridian):
         return 0.0
@@ -282,9 +305,10 @@ def _to_stop(configuration, wavelength_nm, meridian):
 def _image_of_stop(scale, shift, configuration):
     """Position and diameter of the stop's image; None at infinity."""
     radius = configuration.surfaces[configuration.stop - 1].semi_diameter
+    scale, shift = float(scale), float(shift)
     if not (abs(scale) * LARGEST_PUPIL > 1.0 and math.isfinite(scale) and math.isfinite(shift)):
         return None
-    return float(shift / scale), float(2.0 * radius / abs(scale))
+    return shift / scale, 2.0 * radius / abs(scale)
 
 
 def _focusing_matrix(configuration, wavelength_nm, meridian):
