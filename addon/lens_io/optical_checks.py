@@ -149,7 +149,7 @@ def _check_power(position, findings):
         if not math.isfinite(value):
             what = "a power that is not a finite number; its figures are too large"
         elif abs(value) < LEAST_POWER:
-            what = f"no power: 1 / focal length is {value:.3g} per mm"
+            what = f"no power: 1 / focal length is {value + 0.0:.3g} per mm"
         else:
             behind = indices(position.configuration, REFERENCE_WAVELENGTH_NM)[-1]
             what = f"a focal length of {behind / value:.6g} mm; it must be positive"

@@ -65,12 +65,12 @@ def read_surfaces(document):
     findings = document.findings
     before = len(findings.errors)
     if not FEWEST_SURFACES <= len(rows) <= MOST_SURFACES:
+        count = f"{len(rows)} surface{'s' * (len(rows) != 1)}"
         more = f"; the first {MOST_SURFACES} were checked" if len(rows) > MOST_SURFACES else ""
         findings.add(
             "E11",
             "surface",
-            f"the file has {len(rows)} surface{'s' * (len(rows) != 1)}; it must have {FEWEST_SURFACES} to "
-            f"{MOST_SURFACES}{more}",
+            f"the file has {count}; it must have {FEWEST_SURFACES} to {MOST_SURFACES}{more}",
         )
     tables = [
         None if row is None else Table(row, f"surface[{number}]", findings, SURFACE_KEYS)

@@ -93,8 +93,9 @@ def parse_lens(content, file_name):
 
 
 def _read_document(values, findings):
-    document = Table(values, "", findings, DOCUMENT_KEYS)
+    document = Table(values, "", findings)
     _check_format(document)
+    document.check_keys(DOCUMENT_KEYS)
     lens = read_lens_table(document)
     diaphragm = read_diaphragm(document)
     surface_tables = read_surfaces(document)

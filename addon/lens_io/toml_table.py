@@ -87,11 +87,8 @@ class Table:
         self.values = values
         self.path = path
         self.findings = findings
-        for key in () if keys is None else values:
-            if key not in keys:
-                # Likeness takes time, which a finding that is not listed is not worth.
-                hint = "" if findings.is_full else _hint(key, keys)
-                self.add("E05", key, f"the key {show(key)} is not known{hint}")
+        if keys is not None:
+            self.check_keys(keys)
 
     def __contains__(self, key):
         """Tell whether the table has a key."""
@@ -104,6 +101,14 @@ class Table:
     def add(self, code, key, message):
         """Note a finding at a key of this table."""
         self.findings.add(code, self.at(key), message)
+
+    def check_keys(self, keys):
+        """Note keys that are not among the known ones (E05)."""
+        for key in self.values:
+            if key not in keys:
+                # Likeness takes time, which a finding that is not listed is not worth.
+                hint = "" if self.findings.is_full else _hint(key, keys)
+                self.add("E05", key, f"the key {show(key)} is not known{hint}")
 
     def require(self, key):
         """Note a missing key (E06); tell whether it is there."""
