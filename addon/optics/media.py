@@ -1,6 +1,7 @@
 """Refractive indices of the media along a lens."""
 
 import math
+from functools import lru_cache
 
 import numpy as np
 
@@ -34,8 +35,7 @@ def indices(configuration, wavelength_nm):
         if isinstance(surface.glass, Air):
             found.append(1.0)
             continue
-        with np.errstate(all="ignore"):
-            index = float(surface.glass.index(wavelength))
+        index = _index(surface.glass, wavelength)
         if not (math.isfinite(index) and index > 0.0):
             raise PrescriptionError(
                 f"the glass behind surface {number} has no real refractive index at"
@@ -43,3 +43,10 @@ def indices(configuration, wavelength_nm):
             )
         found.append(index)
     return tuple(found)
+
+
+# A search for a pupil traces the same lens a hundred times.
+@lru_cache(maxsize=4096)
+def _index(glass, wavelength_nm):
+    with np.errstate(all="ignore"):
+        return float(glass.index(wavelength_nm))

@@ -261,29 +261,6 @@ def magnification(configuration, object_to_first_vertex, wavelength_nm=REFERENCE
     return 1.0 / _spread(c, d, object_to_first_vertex)
 
 
-def sensor_z(configuration):
-    """Return where the sensor stands.
-
-    Parameters
-    ----------
-    configuration : Configuration
-
-    Returns
-    -------
-    float
-        mm from the vertex of surface 1; of the paraxial focus for an object at infinity where the
-        last distance is 0, that is, not told.
-
-    Raises
-    ------
-    PrescriptionError
-        If the last distance is not told and the lens has no power.
-    """
-    if configuration.surfaces[-1].thickness > 0.0:
-        return configuration.sensor
-    return configuration.vertices[-1] + image_distance(configuration, math.inf)
-
-
 def _vertex_curvature(surface, meridian):
     if surface.curved_along not in (None, meridian):
         return 0.0

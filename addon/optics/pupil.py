@@ -20,9 +20,12 @@ from .trace import Rays, trace
 # Grid that looks for the pupil, and how often it is laid again over what it found.
 SEARCH_GRID = 65
 SEARCHES = 4
-# Steps from the centre of a pupil to its edge, and halvings of the last one.
+# It has found the pupil when the box no longer shrinks by more than this.
+SHRINKS = 0.8
+# Steps from the centre of a pupil to its edge, and halvings of the last one: to rounding, or to
+# what a box with a margin needs.
 MARCH = 48
-HALVINGS = 40
+HALVINGS, FEW_HALVINGS = 40, 6
 
 
 @dataclass(frozen=True)
@@ -202,7 +205,13 @@ def pupil_outline(configuration, source, directions=256, wavelength_nm=REFERENCE
     return PupilOutline(centre, points, _polygon_area(points))
 
 
-def stop_outline(configuration, source, directions=256, wavelength_nm=REFERENCE_WAVELENGTH_NM):
+def stop_outline(
+    configuration,
+    source,
+    directions=256,
+    wavelength_nm=REFERENCE_WAVELENGTH_NM,
+    halvings=HALVINGS,
+):
     """Find the edge of the stop as the object sees it, all other rims out of the way.
 
     Rays far outside the rims can find another way to the stop; they do not belong to the edge
@@ -212,6 +221,8 @@ def stop_outline(configuration, source, directions=256, wavelength_nm=REFERENCE_
     ----------
     configuration, source, directions, wavelength_nm
         As for `pupil_outline`.
+    halvings : int
+        Of the last step to the edge, 1/32 of the pupil's diameter.
 
     Returns
     -------
@@ -229,7 +240,7 @@ def stop_outline(configuration, source, directions=256, wavelength_nm=REFERENCE_
     if centre is None or not passing(bare, beam, centre[None], wavelength_nm)[0]:
         return PupilOutline(np.zeros(2), np.zeros((0, 2)), 0.0)
     reach = 1.5 * entrance_pupil(configuration, wavelength_nm)[1]
-    points = _edge(bare, beam, centre, reach, directions, wavelength_nm)
+    points = _edge(bare, beam, centre, reach, directions, wavelength_nm, halvings)
     return PupilOutline(centre, points, _polygon_area(points))
 
 
@@ -247,18 +258,38 @@ def pupil_box(configuration, beam, wavelength_nm=REFERENCE_WAVELENGTH_NM):
     tuple of float or None
         (u0, u1, v0, v1) in mm, with a small margin; None if nothing gets through.
     """
-    # What gets through hits surface 1 inside its rim. A small pupil could slip through the grid
-    # there, so it is also looked for where the stop appears.
-    places = [_front_box(configuration, beam)]
-    stop = stop_outline(configuration, beam, 32, wavelength_nm)
-    if len(stop.points):
-        places.append(_widened(stop.box, 0.1))
+    places = _places(configuration, beam, wavelength_nm)
     found = [_search(configuration, beam, place, wavelength_nm) for place in places]
     found = np.array([box for box in found if box is not None])
     if not len(found):
         return None
     low, high = found.min(axis=0), found.max(axis=0)
     return (float(low[0]), float(high[1]), float(low[2]), float(high[3]))
+
+
+def is_open(configuration, source, wavelength_nm=REFERENCE_WAVELENGTH_NM):
+    """Tell whether any light gets through the lens.
+
+    Parameters
+    ----------
+    configuration, source, wavelength_nm
+        As for `pupil_rays`.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    PrescriptionError
+        If no beam enters the lens from `source`.
+    """
+    beam = as_beam(source)
+    for place in _places(configuration, beam, wavelength_nm):
+        coordinates, _ = grid_of(place, SEARCH_GRID)
+        if passing(configuration, beam, coordinates, wavelength_nm).any():
+            return True
+    return False
 
 
 def grid_of(box, cells):
@@ -283,6 +314,17 @@ def grid_of(box, cells):
     u, v = np.meshgrid(u0 + (u1 - u0) * place, v0 + (v1 - v0) * place)
     area = (u1 - u0) * (v1 - v0) / (cells * cells)
     return np.stack([u.ravel(), v.ravel()], axis=-1), area
+
+
+def _places(configuration, beam, wavelength_nm):
+    """Boxes in which what gets through may be."""
+    # A small pupil could slip through a grid over surface 1, so it is also looked for where the
+    # stop appears.
+    stop = stop_outline(configuration, beam, 32, wavelength_nm, FEW_HALVINGS)
+    if len(stop.points):
+        yield _widened(stop.box, 0.1)
+    # All that gets through hits surface 1 inside its rim.
+    yield _front_box(configuration, beam)
 
 
 def _front_box(configuration, beam):
@@ -313,11 +355,14 @@ def _search(configuration, beam, box, wavelength_nm):
         (u0, v0), (u1, v1) = open_.min(axis=0), open_.max(axis=0)
         # The edge may be anywhere in the next cell, and a thin tip a little beyond it.
         u, v = 2.0 * (box[1] - box[0]) / SEARCH_GRID, 2.0 * (box[3] - box[2]) / SEARCH_GRID
+        whole = (box[1] - box[0]) * (box[3] - box[2])
         box = (max(u0 - u, box[0]), min(u1 + u, box[1]), max(v0 - v, box[2]), min(v1 + v, box[3]))
+        if (box[1] - box[0]) * (box[3] - box[2]) > SHRINKS * whole:
+            break
     return box
 
 
-def _edge(configuration, beam, centre, reach, directions, wavelength_nm):
+def _edge(configuration, beam, centre, reach, directions, wavelength_nm, halvings=HALVINGS):
     """First place in each direction from an open centre that is not open."""
     turn = np.linspace(0.0, 2.0 * np.pi, directions, endpoint=False)
     way = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
@@ -332,7 +377,7 @@ def _edge(configuration, beam, centre, reach, directions, wavelength_nm):
     closed_at = np.where(open_.all(axis=0), MARCH - 1, np.argmin(open_, axis=0))
     outside = steps[closed_at]
     inside = np.where(closed_at > 0, steps[closed_at - 1], 0.0)
-    for _ in range(HALVINGS):
+    for _ in range(halvings):
         middle = 0.5 * (inside + outside)
         open_ = is_open(middle)
         inside, outside = np.where(open_, middle, inside), np.where(open_, outside, middle)

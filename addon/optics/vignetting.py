@@ -7,8 +7,11 @@ import numpy as np
 from .beam import Beam
 from .glass import REFERENCE_WAVELENGTH_NM
 from .paraxial import entrance_pupil
-from .pupil import grid_of, passing, pupil_box, stop_outline, without_rims
+from .pupil import grid_of, is_open, passing, pupil_box, stop_outline, without_rims
 from .trace import Rays, trace
+
+# Field angles beyond this are not looked at: lens files go up to 90 degrees.
+LARGEST_FIELD_DEG = 89.9
 
 
 @dataclass(frozen=True)
@@ -92,6 +95,52 @@ def area_passing(configuration, beam, wavelength_nm=REFERENCE_WAVELENGTH_NM, gri
         return 0.0
     coordinates, cell = grid_of(box, grid)
     return cell * int(np.count_nonzero(passing(configuration, beam, coordinates, wavelength_nm)))
+
+
+def coverage(configuration, share=0.0, wavelength_nm=REFERENCE_WAVELENGTH_NM, grid=101):
+    """Find the largest field angle that the lens covers.
+
+    Parameters
+    ----------
+    configuration : Configuration
+    share : float
+        Of the pupil's area on the axis that must be open; at 0 any ray will do.
+    wavelength_nm : float
+    grid : int
+        Rays along each side of the box around the pupil.
+
+    Returns
+    -------
+    float
+        Degrees, to 0.01; 0 if nothing gets through on the axis. At most `LARGEST_FIELD_DEG`.
+    """
+
+    def area(field_deg):
+        return area_passing(configuration, Beam.from_infinity(field_deg), wavelength_nm, grid)
+
+    wanted = share * area(0.0)
+
+    def is_covered(field_deg):
+        if share > 0.0:
+            return area(field_deg) >= wanted
+        return is_open(configuration, float(field_deg), wavelength_nm)
+
+    if not is_covered(0.0):
+        return 0.0
+    # Upwards first: beyond the edge of the picture light may find a way again past some rims.
+    inside, outside = 0.0, LARGEST_FIELD_DEG
+    for field in np.arange(5.0, LARGEST_FIELD_DEG, 5.0):
+        if not is_covered(field):
+            outside = float(field)
+            break
+        inside = float(field)
+    else:
+        if is_covered(outside):
+            return outside
+    while outside - inside > 0.01:
+        middle = 0.5 * (inside + outside)
+        inside, outside = (middle, outside) if is_covered(middle) else (inside, middle)
+    return inside
 
 
 def _area_stop_only(configuration, beam, wavelength_nm, grid):
