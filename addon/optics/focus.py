@@ -48,8 +48,9 @@ def focused(configuration, object_distance, focus_group=None):
             " vertex"
         )
     at_infinity = configuration.with_thickness(len(configuration.surfaces), infinity)
-    motion = _GroupMotion(at_infinity, focus_group)
-    shift = 0.0 if math.isinf(object_distance) else motion.shift(object_distance)
+    with np.errstate(all="ignore"):
+        motion = _GroupMotion(at_infinity, focus_group)
+        shift = 0.0 if math.isinf(object_distance) else motion.shift(object_distance)
     return shifted(at_infinity, focus_group, shift)
 
 
@@ -160,7 +161,7 @@ class _GroupMotion:
     def _object_distance(self, shift):
         total = sum(term * shift**power for power, term in enumerate(self.terms))
         (a, b) = total[0].tolist()
-        return -b / a if a != 0.0 else math.inf
+        return -b / a if abs(a) > 0.0 else math.inf
 
 
 def _per_distance(index):

@@ -193,7 +193,7 @@ def first_order(configuration, wavelength_nm=REFERENCE_WAVELENGTH_NM, meridian="
     exit_pupil = _image_of_stop(rear[1, 1], -behind * rear[0, 1], configuration)
     exp_z, exp_diameter = exit_pupil or (None, None)
     efl = -behind / c
-    return FirstOrder(
+    values = FirstOrder(
         efl=efl,
         bfl=-behind * a / c,
         ffl=d / c,
@@ -205,6 +205,8 @@ def first_order(configuration, wavelength_nm=REFERENCE_WAVELENGTH_NM, meridian="
         exp_diameter=exp_diameter,
         f_number=efl / enp_diameter,
     )
+    _refuse_overflow(value for value in vars(values).values() if value is not None)
+    return values
 
 
 def image_distance(configuration, object_to_first_vertex, wavelength_nm=REFERENCE_WAVELENGTH_NM):
@@ -231,8 +233,12 @@ def image_distance(configuration, object_to_first_vertex, wavelength_nm=REFERENC
     behind = indices(configuration, wavelength_nm)[-1]
     (a, b), (c, d) = matrix
     if math.isinf(object_to_first_vertex):
-        return -behind * a / c
-    return -behind * (a * object_to_first_vertex + b) / _spread(c, d, object_to_first_vertex)
+        distance = -behind * a / c
+    else:
+        height = a * object_to_first_vertex + b
+        distance = -behind * height / _spread(c, d, object_to_first_vertex)
+    _refuse_overflow([distance])
+    return distance
 
 
 def magnification(configuration, object_to_first_vertex, wavelength_nm=REFERENCE_WAVELENGTH_NM):
@@ -290,16 +296,20 @@ def _image_of_stop(scale, shift, configuration):
 
 def _focusing_matrix(configuration, wavelength_nm, meridian):
     matrix = ray_matrix(configuration, wavelength_nm, meridian)
-    if not np.isfinite(matrix).all():
-        raise PrescriptionError(
-            "the prescription's numbers are too large: its first-order values overflow"
-        )
+    _refuse_overflow(matrix.ravel())
     if abs(matrix[1, 0]) < LEAST_POWER:
         raise PrescriptionError(
             f"the prescription has no power (1 / focal length = {-matrix[1, 0]:.3g} per mm in"
             f" {meridian}); check radii and materials"
         )
     return matrix.tolist()
+
+
+def _refuse_overflow(values):
+    if not all(map(math.isfinite, values)):
+        raise PrescriptionError(
+            "the prescription's numbers are too large: its first-order values overflow"
+        )
 
 
 def _spread(c, d, distance):

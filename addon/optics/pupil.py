@@ -14,7 +14,7 @@ from .aiming import chief_ray
 from .beam import Beam
 from .glass import REFERENCE_WAVELENGTH_NM
 from .paraxial import entrance_pupil
-from .surfaces import sag
+from .surfaces import FAR, sag, within_reach
 from .trace import Rays, trace
 
 # Grid that looks for the pupil, and how often it is laid again over what it found.
@@ -239,7 +239,7 @@ def stop_outline(
     bare = without_rims(configuration)
     if centre is None or not passing(bare, beam, centre[None], wavelength_nm)[0]:
         return PupilOutline(np.zeros(2), np.zeros((0, 2)), 0.0)
-    reach = 1.5 * entrance_pupil(configuration, wavelength_nm)[1]
+    reach = min(1.5 * entrance_pupil(configuration, wavelength_nm)[1], FAR)
     points = _edge(bare, beam, centre, reach, directions, wavelength_nm, halvings)
     return PupilOutline(centre, points, _polygon_area(points))
 
@@ -331,10 +331,9 @@ def _front_box(configuration, beam):
     """Bounds of surface 1 as the object sees it."""
     front = configuration.surfaces[0]
     turn = np.linspace(0.0, 2.0 * np.pi, 65)
-    radius = front.semi_diameter * np.linspace(0.0, 1.0, 9)[:, None]
+    radius = min(front.semi_diameter, FAR) * np.linspace(0.0, 1.0, 9)[:, None]
     x, y = (radius * np.cos(turn)).ravel(), (radius * np.sin(turn)).ravel()
-    z = np.nan_to_num(sag(front, x, y))
-    seen = beam.coordinates(np.stack([x, y, z], axis=-1))
+    seen = beam.coordinates(within_reach(np.stack([x, y, sag(front, x, y)], axis=-1)))
     (u0, v0), (u1, v1) = seen.min(axis=0), seen.max(axis=0)
     return _widened((u0, u1, v0, v1), 0.02)
 

@@ -37,8 +37,8 @@ def sag(surface, x, y):
         mm. Beyond the reach of the conic the height of its equator goes on; not finite where the
         polynomial overflows, which a valid lens does not inside its rim.
     """
-    u = _curving_squared(surface, np.asarray(x, dtype=float), np.asarray(y, dtype=float))
     with np.errstate(all="ignore"):
+        u = _curving_squared(surface, np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         return _sag(_coefficients(surface), u)[0]
 
 
