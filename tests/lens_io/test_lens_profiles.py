@@ -93,6 +93,11 @@ def test_samples_are_shipped_as_they_are(shared):
         assert shipped.read_bytes() == sample.read_bytes(), sample.name
 
 
+def test_each_lens_is_documented():
+    text = (FILES[0].parents[1] / "docs" / "lenses.md").read_text(encoding="utf-8")
+    assert re.findall(r"^\| `(.+?)` \|", text, re.MULTILINE) == NAMES
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_lens_loads_without_warnings(files, name):
     # The source of the one has no Abbe numbers, its notes say so. The stop of the other, a sample,
