@@ -11,6 +11,7 @@ from ..glass_catalog import catalog_glass, catalog_names, near_names
 from .source_text import clean, number
 
 MAKERS_FILE = Path(__file__).with_name("maker_glasses.json")
+CATALOG_MAKER = "SCHOTT"
 # nd - 1 and vd as digits without points, each at least three of them.
 _CODE = re.compile(r"\d{3,12}\.\d{3,12}", re.ASCII)
 
@@ -19,7 +20,7 @@ class UnknownGlassError(GlassNotFoundError):
     """A glass of a foreign file that no list here has; the message says what to do."""
 
 
-def named_glass(name, options, makers=True):
+def named_glass(name, options, makers=()):
     """Return a glass by its name.
 
     Looked for among the user's own glasses, in the catalogue (dispersion formula), and in the
@@ -29,8 +30,10 @@ def named_glass(name, options, makers=True):
     ----------
     name : str
     options : ImportOptions
-    makers : bool
-        False: a catalogue glass is meant.
+    makers : sequence of str
+        Whose lists the file refers to, the first that has the name counts; makers may use the same
+        name for different glasses, so others are not looked at. The catalogue is asked for SCHOTT,
+        and last.
 
     Returns
     -------
@@ -44,15 +47,18 @@ def named_glass(name, options, makers=True):
     """
     key = name.upper()
     if key in options.glasses:
-        return options.glasses[key], f"glass {clean(name)} as the user gave it"
-    try:
-        return catalog_glass(name), None
-    except GlassNotFoundError:
-        entry = _maker_glasses().get(key) if makers else None
-    if entry is None:
-        raise _unknown(name)
-    nd, vd = entry["nd"], entry["vd"]
-    return AbbeGlass(nd, vd), f"glass {name} by {entry['maker']}'s nd {nd:g} and vd {vd:g}"
+        return options.glasses[key], f"Glass {clean(name)} as the user gave it."
+    for maker in (*(maker.upper() for maker in makers), CATALOG_MAKER):
+        if maker == CATALOG_MAKER:
+            try:
+                return catalog_glass(name), None
+            except GlassNotFoundError:
+                continue
+        values = _maker_glasses().get(maker, {}).get(key)
+        if values is not None:
+            nd, vd = values
+            return AbbeGlass(nd, vd), f"Glass {key} by nd {nd:g} and vd {vd:g} of {maker}."
+    raise _unknown(name)
 
 
 def codev_glass(word, options):
@@ -87,17 +93,13 @@ def codev_glass(word, options):
             return AbbeGlass(*values), None
     name, _, maker = word.upper().rpartition("_")
     if not name:
-        name, maker = maker, ""
+        name, maker = maker, CATALOG_MAKER
     if name in options.glasses:
         return named_glass(name, options)
-    if maker in ("", "SCHOTT"):
-        hyphened = _names_without_hyphens().get(name.replace("-", ""))
-        if hyphened is not None:
-            return named_glass(hyphened, options)
-    for known, entry in _maker_glasses().items():
-        if known.replace("-", "") == name.replace("-", "") and entry["maker"].upper() == maker:
-            return named_glass(known, options)
-    raise _unknown(word)
+    known = _names_without_hyphens(maker).get(name.replace("-", ""))
+    if known is None:
+        raise _unknown(word)
+    return named_glass(known, options, (maker,))
 
 
 def _unknown(name):
@@ -111,9 +113,10 @@ def _unknown(name):
 
 @cache
 def _maker_glasses():
-    return json.loads(MAKERS_FILE.read_text(encoding="utf-8"))["glasses"]
+    return json.loads(MAKERS_FILE.read_text(encoding="utf-8"))["makers"]
 
 
 @cache
-def _names_without_hyphens():
-    return {name.upper().replace("-", ""): name for name in catalog_names()}
+def _names_without_hyphens(maker):
+    names = catalog_names() if maker == CATALOG_MAKER else _maker_glasses().get(maker, ())
+    return {name.upper().replace("-", ""): name for name in names}

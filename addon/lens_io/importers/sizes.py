@@ -5,6 +5,7 @@ import math
 from ...errors import PrescriptionError
 from ...optics.glass import CHECKED_RANGE_NM, REFERENCE_WAVELENGTH_NM
 from ...optics.paraxial import first_order
+from ...optics.surfaces import sag
 from .rims import COVERED_SHARE, beam_radii, coverage, field_of_height
 
 # Stands for a rim that is not known yet, mm: so small that every ray through it is paraxial.
@@ -13,6 +14,8 @@ UNKNOWN_RIM = 1.0e-6
 _RIM_TOLERANCE = 0.03
 # Clear radii are given to this many digits, rounded up.
 _DIGITS = 4
+# Halvings of the search for the radius at which two surfaces meet.
+_HALVINGS = 40
 
 
 class FileValueError(PrescriptionError):
@@ -170,7 +173,7 @@ def rims(stands, draft):
         "Semi-diameters that the file does not tell let the full beams of its fields through, as"
         " traced."
     ]
-    found = [0.0] * len(radii)
+    found, axial = [0.0] * len(radii), [0.0] * len(radii)
     for lens, fields in stands:
         if not fields:
             raise FileValueError(
@@ -180,6 +183,8 @@ def rims(stands, draft):
             )
         met, lost = beam_radii(lens, (0.0, *fields))
         found = [max(pair) for pair in zip(found, met, strict=True)]
+        met, _ = beam_radii(lens, (0.0,))
+        axial = [max(pair) for pair in zip(axial, met, strict=True)]
         notes.extend(f"No ray gets through at {field:.4g} degrees." for field in lost)
     for index in missing:
         if found[index] <= 0.0:
@@ -189,7 +194,36 @@ def rims(stands, draft):
                 " and no ray of its fields gets there; choose fields with --half-field DEG",
             )
         radii[index] = _rounded_up(found[index], draft.surfaces[index])
+    notes.extend(_keep_apart(radii, missing, axial, stands[0][0].surfaces))
     return radii, notes
+
+
+def _keep_apart(radii, missing, axial, surfaces):
+    # Rims end where two surfaces meet: no glass is made with an edge of negative thickness. The
+    # axial beam is never cut.
+    notes = []
+    for index, (this, following) in enumerate(zip(surfaces, surfaces[1:], strict=False)):
+        reach = min(radii[index], radii[index + 1])
+        meeting = _meeting_radius(this, following, reach)
+        for number in (index, index + 1) if meeting < reach else ():
+            if number in missing and axial[number] <= meeting < radii[number]:
+                radii[number] = meeting
+                notes = ["Some of them end where two surfaces meet."]
+    return notes
+
+
+def _meeting_radius(this, following, reach):
+    def gap(radius):
+        between = float(sag(following, 0.0, radius)) - float(sag(this, 0.0, radius))
+        return this.thickness + between
+
+    if not gap(reach) < 0.0:
+        return reach
+    low, high = 0.0, reach
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if gap(middle) >= 0.0 else (low, middle)
+    return low
 
 
 def half_field(lens, fields, alone):

@@ -29,7 +29,7 @@ _ASPHERE_PARAMETERS = 8
 _OTHER_RIMS = {"SQAP", "ELAP", "SPID", "OBSC", "EOBS", "SQOB", "UDAP", "UDOB"}
 # What describes a surface, and may stand there once.
 _SURFACE_WORDS = {"TYPE", "CURV", "DISZ", "CONI", "DIAM", "GLAS", "CLAP", "STOP"}
-_READ_WORDS = {"MODE", "UNIT", "NAME", "NOTE", "WAVM", "PWAV", "FTYP", "XFLN", "YFLN"}
+_READ_WORDS = {"MODE", "UNIT", "NAME", "NOTE", "WAVM", "PWAV", "FTYP", "GCAT", "XFLN", "YFLN"}
 
 
 def looks_like(lines):
@@ -211,7 +211,7 @@ def _read_surface(line, rows, index, header, options):
         elif keyword == "CLAP":
             clear = _clear_radius(row, header)
         elif keyword == "GLAS":
-            surface.glass = _glass(row, draft, options)
+            surface.glass = _glass(row, header, options)
         else:
             _read_other(row, draft)
     if clear is not None:
@@ -252,7 +252,8 @@ def _clear_radius(row, header):
     return value(row, 2, header.draft) * header.scale
 
 
-def _glass(row, draft, options):
+def _glass(row, header, options):
+    draft = header.draft
     line, words, text = row
     if len(words) < 2:
         draft.refusals.add("I07", line, f"{excerpt(text)} names no glass")
@@ -267,7 +268,7 @@ def _glass(row, draft, options):
         deviation = number(words[6]) if len(words) > 6 else 0.0
         return ConstantGlass(nd) if vd == 0.0 else AbbeGlass(nd, vd, deviation or 0.0)
     try:
-        glass, note = named_glass(name, options)
+        glass, note = named_glass(name, options, header.words("GCAT"))
     except UnknownGlassError as error:
         draft.refusals.add("I05", line, str(error))
         return AIR

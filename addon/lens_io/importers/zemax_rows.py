@@ -47,6 +47,11 @@ class Header:
         row = self.last(keyword)
         return row[1][position] if row and len(row[1]) > position else None
 
+    def words(self, keyword):
+        """Return the words behind the last row's keyword."""
+        row = self.last(keyword)
+        return tuple(row[1][1:]) if row else ()
+
     def count(self, keyword, position=1):
         """Return a whole number of the last row of a keyword, or None."""
         word = self.word(keyword, position)
