@@ -34,7 +34,6 @@ _MAY_BE_NEGATIVE = {"--frames", "--field-deg", "--planes-mm", "--rho"}
 _LATER = {
     "capture": "depth layers",
     "refocus": "depth layers",
-    "--lens": "real lenses",
     "--method adaptive": "fast defocus",
     "--subsamples": "fast defocus",
     "--method layered": "depth layers",
@@ -93,7 +92,7 @@ def _check_render(arguments):
     if arguments.method in {"adaptive", "layered"}:
         key = f"--method {arguments.method}"
         raise _not_yet(key, key)
-    for key in ("lens", "subsamples", "layers"):
+    for key in ("subsamples", "layers"):
         if getattr(arguments, key) is not None:
             raise _not_yet(f"--{key}", f"--{key}")
     several = arguments.frames is not None and arguments.frames[0] != arguments.frames[1]

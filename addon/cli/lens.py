@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..errors import InputError, LensFileError
 from ..lens_io.findings import Finding
-from ..lens_io.library import ENDING, Library
+from ..lens_io.library import Library
 from ..lens_io.toml_reader import LensFile
 
 # By word: the module beside this one, and what it does with arguments and console.
@@ -22,6 +22,7 @@ _WORDS = {
     "plot": ("lens_plot", "plot"),
     "import": ("lens_import", "import_file"),
 }
+# Of the formats that can be imported.
 _FOREIGN_ENDINGS = {".dat", ".zmx", ".seq", ".txt"}
 
 
@@ -95,11 +96,6 @@ def tell_warnings(read, console):
     """Print a lens' warnings on stderr."""
     for found in read.warnings:
         console.say(f"warning: {found.code} {found.path}: {found.message}")
-
-
-def lens_id(word):
-    """Return the id of a lens or the stem of its file's name."""
-    return Path(word).stem if word.lower().endswith(ENDING) or Path(word).is_file() else word
 
 
 def _with_advice(error):

@@ -1,5 +1,6 @@
 """The words of `aplanat lens`; no Blender."""
 
+import argparse
 from pathlib import Path
 
 from ..errors import InputError
@@ -175,6 +176,47 @@ def _add_import(words):
     parser.add_argument(
         "-o", "--output", metavar="OUT.toml", type=file_with_ending(".toml"), required=True
     )
+    answers = parser.add_argument_group("where the file leaves it open")
+    answers.add_argument(
+        "--thickness",
+        choices=("before", "after"),
+        help="pbrt: a row's thickness is the gap before or after its surface",
+    )
+    answers.add_argument(
+        "--stop", metavar="N", type=whole_number(1, 1000), help="surface or row that is the stop"
+    )
+    answers.add_argument(
+        "--radii",
+        choices=("radius", "curvature"),
+        help="CODE V: what the first number of a surface is",
+    )
+    answers.add_argument(
+        "--f-number", metavar="X", type=positive_number(1e6), help="wide open, if not in the file"
+    )
+    answers.add_argument(
+        "--half-field",
+        metavar="DEG",
+        type=number_between(0.001, 89.999, " degrees"),
+        help="from the axis to the corner, if not in the file",
+    )
+    answers.add_argument(
+        "--glass",
+        metavar="NAME=ND,VD",
+        type=_glass,
+        action="append",
+        default=[],
+        help="a glass that the catalogue does not have; may be repeated",
+    )
+
+
+def _glass(text):
+    # Only an import needs what this takes along.
+    from ..lens_io.importers import glass_option
+
+    try:
+        return glass_option(text)
+    except InputError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def _add_lens_word(parser):
