@@ -270,10 +270,12 @@ def light_passes(configuration, field_deg):
         traced = _beam(configuration, np.zeros_like(heights), heights, field_deg)
         if traced.passed.any():
             return True
-        # The beam may be thinner than the fan is dense: look between the rays that got farthest.
+        # The beam may be thinner than the fan is dense: look on both sides of the ray that got
+        # farthest, and there passed nearest to the axis.
         farthest = np.flatnonzero(traced.surface == traced.surface.max())
-        middle = farthest[len(farthest) // 2]
-        near = heights[max(middle - 1, 0)], heights[min(middle + 1, FAN - 1)]
+        height = np.hypot(traced.points[farthest, 0], traced.points[farthest, 1])
+        best = farthest[np.argmin(height)]
+        near = heights[max(best - 1, 0)], heights[min(best + 1, FAN - 1)]
         heights = np.linspace(*near, FAN)
     x, y = np.meshgrid(*2 * [np.linspace(-rim, rim, GRID)])
     inside = np.hypot(x, y) <= rim
