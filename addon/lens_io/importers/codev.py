@@ -71,6 +71,8 @@ def read(lines, options):
     """
     reader = _Reader(options)
     for command in commands(lines, reader.draft.refusals):
+        if reader.draft.is_full(len(reader.draft.surfaces), command.line):
+            break
         reader.take(command)
     return reader.finish()
 
@@ -112,7 +114,7 @@ class _Reader:
             refuse("I04", line, f"{command.text}: this surface or rim is no figure of revolution")
         elif keyword in _EDITS:
             refuse("I04", line, f"{command.text}: changes of a lens after its S lines are not read")
-        elif keyword[0] in "XY" and keyword[1:] in _FIELDS:
+        elif keyword[:1] in ("X", "Y") and keyword[1:] in _FIELDS:
             self.fields[keyword[1:], keyword[0]] = self._numbers(command)
         elif keyword in _APERTURES:
             self.aperture = (keyword, self._one(command), line)

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from ...optics.glass import AIR, Glass
 from .source_text import PassedOver, Refusals
 
+# A lens file may have a hundred surfaces; foreign ones have dummies, too.
+_MOST_SURFACES = 1000
+
 
 @dataclass
 class DraftSurface:
@@ -147,6 +150,20 @@ class Draft:
     positions: list = dataclasses.field(default_factory=list)
     passed_over: PassedOver = dataclasses.field(default_factory=PassedOver)
     refusals: Refusals = dataclasses.field(default_factory=Refusals)
+
+    def is_full(self, count, line):
+        """Refuse (E11) and return True if a file goes on after far too many surfaces.
+
+        Parameters
+        ----------
+        count : int
+            Surfaces so far.
+        line : int
+        """
+        if count < _MOST_SURFACES:
+            return False
+        self.refusals.add("E11", line, f"the file has more than {_MOST_SURFACES} surfaces")
+        return True
 
     def drop_dummies(self):
         """Leave out planes in air that are not the stop, adding up the distances."""

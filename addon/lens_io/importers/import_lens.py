@@ -11,7 +11,7 @@ from ..findings import Finding
 from . import codev, optical_bench, pbrt, zemax
 from .completion import complete
 from .options import ImportOptions
-from .source_text import clean, decode, numbered_lines, read_source, size_finding
+from .source_text import MOST_LINES, clean, decode, numbered_lines, read_source, size_finding
 
 # In the order in which their contents are told apart: from the most to the least distinct.
 FORMATS = (optical_bench, zemax, codev, pbrt)
@@ -92,6 +92,9 @@ def import_bytes(content, file_name, options=None):
     if text is None:
         raise LensFileError(file_name, [Finding("I01", "", "its bytes are no text")])
     lines = numbered_lines(text)
+    if len(lines) > MOST_LINES:
+        message = f"the file has {len(lines)} lines; at most {MOST_LINES} are read"
+        raise LensFileError(file_name, [Finding("E01", "", message)])
     reader = _reader_of(lines, file_name)
     draft = reader.read(lines, options)
     if draft.refusals:

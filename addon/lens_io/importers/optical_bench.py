@@ -71,6 +71,8 @@ def read(lines, options):
             if section is None:
                 reader.draft.passed_over.add(f"section {clean(text)[:30]}", line)
             continue
+        if reader.draft.is_full(len(reader.rows), line):
+            break
         reader.take(section, line, [cell.strip() for cell in text.split("\t")], text)
     return reader.finish(options)
 

@@ -78,6 +78,8 @@ def _read_rows(lines, draft):
         words = text.split()
         if not words:
             continue
+        if draft.is_full(len(rows), line):
+            break
         values = [number(word) for word in words]
         if len(words) != len(_COLUMNS) or None in values:
             draft.refusals.add(

@@ -4,23 +4,26 @@ import math
 
 import numpy as np
 
-from ...errors import PrescriptionError
 from ...optics.aiming import chief_ray
 from ...optics.beam import Beam
 from ...optics.glass import REFERENCE_WAVELENGTH_NM
-from ...optics.pupil import stop_outline
+from ...optics.pupil import grid_of, passing, stop_outline
+from ...optics.surfaces import sag
 from ...optics.trace import trace
-from ...optics.vignetting import area_passing
 
-# A lens covers the field where at least this share of the beam of the axis gets through. Lenses of
-# published prescriptions let 20 to 60 % through at the corner that their makers give.
+# A lens covers the field where at least this share of the axial beam gets through, two stops less
+# than on the axis. At the corners that their makers give, thirty lenses of published prescriptions
+# let 12 to 99 % through, half of them 30 to 57 %; the quarter lies 0 to 8 degrees further out.
 COVERED_SHARE = 0.25
 # Beyond this, in degrees, no rectilinear lens and few others see.
 WIDEST_FIELD = 89.0
-# Halvings of the search for a field: to 0.02 degrees.
-_HALVINGS = 12
-# Directions around the stop's rim, and rays along the side of a pupil, of a search.
-_RIM_RAYS, _GRID = 64, 61
+# Halvings of the search for a field: to 1e-5 degrees.
+_HALVINGS = 24
+# Directions around the stop's rim.
+_RIM_RAYS = 64
+# Halvings of the search for the coverage, to 0.1 degrees, and rays along the side of its two grids.
+_COVERAGE_HALVINGS = 10
+_GRIDS = (41, 31)
 
 
 def beam_radii(configuration, fields_deg):
@@ -82,7 +85,7 @@ def field_of_height(configuration, height):
         return float(np.hypot(*traced.at_plane(configuration.sensor)[0]))
 
     low, high = 0.0, WIDEST_FIELD
-    for _ in range(2 * _HALVINGS):
+    for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if reach(middle) < height else (low, middle)
     return low if math.isfinite(reach(high)) else None
@@ -103,15 +106,32 @@ def coverage(configuration):
     """
     wanted = COVERED_SHARE * _open_area(configuration, 0.0)
     low, high = 0.0, WIDEST_FIELD
-    for _ in range(_HALVINGS):
+    for _ in range(_COVERAGE_HALVINGS if wanted > 0.0 else 0):
         middle = 0.5 * (low + high)
-        covered = wanted > 0.0 and _open_area(configuration, middle) >= wanted
+        covered = _open_area(configuration, middle) >= wanted
         low, high = (middle, high) if covered else (low, middle)
     return round(low, 1)
 
 
 def _open_area(configuration, field):
-    try:
-        return area_passing(configuration, Beam.from_infinity(field), grid=_GRID)
-    except PrescriptionError:
-        return 0.0
+    # The rays that meet the first surface inside its rim, then those around the ones that pass:
+    # a few per cent are good enough for a nominal angle, and damaged files must not take long.
+    beam = Beam.from_infinity(field)
+    box = _front_box(configuration.surfaces[0], beam)
+    for cells in _GRIDS:
+        coordinates, cell = grid_of(box, cells)
+        open_ = coordinates[passing(configuration, beam, coordinates)]
+        if not len(open_):
+            return 0.0
+        (u0, v0), (u1, v1) = open_.min(axis=0), open_.max(axis=0)
+        du, dv = (box[1] - box[0]) / cells, (box[3] - box[2]) / cells
+        box = (u0 - du, u1 + du, v0 - dv, v1 + dv)
+    return cell * len(open_)
+
+
+def _front_box(surface, beam):
+    radius, angle = np.meshgrid(np.linspace(0.0, surface.semi_diameter, 9), np.arange(0, 6.4, 0.2))
+    x, y = radius * np.cos(angle), radius * np.sin(angle)
+    points = np.stack([x, y, np.nan_to_num(sag(surface, x, y))], axis=-1)
+    u, v = points @ beam.across, points @ beam.up
+    return (u.min(), u.max(), v.min(), v.max())

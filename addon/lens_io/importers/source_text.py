@@ -13,11 +13,12 @@ from ..toml_document import LARGEST_FILE, read_bytes
 
 _NUMBER = re.compile(r"[+-]?(?:\d{1,400}\.?\d{0,400}|\.\d{1,400})(?:[eEdD][+-]?\d{1,6})?", re.ASCII)
 _LINE_END = re.compile(r"\r\n|\r|\n")
-_UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ufeff\ud800-\udfff]+")
 # Digits of a radius that was stored as a curvature, and what storing it may have changed, as a
 # share: a curvature has 16 to 17 digits.
 _RADIUS_DIGITS = 12
 _CURVATURE_ROUNDING = 1.0e-14
+# The longest file of a lens program has some ten thousand lines.
+MOST_LINES = 50_000
 # How much of a line a message repeats, in characters.
 _EXCERPT = 60
 # A file with more errors than this is of another kind; the rest would not help.
@@ -156,7 +157,7 @@ def radius_of(curvature, scale):
 
 
 def clean(text):
-    """Return a text without control characters and outer blanks.
+    """Return a text without characters that do not print and without outer blanks.
 
     Parameters
     ----------
@@ -166,7 +167,7 @@ def clean(text):
     -------
     str
     """
-    return " ".join(_UNPRINTABLE.sub(" ", text).split())
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 def excerpt(text):

@@ -95,6 +95,8 @@ def _split(lines, draft):
             continue
         keyword = words[0].upper()
         if keyword == "SURF":
+            if draft.is_full(len(blocks), line):
+                break
             inside = True
             if len(words) < 2 or whole_number(words[1]) != len(blocks):
                 draft.refusals.add(
