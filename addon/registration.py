@@ -5,6 +5,9 @@ from .engine import render_engine
 from .ui import (
     background,
     blender_panels,
+    lens_import,
+    lens_operators,
+    lens_panel,
     lens_thumbnails,
     panels,
     properties,
@@ -19,6 +22,9 @@ _MODULES = (
     blender_panels,
     sampling_presets,
     panels,
+    lens_operators,
+    lens_import,
+    lens_panel,
     blender_command,
 )
 

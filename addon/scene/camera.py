@@ -111,3 +111,29 @@ def focus_distance(depsgraph, camera):
             " move it or choose another one"
         )
     return -place.z
+
+
+def sensor_diagonal(camera, scene):
+    """Return the diagonal of what the picture takes of the sensor, in mm.
+
+    Parameters
+    ----------
+    camera : bpy.types.Camera
+    scene : bpy.types.Scene
+        Its picture's shape decides which side of the sensor is filled.
+
+    Returns
+    -------
+    float
+    """
+    render = scene.render
+    width = render.resolution_x * render.pixel_aspect_x
+    height = render.resolution_y * render.pixel_aspect_y
+    fit = camera.sensor_fit
+    if fit == "AUTO":
+        filled, side = camera.sensor_width, max(width, height)
+    elif fit == "HORIZONTAL":
+        filled, side = camera.sensor_width, width
+    else:
+        filled, side = camera.sensor_height, height
+    return filled * math.hypot(width, height) / side

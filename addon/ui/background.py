@@ -1,5 +1,6 @@
 """Background work of the user interface: started from panels, finished in the main thread."""
 
+import threading
 import traceback
 
 import bpy
@@ -15,6 +16,8 @@ _PATIENCE = 10.0
 _queue = JobQueue()
 _receivers = {}
 _errors = {}
+# Set by the user; nothing is begun until it is cleared.
+_stopped = threading.Event()
 
 
 def submit(key, label, work, receive, urgent=False):
@@ -34,7 +37,7 @@ def submit(key, label, work, receive, urgent=False):
     urgent : bool
         Before all that wait.
     """
-    if bpy.app.background or key in _errors:
+    if bpy.app.background or _stopped.is_set() or key in _errors:
         return
     _receivers[key] = receive
     _queue.submit(key, label, work, urgent)
@@ -52,9 +55,23 @@ def error_of(key):
     return _errors.get(key)
 
 
-def forget_errors():
-    """Let jobs that failed be asked for again."""
+def resume():
+    """Let jobs that failed or were stopped be asked for again."""
     _errors.clear()
+    _stopped.clear()
+    _redraw()
+
+
+def stop():
+    """Stop everything until `resume`."""
+    _stopped.set()
+    cancel()
+    _redraw()
+
+
+def is_stopped():
+    """Whether the user stopped the work."""
+    return _stopped.is_set()
 
 
 def cancel():
@@ -118,5 +135,6 @@ def unregister():
     if bpy.app.timers.is_registered(_collect):
         bpy.app.timers.unregister(_collect)
     cancel()
-    forget_errors()
+    _errors.clear()
+    _stopped.clear()
     _queue.close(_PATIENCE)
