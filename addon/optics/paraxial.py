@@ -151,7 +151,7 @@ def entrance_pupil(configuration, wavelength_nm=REFERENCE_WAVELENGTH_NM, meridia
     Raises
     ------
     PrescriptionError
-        If the image is at infinity, or a glass has no index at the wavelength.
+        If the image is at infinity, the stop is closed, or a glass has no index at the wavelength.
     """
     stop = configuration.stop
     front = _to_stop(configuration, wavelength_nm, meridian)
@@ -161,6 +161,8 @@ def entrance_pupil(configuration, wavelength_nm=REFERENCE_WAVELENGTH_NM, meridia
             f"the stop (surface {stop}) has no finite image in object space: it is in the focal"
             " plane of the surfaces before it; move it"
         )
+    if not pupil[1] > 0.0:
+        raise PrescriptionError(f"the stop (surface {stop}) is closed; open it")
     return pupil
 
 
@@ -287,7 +289,7 @@ def _to_stop(configuration, wavelength_nm, meridian):
 
 def _image_of_stop(scale, shift, configuration):
     """Position and diameter of the stop's image; None at infinity."""
-    radius = configuration.surfaces[configuration.stop - 1].semi_diameter
+    radius = float(configuration.surfaces[configuration.stop - 1].semi_diameter)
     scale, shift = float(scale), float(shift)
     if not (abs(scale) * LARGEST_PUPIL > 1.0 and math.isfinite(scale) and math.isfinite(shift)):
         return None

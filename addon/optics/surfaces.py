@@ -9,9 +9,11 @@ nearer to the vertex plane on a sphere. A ray may start behind the surface: its 
 An asphere is found by Newton's method from there. Rays that find no point are told by a mask.
 """
 
+import math
+
 import numpy as np
 
-from .bundle import Bundle
+from .bundle import DIRECTION, POSITION, Bundle
 
 # Beyond this a ray does not meet a surface, mm: no lens is a thousand kilometres wide, and squares
 # stay far from overflow.
@@ -20,6 +22,9 @@ FAR = 1.0e9
 # It converges quadratically, so the position is far better than the last step.
 LAST_STEP = 1.0e-12
 MOST_STEPS = 40
+# Rays less inclined to the axis than this cosine may be moved to the vertex plane first, which is
+# quicker than to go to the point nearest to the vertex.
+STEEPEST = 0.05
 
 
 def sag(surface, x, y):
@@ -110,9 +115,32 @@ class Shape:
         self.is_spherical = (
             surface.conic == 0.0 and not surface.asphere and surface.curved_along is None
         )
+        self._rim_slant = self._slant_of_rim()
+
+    def clears_rim(self, bundle):
+        """Tell whether all rays that met the surface are surely inside its rim.
+
+        On a sphere the normal tells how far from the axis a ray is; no square needs to be made.
+
+        Parameters
+        ----------
+        bundle : Bundle
+
+        Returns
+        -------
+        bool
+        """
+        return self._rim_slant is not None and bool(bundle.slant.min() > self._rim_slant)
+
+    def _slant_of_rim(self):
+        """Return z of the normal at the rim with a margin for rounding; None on other shapes."""
+        sine = abs(self.curvature) * self._surface.semi_diameter
+        if not self.is_spherical or not 0.0 < sine < 1.0:
+            return None
+        return math.sqrt(1.0 - sine * sine) + 1.0e-13
 
     def meet(self, bundle):
-        """Move rays to the surface, and set their `cosine` (and `slant` on a sphere).
+        """Move rays to the surface; set `cosine` and `square`, and `slant` on a sphere or plane.
 
         Parameters
         ----------
@@ -145,38 +173,64 @@ class Shape:
         bundle.advance(a)
         bundle.z[:] = 0.0
         bundle.cosine[:] = n
+        np.multiply(n, n, out=bundle.square)
         bundle.slant[:] = 1.0
         return along
 
     def _meet_sphere(self, bundle):
-        # From the point nearest to the vertex, with d . p = 0: c t^2 - 2 n t + C = 0,
-        # C = c p^2 - 2 z. The root of the direction's sign is C / (n + s), s = +-sqrt(n^2 - c C),
-        # and s is the cosine at the surface, whose normal (-c x, -c y, 1 - c z) has length 1.
-        c, n, a, b, cosine = self.curvature, bundle.n, bundle.a, bundle.b, bundle.cosine
-        bundle.approach()
-        bundle.radius_squared()
-        a += np.multiply(bundle.z, bundle.z, out=b)
-        a *= c
-        a -= np.add(bundle.z, bundle.z, out=b)
-        np.multiply(n, n, out=cosine)
-        cosine -= np.multiply(a, c, out=b)
+        # With t in mm over index i, d times i: c i^2 t^2 + 2 h t + C = 0, h = c (d . p) - d_z and
+        # C = c p^2 - 2 z. The root of the direction's sign is C / (s - h), s^2 = h^2 - c i^2 C, and
+        # s is i times the cosine at the surface, whose unit normal is (-c x, -c y, 1 - c z).
+        c, n, a, b, half = self.curvature, bundle.n, bundle.a, bundle.b, bundle.slant
+        forward = n.min() > STEEPEST * bundle.index
+        if forward:
+            self._start_at_vertex_plane(bundle)
+        else:
+            self._start_near_vertex(bundle)
+        square, cosine, slant = bundle.square, bundle.cosine, bundle.slant
+        np.multiply(half, half, out=square)
+        square -= np.multiply(a, c * bundle.index * bundle.index, out=b)
         missed = None
-        if not cosine.min() > 0.0:
-            missed = ~(cosine > 0.0)
-            cosine[missed] = 1.0
+        if not square.min() > 0.0:
+            missed = ~(square > 0.0)
+            square[missed] = 1.0
             a[missed] = 0.0
-        np.sqrt(cosine, out=cosine)
-        if not n.min() > 0.0:
+        np.sqrt(square, out=cosine)
+        if not forward:
             np.copysign(cosine, n, out=cosine)
-        np.divide(a, np.add(n, cosine, out=b), out=a)
-        bundle.advance(a)
-        slant = bundle.slant
+        np.divide(a, np.subtract(cosine, half, out=b), out=a)
+        if forward:
+            bundle.xy += np.multiply(a, bundle.lm, out=bundle.bc)
+            np.multiply(a, n, out=bundle.z)
+        else:
+            bundle.advance(a)
         np.multiply(bundle.z, -c, out=slant)
         slant += 1.0
         if not slant.min() > 0.0:
             beyond = ~(slant > 0.0)
             missed = beyond if missed is None else missed | beyond
         return missed
+
+    def _start_at_vertex_plane(self, bundle):
+        """Move rays there, but for their z; set h (in `slant`) and C (in `a`)."""
+        a, half = bundle.a, bundle.slant
+        np.divide(bundle.z, bundle.n, out=a)
+        bundle.xy -= np.multiply(a, bundle.lm, out=bundle.bc)
+        bundle.radius_squared()
+        a *= self.curvature
+        bundle.sideways(half)
+        half *= self.curvature
+        half -= bundle.n
+
+    def _start_near_vertex(self, bundle):
+        """Move rays to their points nearest to the vertex; set h and C."""
+        a, b = bundle.a, bundle.b
+        bundle.approach()
+        bundle.radius_squared()
+        a += np.multiply(bundle.z, bundle.z, out=b)
+        a *= self.curvature
+        a -= np.add(bundle.z, bundle.z, out=b)
+        np.negative(bundle.n, out=bundle.slant)
 
     def _meet_general(self, bundle):
         bundle.approach()
@@ -187,12 +241,13 @@ class Shape:
         bundle.advance(np.where(missed, 0.0, distance))
         nx, ny, nz = self.normals(bundle)
         bundle.cosine[:] = bundle.l * nx + bundle.m * ny + bundle.n * nz
+        np.multiply(bundle.cosine, bundle.cosine, out=bundle.square)
         missed |= ~(np.abs(bundle.cosine) > 0.0)
         return missed if missed.any() else None
 
     def _conic_distance(self, bundle):
         c, stretch = self.curvature, 1.0 + self._surface.conic
-        x, y, z, l, m, n = (getattr(bundle, name) for name in Bundle.NAMES)  # noqa: E741
+        x, y, z, l, m, n = (getattr(bundle, name) for name in (*POSITION, *DIRECTION))  # noqa: E741
         along = self._surface.curved_along
         square, cross, length = stretch * n * n, stretch * z * n, stretch * z * z
         if along != "y":
@@ -217,7 +272,7 @@ class Shape:
         missed = ~(np.abs(distance) < FAR)
         distance[missed] = 0.0
         rows = np.flatnonzero(~missed)
-        rays = [getattr(bundle, name)[rows] for name in Bundle.NAMES]
+        rays = [getattr(bundle, name)[rows] for name in (*POSITION, *DIRECTION)]
         steps = 0
         while len(rows):
             x, y, z, l, m, n = rays  # noqa: E741

@@ -1,8 +1,8 @@
 """Sequential tracing of rays through a lens.
 
 Rays meet the surfaces in their order and are refracted by Snell's law in vector form: with the unit
-normal N towards +z, `C = d . N` and `r` the ratio of the indices,
-`d' = r d + (sign(C) sqrt(1 - r^2 + (r C)^2) - r C) N`. Reflected light is not followed.
+normal N towards +z, d the unit direction times the index n, and `C = d . N`,
+`d' = d + (sign(C) sqrt(n'^2 - n^2 + C^2) - C) N`. Reflected light is not followed.
 
 Positions are in mm from the vertex of surface 1. A ray that fails is data: it tells how and where,
 and its numbers are finite.
@@ -14,13 +14,13 @@ from enum import IntEnum
 import numpy as np
 
 from ..errors import PrescriptionError
-from .bundle import Bundle
+from .bundle import DIRECTION, POSITION, Bundle
 from .fresnel import transmittance
 from .media import indices
 from .surfaces import FAR, Shape, within_reach
 
 # Rays at a time: the working arrays stay in a core's second-level cache.
-CHUNK = 4096
+CHUNK = 8192
 
 
 class RayStatus(IntEnum):
@@ -123,10 +123,16 @@ class TracedRays:
         """
         along = self.directions[:, 2]
         crossing = self.reached & (np.abs(along) > 1.0e-9)
-        distance = np.zeros(len(along))
-        np.divide(z - self.points[:, 2], along, out=distance, where=crossing)
-        crossed = self.points[:, :2] + distance[:, None] * self.directions[:, :2]
-        return np.where(crossing[:, None], crossed, 0.0)
+        every = crossing.all()
+        distance = np.subtract(z, self.points[:, 2])
+        np.divide(distance, along, out=distance, where=True if every else crossing)
+        crossed = np.empty((len(along), 2))
+        for axis in (0, 1):
+            np.multiply(distance, self.directions[:, axis], out=crossed[:, axis])
+            crossed[:, axis] += self.points[:, axis]
+        if not every:
+            crossed[~crossing] = 0.0
+        return crossed
 
 
 @dataclass(frozen=True)
@@ -196,11 +202,12 @@ def trace(
         hits=np.empty((len(steps), count, 3)) if record else None,
         transmission=np.ones(count) if transmission else None,
     )
+    start_index = steps[0].before if steps else 1.0
     bundle = Bundle(rays.origins[:CHUNK], rays.directions[:CHUNK])
     with np.errstate(all="ignore"):
         for start in range(0, count, CHUNK):
             part = slice(start, start + CHUNK)
-            bundle.load(rays.origins[part], rays.directions[part])
+            bundle.load(rays.origins[part], rays.directions[part], start_index)
             _Chunk(result, part, bundle, clip, coating, wavelength_nm).run(steps)
     if transmission:
         result.transmission[~result.reached] = 0.0
@@ -261,6 +268,8 @@ class _Chunk:
         if not bundle.count:
             return
         missed = step.shape.meet(bundle)
+        if missed is None and step.shape.clears_rim(bundle):
+            return
         squared = bundle.radius_squared()
         limit = step.semi_diameter * step.semi_diameter
         if missed is None and squared.max() <= limit:
@@ -304,9 +313,9 @@ class _Chunk:
         rows = slice(None) if bundle.rows is None and isinstance(chosen, slice) else None
         if rows is None:
             rows = bundle.rows if isinstance(chosen, slice) else self.rows(chosen)
-        for axis, name in enumerate("lmn"):
-            self.directions[rows, axis] = getattr(bundle, name)[chosen]
-        for axis, name in enumerate("xyz"):
+        for axis, name in enumerate(DIRECTION):
+            self.directions[rows, axis] = getattr(bundle, name)[chosen] / bundle.index
+        for axis, name in enumerate(POSITION):
             self.points[rows, axis] = getattr(bundle, name)[chosen]
         self.points[rows, 2] += self.vertex
         if not isinstance(chosen, slice):
@@ -325,34 +334,32 @@ class _Chunk:
         """Turn the rays at a surface; end those that are totally reflected."""
         if step.before == step.behind:
             return
-        bundle, ratio = self.bundle, step.before / step.behind
-        if ratio > 1.0:
-            square = np.multiply(bundle.cosine, bundle.cosine, out=bundle.a)
-            if not square.min() > 1.0 - 1.0 / (ratio * ratio):
-                reflected = ~(square > 1.0 - 1.0 / (ratio * ratio))
-                self.end(reflected, step, RayStatus.TOTAL_REFLECTION)
+        bundle = self.bundle
+        # Of the cosine times index: below this there is no refracted ray.
+        gain = step.behind * step.behind - step.before * step.before
+        if gain < 0.0 and not bundle.square.min() > -gain:
+            self.end(~(bundle.square > -gain), step, RayStatus.TOTAL_REFLECTION)
+            if not bundle.count:
+                return
         if self.transmission is not None:
             rows = slice(None) if bundle.rows is None else bundle.rows
+            cosine = np.abs(bundle.cosine) / step.before
             self.transmission[rows] *= transmittance(
-                np.abs(bundle.cosine), step.before, step.behind, self.coating, self.wavelength_nm
+                cosine, step.before, step.behind, self.coating, self.wavelength_nm
             )
         cosine, a, b = bundle.cosine, bundle.a, bundle.b
-        np.multiply(cosine, ratio, out=b)
-        np.multiply(b, b, out=a)
-        a += 1.0 - ratio * ratio
+        np.add(bundle.square, gain, out=a)
         np.sqrt(a, out=a)
-        if bundle.count and not cosine.min() > 0.0:
+        if not cosine.min() > 0.0:
             np.copysign(a, cosine, out=a)
-        a -= b
-        bundle.l *= ratio
-        bundle.m *= ratio
-        bundle.n *= ratio
+        a -= cosine
+        bundle.index = step.behind
         if step.shape.is_spherical:
             bundle.n += np.multiply(a, bundle.slant, out=b)
-            a *= step.shape.curvature
-            bundle.l -= np.multiply(a, bundle.x, out=b)
-            bundle.m -= np.multiply(a, bundle.y, out=b)
+            if step.shape.curvature != 0.0:
+                a *= step.shape.curvature
+                bundle.lm -= np.multiply(a, bundle.xy, out=bundle.bc)
             return
-        for direction, component in zip("lmn", step.shape.normals(bundle), strict=True):
+        for direction, component in zip(DIRECTION, step.shape.normals(bundle), strict=True):
             values = getattr(bundle, direction)
             values += a * component
