@@ -143,7 +143,10 @@ def _read_surface(table):
     curved_along = table.choice("curved_along", ("x", "y"))
     if None in needed or ("curved_along" in table and curved_along is None):
         return None
-    surface = Surface(*needed, id=table.values.get("id"), curved_along=curved_along)
+    name = table.values.get("id")
+    # An id of another type is noted where the ids of all surfaces are compared.
+    name = name if isinstance(name, str) else None
+    surface = Surface(*needed, id=name, curved_along=curved_along)
     check_rim(surface, surface.semi_diameter, table.at("semi_diameter_mm"), table.findings)
     check_asphere(surface, table.at("asphere"), table.findings)
     return surface

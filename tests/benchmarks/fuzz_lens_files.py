@@ -31,8 +31,10 @@ if str(REPOSITORY) not in sys.path:
 from addon.errors import AplanatError, LensFileError, PrescriptionError  # noqa: E402
 from addon.lens_io.toml_reader import parse_lens  # noqa: E402
 from addon.lens_io.toml_writer import lens_toml  # noqa: E402
+from addon.optics.focus import focused  # noqa: E402
 from addon.optics.glass import REFERENCE_WAVELENGTH_NM  # noqa: E402
-from addon.optics.paraxial import first_order  # noqa: E402
+from addon.optics.lens_facts import lens_facts  # noqa: E402
+from addon.optics.paraxial import first_order, image_distance  # noqa: E402
 from addon.optics.trace import Rays, trace  # noqa: E402
 
 SLOWEST_ALLOWED_S = 2.0
@@ -351,21 +353,47 @@ def check(name, content, outcome, label=""):
 def _use(prescription):
     again = parse_lens(lens_toml(prescription).encode(), "again").prescription
     assert again == prescription, "what was written reads back differently"
-    for configuration in prescription.configurations():
-        try:
-            values = first_order(configuration)
-        except PrescriptionError:
-            continue
-        assert all(np.isfinite(v) for v in vars(values).values() if v is not None), values
-        heights = np.linspace(-1.0, 1.0, 9) * min(values.enp_diameter, 1.0e6)
-        origins = np.stack([0.3 * heights, heights, np.full(9, -1.0)], axis=-1)
-        directions = np.tile([0.0, np.sin(0.1), np.cos(0.1)], (9, 1))
-        for clip in (True, False):
-            traced = trace(
-                configuration, Rays(origins, directions), REFERENCE_WAVELENGTH_NM, clip=clip
-            )
-            for values_of_rays in (traced.points, traced.directions, traced.at_plane(10.0)):
-                assert np.isfinite(values_of_rays).all(), "a ray is not finite"
+    for label, configuration in zip(
+        prescription.labels, prescription.configurations(), strict=True
+    ):
+        for use in (_first_order, _facts, _focus, _rays):
+            try:
+                use(prescription, configuration, label)
+            except PrescriptionError:
+                # Loaded, but with nothing to trace under these settings: said in our words.
+                continue
+
+
+def _first_order(prescription, configuration, label):
+    for wavelength in (REFERENCE_WAVELENGTH_NM, 440.0, 680.0):
+        _check_finite(vars(first_order(configuration, wavelength)).values())
+        _check_finite([image_distance(configuration, 1000.0, wavelength)])
+
+
+def _facts(prescription, configuration, label):
+    _check_finite(vars(lens_facts(prescription, label)).values())
+
+
+def _focus(prescription, configuration, label):
+    near = focused(configuration.stopped_down(8.0), 1000.0, prescription.focus)
+    _check_finite([near.sensor, *near.vertices])
+
+
+def _rays(prescription, configuration, label):
+    height = min(first_order(configuration).enp_diameter, 1.0e6)
+    heights = np.linspace(-1.0, 1.0, 9) * height
+    origins = np.stack([0.3 * heights, heights, np.full(9, -1.0)], axis=-1)
+    rays = Rays(origins, np.tile([0.0, np.sin(0.1), np.cos(0.1)], (9, 1)))
+    for clip in (True, False):
+        traced = trace(configuration, rays, REFERENCE_WAVELENGTH_NM, clip=clip, transmission=True)
+        for values in (traced.points, traced.directions, traced.at_plane(10.0)):
+            _check_finite(values.ravel())
+        _check_finite(traced.transmission)
+
+
+def _check_finite(values):
+    numbers = [value for value in values if value is not None]
+    assert np.isfinite(numbers).all(), f"not finite: {numbers}"
 
 
 def run(count, names, seed=0, say=lambda line: None):
