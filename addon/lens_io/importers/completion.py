@@ -227,8 +227,14 @@ def _assembled(draft, stands):
         ids = {index: f"D{index + 1}" for index in moving}
         if len(surfaces) - 1 in ids:
             ids[len(surfaces) - 1] = "BF"
+        widest = max(stand.told.stop_semi_diameter for stand in stands)
         surfaces = tuple(
-            replace(surface, id=ids.get(index)) for index, surface in enumerate(surfaces)
+            replace(
+                surface,
+                id=ids.get(index),
+                semi_diameter=widest if surface.is_stop else surface.semi_diameter,
+            )
+            for index, surface in enumerate(surfaces)
         )
         zoom = tuple(_zoom_position(stand, ids, label) for stand, label in _labelled(stands))
     return Prescription(
@@ -237,6 +243,8 @@ def _assembled(draft, stands):
         f_number=first.f_number,
         half_field_deg=first.half_field_deg,
         surfaces=surfaces,
+        source=draft.source,
+        image_circle_diameter=draft.image_circle_diameter,
         notes="\n".join(draft.notes)[:_LONGEST_NOTES] or None,
         zoom=zoom,
     )

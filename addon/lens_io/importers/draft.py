@@ -121,6 +121,10 @@ class Draft:
     Parameters
     ----------
     name : str
+    source : str or None
+        Patent or book, if the file tells it.
+    image_circle_diameter : float or None
+        mm.
     surfaces : list of DraftSurface
     notes : list of str
         Sentences for the notes of the lens.
@@ -139,6 +143,8 @@ class Draft:
     """
 
     name: str = ""
+    source: str | None = None
+    image_circle_diameter: float | None = None
     surfaces: list = dataclasses.field(default_factory=list)
     notes: list = dataclasses.field(default_factory=list)
     opening: Opening | None = None

@@ -29,6 +29,8 @@ _SECTIONS = (
     "notes",
 )
 _PLANES = {"AS", "FS", "CG", "INFINITY"}
+# Number, radius, thickness, nd, diameter, vd, name and maker of the glass.
+_COLUMNS = 8
 # What a lens file may have.
 _MOST_COLUMNS = 50
 # Radii of the two tables agree to the digits that a patent prints.
@@ -97,7 +99,7 @@ class _Reader:
         name = cells[0].lower()
         if section == "descriptive data":
             if name == "title":
-                self.draft.name = clean(" ".join(cells[1:]))
+                self.draft.name = self.draft.source = clean(" ".join(cells[1:]))
             else:
                 self.draft.notes.append(clean(" ".join(cells)))
         elif section == "constants":
@@ -134,6 +136,8 @@ class _Reader:
         for surface, thicknesses in zip(draft.surfaces, distances, strict=True):
             surface.thickness = thicknesses[0]
         draft.opening, draft.field = self._opening(columns[0]), self._field(columns[0])
+        height = self._number("image height", columns[0])
+        draft.image_circle_diameter = height if height and height > 0.0 else None
         draft.focal_length = self._number("focal length", columns[0])
         draft.f_number = self._number("f-number", columns[0])
         draft.image_distance_told &= draft.surfaces[-1].thickness != 0.0
@@ -202,7 +206,7 @@ class _Reader:
     def _surface(self, index, line, cells, text):
         surface = DraftSurface(line, index)
         refuse = self.draft.refusals.add
-        cells = [*cells, "", "", "", "", ""]
+        cells = [*cells, *[""] * _COLUMNS]
         radius = number(cells[1])
         if radius is not None:
             surface.radius = radius if radius != 0.0 else math.inf
@@ -298,6 +302,7 @@ class _Reader:
     def _pass_over_variables(self):
         used = {cells[2].lower() for _, cells, _ in self.rows if len(cells) > 2}
         used |= {"focal length", "f-number", "angle of view", "aperture diameter", "d0"}
+        used |= {"image height", "magnification"}
         for name, (line, _) in self.variables.items():
             if name not in used:
                 self.draft.passed_over.add(f"'{clean(name)[:30]}' of the distances", line)
