@@ -210,11 +210,20 @@ def _add_bench(commands):
         "bench",
         help="measure cost and quality",
         description="Renders scenes with and without depth of field and compares the cost of a"
-        " lens sample with that of a pinhole pass, and the pictures with references.",
+        " lens sample with that of a pinhole pass, and the pictures with references. With --lens:"
+        " traces lenses, and compares their bokeh profiles with a direct trace.",
         allow_abbrev=False,
     )
     add = parser.add_argument
-    add(
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument(
+        "--lens",
+        metavar="ID|FILE",
+        action="append",
+        default=[],
+        help="measure tracer and bokeh profile of a lens instead; may be repeated",
+    )
+    what.add_argument(
         "--scene",
         metavar="FILE|NAME",
         action="append",

@@ -109,6 +109,8 @@ def _runner(arguments, prepare):
     # A lens needs no Blender, and is told sooner than one starts.
     if arguments.command == "lens":
         from .lens import lens as run
+    elif arguments.command == "bench" and arguments.lens:
+        from .lens_bench import bench_lenses as run
     else:
         prepare()
         if arguments.command == "render":

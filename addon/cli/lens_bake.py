@@ -20,6 +20,7 @@ def lens_profile(read, arguments, console):
     return make_profile(
         read.prescription.configuration(arguments.zoom),
         name=read.prescription.name,
+        focus_group=read.prescription.focus,
         chromatic=arguments.chromatic,
         progress=lambda share: console.progress(f"bokeh profile: {share:.0%}"),
     )

@@ -20,7 +20,9 @@ def plot(arguments, console):
         read = open_lens(arguments.lens)
         tell_warnings(read, console)
         configuration = read.prescription.configuration(arguments.zoom)
-        profile = lens_profile(read, arguments, console)
+        profile = None
+        if all(surface.curved_along is None for surface in configuration.surfaces):
+            profile = lens_profile(read, arguments, console)
         figure = _sheet(read.prescription, configuration, profile, console)
         _save(figure, arguments)
     console.say(f"{read.prescription.name}: {arguments.output}")

@@ -5,7 +5,7 @@ import textwrap
 from ..optics.lens_facts import lens_facts
 from ..optics.paraxial import first_order
 from .aberration_plots import draw_axial_focus, draw_field_curves, draw_vignetting
-from .bokeh_plots import DISK_LIGHTS, draw_bokeh_table, draw_disks
+from .bokeh_plots import DISK_LIGHTS, draw_bokeh_table, draw_disks, draw_field_disks
 from .cross_section import draw_cross_section
 from .spot_plots import draw_pupils, draw_spots
 from .style import INK, QUIET, RULE, TEXT_SIZE, TITLE_SIZE, Panel
@@ -21,7 +21,8 @@ _DIAGRAMS = Panel(0.06, 0.348, 0.905, 0.172)
 _SPOTS = Panel(0.035, 0.118, 0.415, 0.128)
 _PUPILS = Panel(0.035, 0.018, 0.415, 0.09)
 _TABLE = Panel(0.505, 0.055, 0.175, 0.2)
-_DISKS = Panel(0.715, 0.055, 0.25, 0.2)
+_DISKS = Panel(0.715, 0.132, 0.25, 0.103)
+_FIELD_DISKS = Panel(0.715, 0.022, 0.25, 0.09)
 # Where the lines between the parts are, and the headings under the last one.
 _RULES = (0.917, 0.557, 0.297)
 _HEADING = 0.267
@@ -37,8 +38,8 @@ def draw_sheet(figure, prescription, configuration, profile, step=lambda: None):
     prescription : Prescription
     configuration : Configuration
         Of it.
-    profile : LensProfile
-        Of that.
+    profile : LensProfile or None
+        Of that; None for a lens that is not one of revolution.
     step : callable
         Called between the drawings.
 
@@ -75,12 +76,27 @@ def draw_sheet(figure, prescription, configuration, profile, step=lambda: None):
         [_PUPILS.column(i, len(fields), 0.01).axes(figure) for i in columns], configuration, fields
     )
     step()
-    draw_bokeh_table(_TABLE.axes(figure), configuration, profile)
+    _draw_bokeh(figure, configuration, profile, fields[1:], step)
+
+
+def _draw_bokeh(figure, configuration, profile, fields, step):
+    _heading(figure, _TABLE.x, "Bokeh table: a point at 1 m")
+    _heading(figure, _DISKS.x, f"Points of light at f/{configuration.f_number:.2g}")
+    if profile is None:
+        figure.text(
+            *(_TABLE.x, _HEADING - 0.03, "a lens with cylinders has none over the radius"),
+            fontsize=TEXT_SIZE,
+            color=QUIET,
+        )
+    else:
+        draw_bokeh_table(_TABLE.axes(figure), configuration, profile)
     step()
     count = len(DISK_LIGHTS)
     disks = [_DISKS.column(i, count, 0.01).axes(figure) for i in range(count)]
-    _heading(figure, _DISKS.x, f"Points of light at f/{configuration.f_number:.2g}")
     draw_disks(disks, configuration, profile)
+    step()
+    disks = [_FIELD_DISKS.column(i, len(fields), 0.01).axes(figure) for i in range(len(fields))]
+    draw_field_disks(disks, configuration, fields)
 
 
 def _draw_title(figure, prescription, configuration):

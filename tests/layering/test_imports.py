@@ -34,6 +34,8 @@ ROOMS = {
     "cli": {
         *("files", "optics", "bokeh", "sampling", "lens_io", "plots"),
         *("engine", "scene", "device", "ui"),
+        # Measuring against it, in a checkout.
+        "reference",
     },
 }
 
@@ -66,6 +68,17 @@ BLENDER_FREE = {
     "cli.arguments",
     "cli.console",
     "cli.json_file",
+    "cli.lens",
+    "cli.lens_arguments",
+    "cli.lens_bake",
+    "cli.lens_bench",
+    "cli.lens_import",
+    "cli.lens_info",
+    "cli.lens_list",
+    "cli.lens_plot",
+    "cli.lens_trace",
+    "cli.option_values",
+    "cli.text_table",
     "cli.picture_metrics",
     "cli.command",
 }
