@@ -10,10 +10,38 @@ import numpy as np
 from .iris_mask import BladedIris
 
 _FEWEST_RAYS, _MOST_RAYS = 192, 1024
-_RAYS_PER_TEXEL = 3
+# Neighbouring rays land closer than this, in texels, for nearly all of the energy.
+_SPACING, _NEARLY_ALL = 0.6, 0.95
+# Rays farther apart are laid into pictures of half the resolution, a quarter, and so on.
+_LEVELS = 6
 
 
-def open_weights(fine, iris=None, fresnel=False):
+def rays_for(beam, shift, texel):
+    """Rays along a side of the grid that fills a picture smoothly.
+
+    Parameters
+    ----------
+    beam : PupilBeam
+    shift : float
+        Sensor's distance behind the sensor plane of the tables, mm.
+    texel : float
+        mm.
+
+    Returns
+    -------
+    int
+    """
+    stop = np.hypot(beam.stop[..., 0], beam.stop[..., 1]) / beam.stop_scale
+    passing = (beam.clearance > 0.0) & (stop < 1.0)
+    if not passing.any():
+        return _FEWEST_RAYS
+    landing = beam.landing(shift)
+    apart = np.maximum(spacing(landing[..., 0]), spacing(landing[..., 1]))[passing]
+    wide = np.quantile(apart, _NEARLY_ALL) / texel * (beam.weight.shape[0] - 1)
+    return int(np.clip(np.ceil(wide / _SPACING), _FEWEST_RAYS, _MOST_RAYS))
+
+
+def open_weights(fine, iris=None, fresnel=False, stop_rim=True):
     """Energy of the rays of a refined beam behind all rims and the iris.
 
     Parameters
@@ -24,6 +52,8 @@ def open_weights(fine, iris=None, fresnel=False):
         In units of the stopped-down radius, in the frame of the beam; None: round.
     fresnel : bool
         Whether rays lose what the surfaces reflect.
+    stop_rim : bool
+        False: the caller looks after the stop.
 
     Returns
     -------
@@ -31,10 +61,12 @@ def open_weights(fine, iris=None, fresnel=False):
         mm^2; rims and iris antialiased.
     """
     rim = _edge(fine.clearance)
+    energy = fine.weight * fine.transmission if fresnel else fine.weight
+    if not stop_rim:
+        return energy * rim
     points = fine.stop / fine.stop_scale
     iris = iris or BladedIris()
-    width = np.maximum(_spacing(points[..., 0]), _spacing(points[..., 1]))
-    energy = fine.weight * fine.transmission if fresnel else fine.weight
+    width = np.maximum(spacing(points[..., 0]), spacing(points[..., 1]))
     return energy * rim * iris.coverage(points, width)
 
 
@@ -63,12 +95,11 @@ def pattern(beam, shift, size, extent, *, iris=None, centre=None, fresnel=False)
         Energy per texel: area of the pupil in mm^2. Columns along x, rows along y (outwards),
         both rising.
     """
-    rays = int(np.clip(_RAYS_PER_TEXEL * size, _FEWEST_RAYS, _MOST_RAYS))
-    fine = beam.refined(rays)
+    texel = 2.0 * extent / size
+    fine = beam.refined(rays_for(beam, shift, texel))
     weights = open_weights(fine, iris, fresnel)
     if centre is None:
         centre = beam.chief[:2] + beam.chief[2:] * shift
-    texel = 2.0 * extent / size
     places = (fine.landing(shift) - np.asarray(centre) + extent) / texel
     return deposit(places, weights, size)
 
@@ -91,8 +122,24 @@ def deposit(places, weights, size):
     """
     lit = weights > 0.0
     x, y, energy = places[..., 0][lit], places[..., 1][lit], weights[lit]
-    columns, left = _shares(x, _spacing(places[..., 0])[lit])
-    rows, low = _shares(y, _spacing(places[..., 1])[lit])
+    wide_x, wide_y = spacing(places[..., 0])[lit], spacing(places[..., 1])[lit]
+    level = np.ceil(np.log2(np.maximum(np.maximum(wide_x, wide_y), 1.0))).astype(int)
+    level = np.minimum(level, _LEVELS - 1)
+    picture = np.zeros((size, size))
+    for each in np.unique(level):
+        at, scale = level == each, 2.0**-each
+        coarse = _laid(
+            x[at] * scale, y[at] * scale, wide_x[at] * scale, wide_y[at] * scale, energy[at],
+            -(-size // 2**each),
+        )  # fmt: skip
+        share = coarse / 4.0**each
+        picture += np.kron(share, np.ones((2**each, 2**each)))[:size, :size]
+    return picture
+
+
+def _laid(x, y, wide_x, wide_y, energy, size):
+    columns, left = _shares(x, wide_x)
+    rows, low = _shares(y, wide_y)
     picture = np.zeros(size * size)
     for row, in_row in ((rows, low), (rows + 1, 1.0 - low)):
         for column, in_column in ((columns, left), (columns + 1, 1.0 - left)):
@@ -110,14 +157,24 @@ def _shares(place, width):
     width = np.clip(width, 1e-6, 1.0)
     start = place - 0.5 * width
     first = np.floor(np.clip(start, -1e6, 1e6))
-    return first.astype(int), np.minimum((first + 1.0 - start) / width, 1.0)
+    return first.astype(int), np.clip((first + 1.0 - start) / width, 0.0, 1.0)
 
 
-def _spacing(values):
-    """Change of a quantity to the next ray, along both axes together."""
+def spacing(values):
+    """Change of a quantity from ray to ray, along both axes together.
+
+    Parameters
+    ----------
+    values : ndarray of shape (n, n)
+
+    Returns
+    -------
+    ndarray of shape (n, n)
+        Not negative.
+    """
     return np.abs(np.gradient(values, axis=0)) + np.abs(np.gradient(values, axis=1))
 
 
 def _edge(clearance):
     """Share of each cell inside the zero of a signed function."""
-    return np.clip(0.5 + clearance / np.maximum(_spacing(clearance), 1e-12), 0.0, 1.0)
+    return np.clip(0.5 + clearance / np.maximum(spacing(clearance), 1e-12), 0.0, 1.0)

@@ -43,7 +43,7 @@ CHANNELS = (
 CHROMATIC_CHANNELS = CHANNELS[:4]
 CURVES = ("image_height", "half_x", "centre_v", "half_v")
 
-GRID = 65
+GRID = 97
 # The grid is wider than the passing rays by this share, so that rims lie well inside.
 MARGIN = 0.08
 # Tables reach beyond the nominal field: near points and rims of the picture need it.
@@ -129,9 +129,10 @@ class PupilTables:
         """
         height, half_x, centre, half_v = np.moveaxis(self.curves_at(angle), -1, 0)
         count = self.tables.shape[1]
-        scale = 0.5 * (count - 1) / (1.0 + MARGIN)
-        columns, wx = cubic_taps(x / half_x * scale + 0.5 * (count - 1), count)
-        rows, wv = cubic_taps((v - centre) / half_v * scale + 0.5 * (count - 1), count)
+        middle, reach = 0.5 * (count - 1), 1.0 + MARGIN
+        at_x, at_v = x / (half_x * reach), (v - centre) / (half_v * reach)
+        columns, wx = cubic_taps(np.clip(at_x, -1.0, 1.0) * middle + middle, count)
+        rows, wv = cubic_taps(np.clip(at_v, -1.0, 1.0) * middle + middle, count)
         layers, wa = cubic_taps(angle / self.field_step + 1.0, len(self.tables) + 1)
         values = np.zeros((len(angle), len(CHANNELS)))
         for layer, weight_a in zip(layers, wa, strict=True):
@@ -148,6 +149,10 @@ class PupilTables:
                         further = self.chromatic[wavelength - 1, layer, row, column]
                         values[:, :4] += weight[:, :4] * further
         values[:, 1] += height
+        # All that passes is inside the box: beyond the table rays are blocked.
+        outside = np.maximum(np.maximum(np.abs(at_x), np.abs(at_v)) - 1.0, 0.0)
+        beyond = outside > 0.0
+        values[beyond, 6] = np.minimum(values[beyond, 6], 0.0) - outside[beyond]
         return values
 
 
@@ -364,6 +369,8 @@ def _continued(values, known):
     # Where total reflection ends the beam inside all rims, the rim is halfway to the lost ray.
     lost = missing & (values[..., 6:8].min(axis=-1) > 0.0)
     values[lost, 7] = -np.abs(values[lost, 7])
+    # No light where no ray is known, however the slopes went on.
+    values[..., 7] = np.where(missing, np.minimum(values[..., 7], -1e-3), values[..., 7])
     values[missing, 8] = np.clip(values[missing, 8], 0.0, 1.0)
     return values
 
