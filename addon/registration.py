@@ -2,14 +2,29 @@
 
 from .cli import blender_command
 from .engine import render_engine
-from .ui import blender_panels, panels, properties, sampling_presets
+from .ui import (
+    background,
+    blender_panels,
+    lens_import,
+    lens_operators,
+    lens_panel,
+    lens_thumbnails,
+    panels,
+    properties,
+    sampling_presets,
+)
 
 _MODULES = (
+    background,
+    lens_thumbnails,
     properties,
     render_engine,
     blender_panels,
     sampling_presets,
     panels,
+    lens_operators,
+    lens_import,
+    lens_panel,
     blender_command,
 )
 

@@ -9,6 +9,14 @@ import re
 from pathlib import Path
 
 from ..errors import InputError
+from .lens_arguments import add_lens, check_lens
+from .option_values import (
+    file_with_ending,
+    joined_negatives,
+    pixel_size,
+    positive_number,
+    whole_number,
+)
 from .version import version
 
 # Bounds of Blender's own properties.
@@ -20,11 +28,12 @@ MAX_FRAME = 1048574
 
 ENDINGS = (".exr", ".png")
 
+# argparse would take a negative number after these for an option.
+_MAY_BE_NEGATIVE = {"--frames", "--field-deg", "--planes-mm", "--rho"}
+
 _LATER = {
-    "lens": "real lenses",
     "capture": "depth layers",
     "refocus": "depth layers",
-    "--lens": "real lenses",
     "--method adaptive": "fast defocus",
     "--subsamples": "fast defocus",
     "--method layered": "depth layers",
@@ -60,23 +69,14 @@ def parse(words, program="aplanat"):
     """
     if words and words[0] in _LATER:
         raise _not_yet(f"{program} {words[0]}", words[0])
-    arguments = _parser(program).parse_args(_with_negative_ranges(words))
+    arguments = _parser(program).parse_args(joined_negatives(words, _MAY_BE_NEGATIVE))
     if arguments.command is None:
         raise InputError(f"no command given (see `{program} --help`)")
     if arguments.command == "render":
         _check_render(arguments)
+    elif arguments.command == "lens":
+        check_lens(arguments)
     return arguments
-
-
-def _with_negative_ranges(words):
-    # argparse would take -5..5 for an option.
-    joined = []
-    for word in words:
-        if joined and joined[-1] == "--frames" and re.match(r"-\d", word):
-            joined[-1] = f"--frames={word}"
-        else:
-            joined.append(word)
-    return joined
 
 
 def wants_json(words):
@@ -92,7 +92,7 @@ def _check_render(arguments):
     if arguments.method in {"adaptive", "layered"}:
         key = f"--method {arguments.method}"
         raise _not_yet(key, key)
-    for key in ("lens", "subsamples", "layers"):
+    for key in ("subsamples", "layers"):
         if getattr(arguments, key) is not None:
             raise _not_yet(f"--{key}", f"--{key}")
     several = arguments.frames is not None and arguments.frames[0] != arguments.frames[1]
@@ -105,34 +105,8 @@ def _check_render(arguments):
         raise InputError(f"-o {arguments.output[0]} is given twice; give two different names")
 
 
-def _whole_number(low, high):
-    def read(text):
-        try:
-            value = int(text)
-        except ValueError:
-            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number") from None
-        if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"{value} is not between {low} and {high}")
-        return value
-
-    return read
-
-
-def _positive_number(high=math.inf):
-    def read(text):
-        try:
-            value = float(text)
-        except ValueError:
-            raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
-        if not (math.isfinite(value) and 0.0 < value <= high):
-            bound = "" if high == math.inf else f" and at most {high:g}"
-            raise argparse.ArgumentTypeError(f"{text} must be greater than 0{bound}")
-        return value
-
-    return read
-
-
-_frame = _whole_number(-MAX_FRAME, MAX_FRAME)
+_frame = whole_number(-MAX_FRAME, MAX_FRAME)
+_resolution = pixel_size(MIN_SIDE, MAX_SIDE)
 
 
 def _frame_range(text):
@@ -145,18 +119,6 @@ def _frame_range(text):
     return first, last
 
 
-def _resolution(text):
-    match = re.fullmatch(r"(\d+)[xX](\d+)", text)
-    if not match:
-        raise argparse.ArgumentTypeError(f"'{text}' is not WIDTHxHEIGHT, such as 1920x1080")
-    size = int(match[1]), int(match[2])
-    if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):
-        raise argparse.ArgumentTypeError(
-            f"{text}: each side must be between {MIN_SIDE} and {MAX_SIDE} pixels"
-        )
-    return size
-
-
 def _focus(text):
     try:
         distance = float(text)
@@ -165,13 +127,6 @@ def _focus(text):
     if not (math.isfinite(distance) and distance > 0.0):
         raise argparse.ArgumentTypeError(f"focus distance {text} must be greater than 0")
     return distance
-
-
-def _picture(text):
-    path = Path(text)
-    if path.suffix.lower() not in ENDINGS:
-        raise argparse.ArgumentTypeError(f"'{text}' must end in .exr or .png")
-    return path
 
 
 def _parser(program):
@@ -185,6 +140,7 @@ def _parser(program):
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
     _add_render(commands)
     _add_bench(commands)
+    add_lens(commands, _Parser)
     return parser
 
 
@@ -202,7 +158,7 @@ def _add_render(commands):
         "-o",
         "--output",
         metavar="OUT",
-        type=_picture,
+        type=file_with_ending(*ENDINGS),
         action="append",
         default=[],
         help="picture file: .exr (multilayer, float, scene linear, all passes) or .png (as"
@@ -215,24 +171,28 @@ def _add_render(commands):
     add("--camera", metavar="NAME", help="camera object to render from")
     add("--resolution", metavar="WxH", type=_resolution, help="in pixels, at 100 %%")
     add("--method", choices=("reference", "adaptive", "layered"), help="default: the scene's")
-    add("--samples", metavar="N", type=_whole_number(1, MAX_SAMPLES), help="lens samples")
-    add("--subsamples", metavar="S", type=_whole_number(0, 64), help=argparse.SUPPRESS)
-    add("--layers", metavar="K", type=_whole_number(1, 64), help=argparse.SUPPRESS)
-    add("--seed", metavar="N", type=_whole_number(0, MAX_SEED), help="pattern of samples")
+    add("--samples", metavar="N", type=whole_number(1, MAX_SAMPLES), help="lens samples")
+    add("--subsamples", metavar="S", type=whole_number(0, 64), help=argparse.SUPPRESS)
+    add("--layers", metavar="K", type=whole_number(1, 64), help=argparse.SUPPRESS)
+    add("--seed", metavar="N", type=whole_number(0, MAX_SEED), help="pattern of samples")
     add("--filter", choices=("box", "blackman-harris"), help="pixel filter")
     add(
         "--filter-size",
         metavar="PX",
-        type=_positive_number(MAX_FILTER_PX),
+        type=positive_number(MAX_FILTER_PX),
         help="width of the pixel filter, in pixels",
     )
     add("--no-bokeh", action="store_true", help="without separate highlights")
     add("--no-chromatic", action="store_true", help="without chromatic aberration")
-    add("--lens", metavar="ID|FILE", help=argparse.SUPPRESS)
+    add(
+        "--lens",
+        metavar="ID|FILE",
+        help="lens of the library, or a lens file; the camera's focal length stays",
+    )
     add(
         "--fstop",
         metavar="X",
-        type=_positive_number(),
+        type=positive_number(),
         help="f-number; turns depth of field on",
     )
     add(
@@ -250,11 +210,20 @@ def _add_bench(commands):
         "bench",
         help="measure cost and quality",
         description="Renders scenes with and without depth of field and compares the cost of a"
-        " lens sample with that of a pinhole pass, and the pictures with references.",
+        " lens sample with that of a pinhole pass, and the pictures with references. With --lens:"
+        " traces lenses, and compares their bokeh profiles with a direct trace.",
         allow_abbrev=False,
     )
     add = parser.add_argument
-    add(
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument(
+        "--lens",
+        metavar="ID|FILE",
+        action="append",
+        default=[],
+        help="measure tracer and bokeh profile of a lens instead; may be repeated",
+    )
+    what.add_argument(
         "--scene",
         metavar="FILE|NAME",
         action="append",
@@ -265,7 +234,7 @@ def _add_bench(commands):
     add(
         "--samples",
         metavar="N",
-        type=_whole_number(1, MAX_SAMPLES),
+        type=whole_number(1, MAX_SAMPLES),
         help="lens samples (default 512; 2048 for christmas_tree)",
     )
     add("--resolution", metavar="WxH", type=_resolution, default=(480, 270), help="default 480x270")

@@ -10,13 +10,13 @@ from pathlib import Path
 
 from ..device.context import ensure_context
 from ..errors import InputError
+from ..files.whole_file import check_writable, removed_on_signals
 from . import statistics
 from .json_file import write_json
 from .picture_metrics import compare, read_picture
 from .render import heard_render
 from .scene_setup import check_camera, load_scene, use_engine
 from .shared_scenes import is_shared_name, shared_references, shared_scene
-from .whole_file import check_writable, removed_on_signals
 
 _DEFAULT_SAMPLES = 512
 # Small bright lights in strong blur need more.
@@ -152,7 +152,7 @@ def _save(path, picture):
     import numpy as np
     import OpenEXR
 
-    from .whole_file import whole_file
+    from ..files.whole_file import whole_file
 
     header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
     with whole_file(path) as place:

@@ -8,7 +8,13 @@ import re
 import sys
 import traceback
 
-from ..errors import AplanatError, DeviceLimitError, DeviceUnavailableError, InputError
+from ..errors import (
+    AplanatError,
+    DeviceLimitError,
+    DeviceUnavailableError,
+    InputError,
+    LensFileError,
+)
 from . import arguments as words_of
 from .console import Console
 from .json_file import json_text
@@ -77,14 +83,10 @@ def _register():
 
 def _carry_out(arguments, console, prepare):
     try:
-        prepare()
-        if arguments.command == "render":
-            from .render import render as run
-        else:
-            from .bench import bench as run
-        answer = run(arguments, console)
+        answer = _runner(arguments, prepare)(arguments, console)
     except AplanatError as error:
-        console.say(str(error))
+        for line in _lines(error):
+            console.say(line)
         if not isinstance(error, _REFUSALS):
             console.show_chatter()
         if arguments.json:
@@ -103,7 +105,36 @@ def _carry_out(arguments, console, prepare):
     return 0
 
 
+def _runner(arguments, prepare):
+    # A lens needs no Blender, and is told sooner than one starts.
+    if arguments.command == "lens":
+        from .lens import lens as run
+    elif arguments.command == "bench" and arguments.lens:
+        from .lens_bench import bench_lenses as run
+    else:
+        prepare()
+        if arguments.command == "render":
+            from .render import render as run
+        else:
+            from .bench import bench as run
+    return run
+
+
+def _lines(error):
+    if not isinstance(error, LensFileError):
+        return [str(error)]
+    return [
+        f"{error.file_name}: {found.code} {found.path}{': ' if found.path else ''}{found.message}"
+        for found in error.findings
+    ]
+
+
 def _errors(error):
+    if isinstance(error, LensFileError):
+        return {
+            "errors": [found.as_json() for found in error.findings],
+            "warnings": [found.as_json() for found in error.warnings],
+        }
     name = type(error).__name__.removesuffix("Error")
     code = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
     return {"errors": [{"code": code, "message": " ".join(str(error).split())}], "warnings": []}

@@ -2,7 +2,7 @@
 
 import json
 
-from .whole_file import whole_file
+from ..files.whole_file import whole_file
 
 
 def json_text(value, indent=None):

@@ -11,8 +11,8 @@ import bpy
 import numpy as np
 
 from ..errors import OutputError
+from ..files.whole_file import whole_file
 from .version import version
-from .whole_file import whole_file
 
 RENDER_RESULT = "Render Result"
 

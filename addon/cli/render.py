@@ -14,10 +14,10 @@ import bpy
 from ..device.context import ensure_context, max_texture_size
 from ..engine import outcome
 from ..errors import AplanatError, DeviceLimitError, InputError, RenderCancelledError
+from ..files.whole_file import check_writable, removed_on_signals
 from . import pictures, statistics
 from .json_file import write_json
 from .scene_setup import apply_frame, apply_options, load_scene
-from .whole_file import check_writable, removed_on_signals
 
 
 class RenderFailedError(AplanatError):

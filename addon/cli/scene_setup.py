@@ -11,6 +11,8 @@ import bpy
 
 from ..engine.render_engine import ENGINE_ID
 from ..errors import CameraError, FocusError, InputError
+from ..lens_io.library import Library
+from ..scene.lenses import shelf, user_folder
 
 # What a pixel takes at the same time, generously: targets of the device, read-back, Blender's
 # result and the picture file.
@@ -96,6 +98,8 @@ def apply_frame(scene, frame, arguments):
     # Markers of the timeline may switch to another camera.
     scene.frame_set(frame)
     check_camera(scene)
+    if arguments.lens is not None:
+        use_lens(scene.camera, arguments.lens)
     if arguments.fstop or arguments.focus is not None:
         _use_lens_options(scene, arguments)
         _check_lens_options(scene, arguments)
@@ -158,6 +162,37 @@ def _use_camera(scene, name):
     # A marker would switch to another camera at its frame.
     for marker in scene.timeline_markers:
         marker.camera = None
+
+
+def use_lens(camera, word):
+    """Give a camera a lens of the library or of a file; a file is known to this process only.
+
+    Parameters
+    ----------
+    camera : bpy.types.Object
+    word : str
+        An id of the library, or the path of a lens file.
+
+    Raises
+    ------
+    InputError
+        If there is no such lens, it cannot be used, or the camera takes none.
+    """
+    if camera.data.type != "PERSP":
+        raise CameraError(
+            f"--lens {word}: camera '{camera.name}' is {camera.data.type.lower()}; a lens needs a"
+            " perspective camera (Camera > Lens > Type)"
+        )
+    found = shelf().find(word)
+    if found is None:
+        # Refuses a name that is neither in the library nor a lens file.
+        Library([user_folder()]).open(word)
+        lens_id = shelf().add_file(word)
+    elif found.error is not None:
+        raise found.error
+    else:
+        lens_id = found.id
+    camera.data.aplanat.lens = lens_id
 
 
 def _use_lens_options(scene, arguments):

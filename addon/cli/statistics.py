@@ -6,6 +6,7 @@ import bpy
 
 from ..device.context import device_name
 from ..scene.camera import focus_distance
+from ..scene.lenses import read_real_lens
 from .version import version
 
 
@@ -29,6 +30,7 @@ def settings_in_force(scene, arguments=None):
     data = camera.data
     dof = data.dof
     focus = dof.focus_object
+    lens, _ = read_real_lens(data)
     return {
         "method": own.method.lower(),
         "samples": own.render_samples,
@@ -58,7 +60,9 @@ def settings_in_force(scene, arguments=None):
         "shift": [data.shift_x, data.shift_y],
         "clip_m": [data.clip_start, data.clip_end],
         "depth_of_field": dof.use_dof,
-        "fstop": dof.aperture_fstop,
+        "lens": lens.id if lens else None,
+        "zoom_position": lens.label if lens else None,
+        "fstop": lens.f_number if lens else dof.aperture_fstop,
         "focus_object": focus.name if focus else None,
         "focus_distance_m": focus_distance(depsgraph, camera) if dof.use_dof else None,
         "aperture_blades": dof.aperture_blades,

@@ -48,7 +48,7 @@ def render_view_layer(engine, depsgraph, heard):
     statistics = heard.statistics
     with statistics.timed("extract"):
         snapshot = SceneExtractor().extract(depsgraph, engine.frame_set)
-    _show_report(engine, heard, snapshot.content.report)
+    _show_report(engine, heard, (*snapshot.camera.report, *snapshot.content.report))
     with statistics.timed("plan"):
         plan = plan_frame(snapshot)
     compiled_before = compiled_count()

@@ -113,6 +113,33 @@ class ZoomPosition:
     thicknesses: dict[str, float]
     stop_semi_diameter: float | None = None
 
+    def applied(self, surfaces):
+        """Return the lens at this position.
+
+        Parameters
+        ----------
+        surfaces : sequence of Surface
+            As the file gives them.
+
+        Returns
+        -------
+        Configuration
+        """
+        return Configuration(
+            tuple(self._applied_to(surface) for surface in surfaces),
+            self.focal_length,
+            self.f_number,
+            self.half_field_deg,
+            self.label,
+        )
+
+    def _applied_to(self, surface):
+        semi_diameter = surface.semi_diameter
+        if surface.is_stop and self.stop_semi_diameter is not None:
+            semi_diameter = self.stop_semi_diameter
+        thickness = self.thicknesses.get(surface.id, surface.thickness)
+        return replace(surface, semi_diameter=semi_diameter, thickness=thickness)
+
 
 @dataclass(frozen=True)
 class Configuration:
@@ -251,14 +278,7 @@ class Prescription:
             return Configuration(
                 self.surfaces, self.focal_length, self.f_number, self.half_field_deg
             )
-        position = next(p for p in self.zoom if label in (None, p.label))
-        return Configuration(
-            tuple(_at_position(surface, position) for surface in self.surfaces),
-            position.focal_length,
-            position.f_number,
-            position.half_field_deg,
-            position.label,
-        )
+        return next(p for p in self.zoom if label in (None, p.label)).applied(self.surfaces)
 
     def configurations(self):
         """Return the lens at all its zoom positions.
@@ -267,12 +287,6 @@ class Prescription:
         -------
         tuple of Configuration
         """
-        return tuple(self.configuration(label) for label in self.labels)
-
-
-def _at_position(surface, position):
-    semi_diameter = surface.semi_diameter
-    if surface.is_stop and position.stop_semi_diameter is not None:
-        semi_diameter = position.stop_semi_diameter
-    thickness = position.thicknesses.get(surface.id, surface.thickness)
-    return replace(surface, semi_diameter=semi_diameter, thickness=thickness)
+        if not self.zoom:
+            return (self.configuration(),)
+        return tuple(position.applied(self.surfaces) for position in self.zoom)

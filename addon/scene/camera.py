@@ -7,6 +7,7 @@ import numpy as np
 from ..errors import CameraError, FocusError
 from ..sampling.iris import Iris
 from ..sampling.thin_lens import ThinLens, aperture_radius
+from .lenses import read_real_lens
 from .snapshot import Camera
 
 
@@ -43,12 +44,14 @@ def read_camera(depsgraph, camera, film):
         scale_y=render.pixel_aspect_y,
     )
     world = camera.matrix_world.normalized()
-    orthographic = data.type == "ORTHO"
+    real_lens, problems = read_real_lens(data)
     return Camera(
         view=np.array(world.inverted(), np.float64),
         projection=np.array(projection, np.float64),
-        lens=read_lens(depsgraph, camera) if data.dof.use_dof else None,
-        orthographic=orthographic,
+        lens=read_lens(depsgraph, camera, real_lens) if data.dof.use_dof else None,
+        orthographic=data.type == "ORTHO",
+        real_lens=real_lens,
+        report=tuple(f"camera '{camera.name}': {problem}" for problem in problems),
     )
 
 
@@ -70,18 +73,19 @@ def evaluated_camera(depsgraph, camera):
     return camera
 
 
-def read_lens(depsgraph, camera):
+def read_lens(depsgraph, camera, real_lens=None):
     """Return the thin lens of a camera with depth of field.
 
     The aperture follows Cycles: focal length over f-number, and 1 m over it where an orthographic
-    camera has no focal length.
+    camera has no focal length. A real lens opens no wider than it can.
     """
     data = camera.data
     dof = data.dof
     focal_length = 1.0 if data.type == "ORTHO" else data.lens / 1000.0
+    f_number = real_lens.f_number if real_lens else dof.aperture_fstop
     iris = Iris(dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio)
     return ThinLens(
-        aperture_radius(focal_length, dof.aperture_fstop), focus_distance(depsgraph, camera), iris
+        aperture_radius(focal_length, f_number), focus_distance(depsgraph, camera), iris
     )
 
 
@@ -107,3 +111,29 @@ def focus_distance(depsgraph, camera):
             " move it or choose another one"
         )
     return -place.z
+
+
+def sensor_diagonal(camera, scene):
+    """Return the diagonal of what the picture takes of the sensor, in mm.
+
+    Parameters
+    ----------
+    camera : bpy.types.Camera
+    scene : bpy.types.Scene
+        Its picture's shape decides which side of the sensor is filled.
+
+    Returns
+    -------
+    float
+    """
+    render = scene.render
+    width = render.resolution_x * render.pixel_aspect_x
+    height = render.resolution_y * render.pixel_aspect_y
+    fit = camera.sensor_fit
+    if fit == "AUTO":
+        filled, side = camera.sensor_width, max(width, height)
+    elif fit == "HORIZONTAL":
+        filled, side = camera.sensor_width, width
+    else:
+        filled, side = camera.sensor_height, height
+    return filled * math.hypot(width, height) / side

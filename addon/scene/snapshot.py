@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..optics.prescription import Prescription
 from ..sampling.thin_lens import ThinLens
 from .surface_graph import SurfaceGraph
 
@@ -207,6 +208,27 @@ class World:
     rotation: tuple[tuple[float, float, float], ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
+@dataclass(frozen=True)
+class LensSettings:
+    """A real lens as a camera uses it.
+
+    Parameters
+    ----------
+    id : str
+        Of the library.
+    label : str or None
+        Of the zoom position; None for a lens that has none.
+    f_number : float
+        In force: what the camera asks for, but no wider than the lens opens.
+    prescription : Prescription
+    """
+
+    id: str
+    label: str | None
+    f_number: float
+    prescription: Prescription
+
+
 @dataclass(frozen=True, eq=False)
 class Camera:
     """Where the picture is taken from.
@@ -222,6 +244,10 @@ class Camera:
     orthographic : bool
     previous, next : tuple of two ndarray of shape (4, 4) or None
         View and projection in the neighbouring frames, when motion was asked for.
+    real_lens : LensSettings or None
+        None: the camera names no lens that can be used.
+    report : tuple of str
+        What the camera asks for and does not get, one line each.
     """
 
     view: np.ndarray
@@ -230,6 +256,8 @@ class Camera:
     orthographic: bool = False
     previous: tuple[np.ndarray, np.ndarray] | None = None
     next: tuple[np.ndarray, np.ndarray] | None = None
+    real_lens: LensSettings | None = None
+    report: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .camera import evaluated_camera, read_lens
+from .lenses import read_real_lens
 from .snapshot import Camera, Film
 
 
@@ -64,13 +65,14 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
     covered = np.array([region.width / width, region.height / height]) / pixel_size
     stretch = np.diag([*covered, 1.0, 1.0])
     stretch[:2, 3] = covered - 1.0
-    lens, frame = None, None
+    lens, real_lens, frame = None, None, None
     through_camera = region_3d.view_perspective == "CAMERA" and space.camera is not None
     if through_camera and space.camera.type == "CAMERA":
         camera = evaluated_camera(depsgraph, space.camera)
         frame = _camera_frame(camera, scene, window @ view)
+        real_lens, _ = read_real_lens(camera.data)
         if camera.data.dof.use_dof:
-            lens = read_lens(depsgraph, camera)
+            lens = read_lens(depsgraph, camera, real_lens)
     if through_camera:
         border = _border_in_frame(scene.render, frame)
     else:
@@ -88,7 +90,10 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
         render.filter_size,
     )
     orthographic = window[3, 3] != 0.0
-    return View(Camera(view, stretch @ window, lens, bool(orthographic)), film, pixel_size)
+    camera = Camera(
+        view, stretch @ window, lens, orthographic=bool(orthographic), real_lens=real_lens
+    )
+    return View(camera, film, pixel_size)
 
 
 # Lower left and upper right corner of a rectangle, as shares of the region.

@@ -8,7 +8,9 @@ from .sampling_presets import APLANAT_PT_sampling_presets
 _GEOMETRY = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
 
 
-class _EnginePanel:
+class EnginePanel:
+    """A panel of the properties editor that is shown while Aplanat is the render engine."""
+
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     COMPAT_ENGINES = frozenset({ENGINE_ID})
@@ -18,13 +20,14 @@ class _EnginePanel:
         """Whether Aplanat is the render engine."""
         return context.engine in cls.COMPAT_ENGINES
 
-    def _column(self):
+    def column(self):
+        """Return a column that is laid out as Blender lays out properties."""
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
         return self.layout.column()
 
 
-class APLANAT_RENDER_PT_sampling(_EnginePanel, bpy.types.Panel):
+class APLANAT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
     """How the lens and the pixels are sampled."""
 
     bl_label = "Sampling"
@@ -37,7 +40,7 @@ class APLANAT_RENDER_PT_sampling(_EnginePanel, bpy.types.Panel):
     def draw(self, context):
         """Draw the settings of the scene."""
         settings = context.scene.aplanat
-        column = self._column()
+        column = self.column()
         column.prop(settings, "method")
         samples = column.column(align=True)
         samples.prop(settings, "preview_samples", text="Viewport")
@@ -48,7 +51,7 @@ class APLANAT_RENDER_PT_sampling(_EnginePanel, bpy.types.Panel):
         pixel.prop(context.scene.render, "filter_size", text="Width")
 
 
-class APLANAT_RENDER_PT_film(_EnginePanel, bpy.types.Panel):
+class APLANAT_RENDER_PT_film(EnginePanel, bpy.types.Panel):
     """What the picture is taken on."""
 
     bl_label = "Film"
@@ -57,10 +60,10 @@ class APLANAT_RENDER_PT_film(_EnginePanel, bpy.types.Panel):
 
     def draw(self, context):
         """Draw the settings of the scene."""
-        self._column().prop(context.scene.render, "film_transparent", text="Transparent")
+        self.column().prop(context.scene.render, "film_transparent", text="Transparent")
 
 
-class APLANAT_RENDER_PT_performance(_EnginePanel, bpy.types.Panel):
+class APLANAT_RENDER_PT_performance(EnginePanel, bpy.types.Panel):
     """What has no influence on the picture."""
 
     bl_label = "Performance"
@@ -69,7 +72,7 @@ class APLANAT_RENDER_PT_performance(_EnginePanel, bpy.types.Panel):
 
     def draw(self, context):
         """Draw the settings of the scene."""
-        column = self._column()
+        column = self.column()
         column.prop(context.scene.aplanat, "chunk_milliseconds")
         render = context.scene.render
         compositor = column.column()
@@ -77,7 +80,7 @@ class APLANAT_RENDER_PT_performance(_EnginePanel, bpy.types.Panel):
         compositor.prop(render, "compositor_precision", text="Precision")
 
 
-class APLANAT_RENDER_PT_simplify(_EnginePanel, bpy.types.Panel):
+class APLANAT_RENDER_PT_simplify(EnginePanel, bpy.types.Panel):
     """Blender's simplification; Blender's own panel would stand above all others."""
 
     bl_label = "Simplify"
@@ -91,7 +94,7 @@ class APLANAT_RENDER_PT_simplify(_EnginePanel, bpy.types.Panel):
     def draw(self, context):
         """Draw Blender's settings."""
         render = context.scene.render
-        column = self._column()
+        column = self.column()
         column.active = render.use_simplify
         subdivision = column.column(align=True)
         subdivision.prop(render, "simplify_subdivision", text="Max Subdivision Viewport")
@@ -102,7 +105,7 @@ class APLANAT_RENDER_PT_simplify(_EnginePanel, bpy.types.Panel):
         column.prop(render, "use_simplify_normals", text="Viewport Normals")
 
 
-class APLANAT_VIEWLAYER_PT_data(_EnginePanel, bpy.types.Panel):
+class APLANAT_VIEWLAYER_PT_data(EnginePanel, bpy.types.Panel):
     """Passes that describe the scene."""
 
     bl_label = "Data"
@@ -112,7 +115,7 @@ class APLANAT_VIEWLAYER_PT_data(_EnginePanel, bpy.types.Panel):
     def draw(self, context):
         """Draw Blender's switches and ours."""
         layer = context.view_layer
-        column = self._column()
+        column = self.column()
         include = column.column(heading="Include")
         include.prop(layer, "use_pass_z", text="Depth")
         include.prop(layer, "use_pass_normal", text="Normal")
@@ -123,7 +126,7 @@ class APLANAT_VIEWLAYER_PT_data(_EnginePanel, bpy.types.Panel):
         lens.prop(layer.aplanat, "use_pass_focus_matte")
 
 
-class APLANAT_VIEWLAYER_PT_cryptomatte(_EnginePanel, bpy.types.Panel):
+class APLANAT_VIEWLAYER_PT_cryptomatte(EnginePanel, bpy.types.Panel):
     """Mattes by name."""
 
     bl_label = "Cryptomatte"
@@ -133,7 +136,7 @@ class APLANAT_VIEWLAYER_PT_cryptomatte(_EnginePanel, bpy.types.Panel):
     def draw(self, context):
         """Draw Blender's switches."""
         layer = context.view_layer
-        column = self._column()
+        column = self.column()
         include = column.column(heading="Include")
         include.prop(layer, "use_pass_cryptomatte_object", text="Object")
         include.prop(layer, "use_pass_cryptomatte_material", text="Material")
@@ -142,7 +145,7 @@ class APLANAT_VIEWLAYER_PT_cryptomatte(_EnginePanel, bpy.types.Panel):
         levels.prop(layer, "pass_cryptomatte_depth", text="Levels")
 
 
-class APLANAT_OBJECT_PT_ray_visibility(_EnginePanel, bpy.types.Panel):
+class APLANAT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
     """Whether the camera sees an object."""
 
     bl_label = "Ray Visibility"
@@ -157,10 +160,10 @@ class APLANAT_OBJECT_PT_ray_visibility(_EnginePanel, bpy.types.Panel):
 
     def draw(self, context):
         """Draw Blender's switch."""
-        self._column().prop(context.object, "visible_camera", text="Camera")
+        self.column().prop(context.object, "visible_camera", text="Camera")
 
 
-class APLANAT_MATERIAL_PT_settings(_EnginePanel, bpy.types.Panel):
+class APLANAT_MATERIAL_PT_settings(EnginePanel, bpy.types.Panel):
     """What a material has beside its surface."""
 
     bl_label = "Settings"
@@ -175,7 +178,7 @@ class APLANAT_MATERIAL_PT_settings(_EnginePanel, bpy.types.Panel):
 
     def draw(self, context):
         """Draw Blender's settings."""
-        self._column().prop(context.material, "use_backface_culling")
+        self.column().prop(context.material, "use_backface_culling")
 
 
 CLASSES = (

@@ -3,6 +3,8 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty
 
+from .camera_properties import AplanatCameraSettings
+
 # Also what the command line accepts.
 MAX_SAMPLES = 65536
 
@@ -88,7 +90,7 @@ class AplanatViewLayerSettings(bpy.types.PropertyGroup):
     )
 
 
-CLASSES = (AplanatSceneSettings, AplanatViewLayerSettings)
+CLASSES = (AplanatSceneSettings, AplanatViewLayerSettings, AplanatCameraSettings)
 
 _register, _unregister = bpy.utils.register_classes_factory(CLASSES)
 
@@ -98,10 +100,14 @@ def register():
     _register()
     bpy.types.Scene.aplanat = PointerProperty(type=AplanatSceneSettings)
     bpy.types.ViewLayer.aplanat = PointerProperty(type=AplanatViewLayerSettings)
+    bpy.types.Camera.aplanat = PointerProperty(
+        type=AplanatCameraSettings, override={"LIBRARY_OVERRIDABLE"}
+    )
 
 
 def unregister():
     """Undo `register`."""
+    del bpy.types.Camera.aplanat
     del bpy.types.ViewLayer.aplanat
     del bpy.types.Scene.aplanat
     _unregister()

@@ -6,6 +6,9 @@ from addon.cli.arguments import parse
 from addon.errors import InputError
 
 RENDER = ["render", "x.blend"]
+INFO = ["lens", "info", "x"]
+TRACE = ["lens", "trace", "x"]
+FAN = [*TRACE, "--object-to-first-vertex-mm", "1000"]
 
 
 @pytest.mark.parametrize(
@@ -48,6 +51,37 @@ RENDER = ["render", "x.blend"]
         ([*RENDER, "--focus", "nan"], "greater than 0"),
         ([*RENDER, "--method", "magic"], "invalid choice"),
         (["bench", "--samples", "0"], "not between"),
+        (["bench", "--lens", "tessar", "--scene", "toys"], "not allowed with"),
+        (["lens"], "COMMAND"),
+        (["lens", "grind"], "invalid choice"),
+        ([*INFO[:2]], "LENS"),
+        ([*INFO, "--wavelength", "violet"], "not a number"),
+        ([*INFO, "--wavelength", "0"], "not between"),
+        ([*INFO, "--wavelength", "nan"], "not between"),
+        ([*INFO, "--zoom"], "--zoom"),
+        (TRACE, "--object-to-first-vertex-mm --field-deg is required"),
+        ([*TRACE, "--object-to-first-vertex-mm", "1", "--field-deg", "1"], "not allowed with"),
+        ([*TRACE, "--object-to-first-vertex-mm", "0"], "greater than 0"),
+        ([*TRACE, "--object-to-first-vertex-mm", "inf"], "greater than 0"),
+        ([*TRACE, "--field-deg", "90"], "not between"),
+        ([*TRACE, "--field-deg", "1", "--rho", "0,1"], "--rho belongs to"),
+        ([*TRACE, "--field-deg", "1", "--planes-mm", "1"], "--planes-mm belongs to"),
+        ([*TRACE, "--field-deg", "1", "--grid", "2"], "not between"),
+        ([*FAN, "--grid", "9"], "--grid belongs to"),
+        ([*FAN, "--rho", "0,one"], "not a number"),
+        ([*FAN, "--rho", ""], "not a number"),
+        ([*FAN, "--rho", "0,..,1"], "FIRST,SECOND,..,LAST"),
+        ([*FAN, "--rho", "0,0.3,..,1"], "do not lead"),
+        ([*FAN, "--rho", "0,0,..,1"], "do not lead"),
+        ([*FAN, "--rho", "0,1e-9,..,1"], "at most"),
+        ([*FAN, "--rho", "nan"], "not between"),
+        (["lens", "bake", "x"], "-o/--output"),
+        (["lens", "bake", "x", "-o", "x.png"], "must end in .exr"),
+        (["lens", "plot", "x", "-o", "x.jpg"], "must end in .png, .svg or .pdf"),
+        (["lens", "plot", "x", "-o", "x.png", "--size", "9x9"], "each side"),
+        (["lens", "import", "x.dat", "-o", "x.dat"], "must end in .toml"),
+        (["lens", "import", "x.dat", "-o", "x.toml", "--glass", "BK7"], "NAME=ND,VD"),
+        (["lens", "import", "x.dat", "-o", "x.toml", "--stop", "0"], "not between"),
     ],
 )
 def test_unusable_words_are_refused_and_named(words, told):
@@ -60,13 +94,10 @@ def test_unusable_words_are_refused_and_named(words, told):
 @pytest.mark.parametrize(
     "words",
     [
-        ["lens", "list"],
-        ["lens", "trace", "x", "--json"],
         ["capture", "x.blend", "-o", "y.exr"],
         ["refocus", "y.exr", "-o", "z.exr"],
         [*RENDER, "--method", "adaptive"],
         [*RENDER, "--method", "layered"],
-        [*RENDER, "--lens", "tessar"],
         [*RENDER, "--subsamples", "4"],
         [*RENDER, "--layers", "8"],
     ],
@@ -97,7 +128,23 @@ def test_focus_may_be_an_object():
     assert parse([*RENDER, "--focus", "Head"]).focus == "Head"
 
 
-@pytest.mark.parametrize("words", [["--help"], ["render", "--help"], ["bench", "--help"]])
+def test_lists_of_numbers_may_be_negative_or_a_progression():
+    arguments = parse([*FAN, "--rho", "0,0.05,..,1", "--planes-mm", "-1,2.5"])
+    assert arguments.rho == pytest.approx([i / 20 for i in range(21)], abs=1e-15)
+    assert arguments.planes_mm == (-1.0, 2.5)
+    assert parse([*FAN, "--rho", "-1,-0.5,..,1"]).rho == (-1.0, -0.5, 0.0, 0.5, 1.0)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--help"],
+        ["render", "--help"],
+        ["bench", "--help"],
+        ["lens", "--help"],
+        *(["lens", word, "--help"] for word in ("list", "info", "trace", "bake", "plot", "import")),
+    ],
+)
 def test_help_is_printed(words, capsys):
     with pytest.raises(SystemExit) as ended:
         parse(words)

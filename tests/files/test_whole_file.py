@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from addon.cli import whole_file as module
-from addon.cli.whole_file import check_writable, whole_file
 from addon.errors import OutputError
+from addon.files import whole_file as module
+from addon.files.whole_file import check_writable, whole_file
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
@@ -82,7 +82,7 @@ def test_killed_writer_leaves_nothing(writer, number, tmp_path):
     code = f"""
 import sys, time
 sys.path.insert(0, {str(REPOSITORY)!r})
-from addon.cli import whole_file as module
+from addon.files import whole_file as module
 module._open = module.{writer}
 with module.removed_on_signals(), module.whole_file({str(tmp_path / "a.exr")!r}) as place:
     with open(place, "wb") as file:

@@ -1,0 +1,201 @@
+"""A lens focused at a distance: its first-order values and its ray map.
+
+A lens that is moved as a whole has one state: focusing changes the distance to the sensor only.
+A lens with a focus group has a state for each of a few distances, even in 1 / distance; all their
+numbers are smooth over it, and cubic interpolation gives the states between.
+
+Distances of focus and objects are from the first principal plane of the focused lens, mm.
+"""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ..errors import FocusError, InputError, PrescriptionError
+from ..optics.focus import focused
+from ..optics.paraxial import FirstOrder, first_order
+from .ray_map import RayMap, lagrange_weights
+from .ray_map_tracing import map_vergences, nearest_object, trace_ray_map
+
+# States of a lens with a focus group.
+GROUP_STATES = 7
+# Of the search for the nearest focus, and for a distance from a principal plane that moves.
+_STEPS = 24
+
+
+@dataclass(frozen=True)
+class FocusState:
+    """A lens at one focus.
+
+    Parameters
+    ----------
+    first_order : FirstOrder
+        Reference wavelength, wide open.
+    last_vertex : float
+        The z of the last surface, mm from surface 1.
+    ray_map : RayMap
+    """
+
+    first_order: FirstOrder
+    last_vertex: float
+    ray_map: RayMap
+
+    def vergence(self, distance):
+        """Vergence at the entrance pupil of an object.
+
+        Parameters
+        ----------
+        distance : float
+            From H, mm; inf is allowed.
+
+        Returns
+        -------
+        float
+            1/mm.
+
+        Raises
+        ------
+        InputError
+            If the object is not before the entrance pupil.
+        """
+        object_z = self.first_order.h - distance
+        if not object_z < self.ray_map.pupil:
+            raise InputError(
+                f"object distance {distance:g} mm lies behind the lens' entrance pupil; it must be "
+                f"more than {self.first_order.h - self.ray_map.pupil:g} mm"
+            )
+        return float(self.ray_map.vergence(object_z))
+
+    def image_plane(self, distance):
+        """Return the z of the paraxial image of an object, mm from surface 1.
+
+        Parameters
+        ----------
+        distance : float
+            From H, mm; beyond the focal length.
+
+        Raises
+        ------
+        FocusError
+            If there is no real image.
+        """
+        if not distance > self.first_order.efl:
+            raise FocusError(
+                f"focus distance {distance:g} mm is not beyond the focal length "
+                f"{self.first_order.efl:g} mm; focus farther away"
+            )
+        return self.ray_map.focus_plane(self.vergence(distance))
+
+
+def trace_states(configuration, wavelengths_nm, *, focus_group=None, step=None, **options):
+    """Trace the states of a lens.
+
+    Parameters
+    ----------
+    configuration : Configuration
+        Wide open.
+    wavelengths_nm : ndarray
+    focus_group : FocusGroup or None
+    step : callable or None
+        Called with the share done.
+    **options
+        For `trace_ray_map`.
+
+    Returns
+    -------
+    nearness : ndarray of shape (S,)
+        1 / distance of the focused object from surface 1; 1/mm, from 0.
+    states : tuple of FocusState
+    """
+    lenses, nearness = [configuration], np.zeros(1)
+    if focus_group:
+        nearness = np.linspace(0.0, _reach(configuration, focus_group), GROUP_STATES)
+        lenses = [focused(configuration, _distance(n), focus_group) for n in nearness]
+        if nearness[-1] == 0.0:
+            lenses, nearness = lenses[:1], nearness[:1]
+    states = []
+    vergences = map_vergences(lenses[0], first_order(lenses[0]))
+    for i, lens in enumerate(lenses):
+
+        def part(share, done=i):
+            if step:
+                step((done + share) / len(lenses))
+
+        ray_map = trace_ray_map(lens, wavelengths_nm, vergences=vergences, step=part, **options)
+        states.append(FocusState(first_order(lens), lens.vertices[-1], ray_map))
+    return nearness, tuple(states)
+
+
+def state_at(nearness, states, distance):
+    """Return the state of a lens focused at a distance.
+
+    Parameters
+    ----------
+    nearness : ndarray of shape (S,)
+    states : tuple of FocusState
+    distance : float
+        From H, mm; inf is allowed.
+
+    Returns
+    -------
+    FocusState
+
+    Raises
+    ------
+    FocusError
+        If the focus group does not reach so near.
+    """
+    if len(states) == 1:
+        return states[0]
+    shifts = np.array([state.first_order.h for state in states])
+    # The principal plane moves with the group, little against the distance.
+    before = distance
+    for _ in range(_STEPS):
+        at = 1.0 / before if before > 0.0 else np.inf
+        weights, chosen = lagrange_weights(nearness, at)
+        before = distance - float(weights @ shifts[chosen])
+    if not 0.0 <= at <= nearness[-1] * (1.0 + 1.0e-9):
+        nearest = 1.0 / nearness[-1] + shifts[-1]
+        raise FocusError(
+            f"focus distance {distance:g} mm is out of reach of the focus group; the nearest is "
+            f"{nearest:.6g} mm"
+        )
+    return _blended(states[chosen], weights)
+
+
+def _blended(states, weights):
+    """Return the weighted mean of states, number by number."""
+    orders = [state.first_order for state in states]
+    values = {}
+    for field in fields(FirstOrder):
+        numbers = [getattr(order, field.name) for order in orders]
+        values[field.name] = None if None in numbers else float(np.dot(weights, numbers))
+    last = float(np.dot(weights, [state.last_vertex for state in states]))
+    maps = [state.ray_map for state in states]
+    return FocusState(FirstOrder(**values), last, RayMap.blend(maps, weights))
+
+
+def _reach(configuration, focus_group):
+    """1 / the nearest distance from surface 1 at which the group focuses; at most the map's."""
+    most = -1.0 / nearest_object(configuration, first_order(configuration))
+    if _focuses(configuration, focus_group, most):
+        return most
+    low, high = 0.0, most
+    for _ in range(_STEPS):
+        middle = (low + high) / 2.0
+        low, high = (
+            (middle, high) if _focuses(configuration, focus_group, middle) else (low, middle)
+        )
+    return low
+
+
+def _focuses(configuration, focus_group, nearness):
+    try:
+        focused(configuration, _distance(nearness), focus_group)
+    except PrescriptionError:
+        return False
+    return True
+
+
+def _distance(nearness):
+    return 1.0 / nearness if nearness > 0.0 else np.inf

@@ -1,0 +1,1 @@
+"""Writing files that are there whole or not at all."""

@@ -1,0 +1,1 @@
+"""Drawings of lenses, with matplotlib, which is imported when something is drawn."""
