@@ -417,6 +417,7 @@ def build(width=960, seed=3):
     register_engine()
     scene = bpy.context.scene
     scene.render.engine = "APLANAT"
+    scene.aplanat.method = "REFERENCE"
     scene.aplanat.render_samples = 384
     scene.name = "Table-top at night"
     world = scene.world = bpy.data.worlds.new("Night")

@@ -157,6 +157,7 @@ def render_passes_cycles(scene, samples):
 def render_passes_aplanat(scene, samples):
     """The same with Aplanat."""
     scene.render.engine = "APLANAT"
+    scene.aplanat.method = "REFERENCE"
     scene.aplanat.render_samples = samples
     scene.aplanat.pixel_filter = "BOX"
     scene.render.filter_size = 1.0

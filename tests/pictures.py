@@ -28,6 +28,7 @@ def render_picture(scene):
 def render_aplanat(scene, samples, pixel_filter="BOX", filter_size=1.0):
     """Render with Aplanat."""
     scene.render.engine = "APLANAT"
+    scene.aplanat.method = "REFERENCE"
     scene.aplanat.render_samples = samples
     scene.aplanat.pixel_filter = pixel_filter
     scene.render.filter_size = filter_size

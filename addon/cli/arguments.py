@@ -34,8 +34,6 @@ _MAY_BE_NEGATIVE = {"--frames", "--field-deg", "--planes-mm", "--rho"}
 _LATER = {
     "capture": "depth layers",
     "refocus": "depth layers",
-    "--method adaptive": "fast defocus",
-    "--subsamples": "fast defocus",
     "--method layered": "depth layers",
     "--layers": "depth layers",
 }
@@ -89,12 +87,13 @@ def _not_yet(what, key):
 
 
 def _check_render(arguments):
-    if arguments.method in {"adaptive", "layered"}:
+    if arguments.method == "layered":
         key = f"--method {arguments.method}"
         raise _not_yet(key, key)
-    for key in ("subsamples", "layers"):
-        if getattr(arguments, key) is not None:
-            raise _not_yet(f"--{key}", f"--{key}")
+    if arguments.layers is not None:
+        raise _not_yet("--layers", "--layers")
+    if arguments.subsamples is not None and arguments.method == "reference":
+        raise InputError("--subsamples belongs to --method adaptive; the reference method has none")
     several = arguments.frames is not None and arguments.frames[0] != arguments.frames[1]
     for path in arguments.output:
         if several and "#" not in path.name:
@@ -171,8 +170,18 @@ def _add_render(commands):
     add("--camera", metavar="NAME", help="camera object to render from")
     add("--resolution", metavar="WxH", type=_resolution, help="in pixels, at 100 %%")
     add("--method", choices=("reference", "adaptive", "layered"), help="default: the scene's")
-    add("--samples", metavar="N", type=whole_number(1, MAX_SAMPLES), help="lens samples")
-    add("--subsamples", metavar="S", type=whole_number(0, 64), help=argparse.SUPPRESS)
+    add(
+        "--samples",
+        metavar="N",
+        type=whole_number(1, MAX_SAMPLES),
+        help="lens samples; without it the adaptive method may choose them itself",
+    )
+    add(
+        "--subsamples",
+        metavar="S",
+        type=whole_number(0, 64),
+        help="adaptive method: places on the lens that a sample stands for besides its own",
+    )
     add("--layers", metavar="K", type=whole_number(1, 64), help=argparse.SUPPRESS)
     add("--seed", metavar="N", type=whole_number(0, MAX_SEED), help="pattern of samples")
     add("--filter", choices=("box", "blackman-harris"), help="pixel filter")

@@ -126,6 +126,7 @@ def _cost_of_sample(scene, uses_lens, case, console):
 
 def _render(scene, use_dof, samples, label, console):
     scene.camera.data.dof.use_dof = use_dof
+    scene.aplanat.method = "REFERENCE"
     scene.aplanat.render_samples = samples
     return heard_render(
         keep_pictures=True, progress=lambda _, text: console.progress(f"{label}: {text}")

@@ -69,6 +69,10 @@ def apply_options(scene, arguments):
         settings.method = arguments.method.upper()
     if arguments.samples:
         settings.render_samples = arguments.samples
+        settings.use_target_error = False
+    if arguments.subsamples is not None:
+        settings.subsamples = arguments.subsamples
+        settings.use_target_error = False
     if arguments.seed is not None:
         settings.seed = arguments.seed
     if arguments.filter:

@@ -33,7 +33,15 @@ def settings_in_force(scene, arguments=None):
     lens, _ = read_real_lens(data)
     return {
         "method": own.method.lower(),
+        "target_error": (
+            own.render_error if own.method == "ADAPTIVE" and own.use_target_error else None
+        ),
         "samples": own.render_samples,
+        "subsamples": own.subsamples if own.method == "ADAPTIVE" else 0,
+        "share_drawings": own.sharing_cells if own.use_sharing else 0,
+        "levels_of_detail": own.use_levels,
+        "level_bias": own.level_bias,
+        "least_triangles": own.least_triangles,
         "seed": own.seed,
         "filter": own.pixel_filter.lower().replace("_", "-"),
         "filter_size_px": render.filter_size,
@@ -80,8 +88,11 @@ def work(statistics):
     return {
         "seconds": {stage: round(seconds, 6) for stage, seconds in statistics.seconds.items()},
         "lens_samples": statistics.lens_samples,
+        "subsamples": statistics.subsamples,
         "subpixels": statistics.subpixels,
         "draw_calls": statistics.draw_calls,
+        "meshes_decimated": statistics.decimations,
+        "levels_replayed": statistics.replays,
         "triangles_submitted": statistics.triangles_submitted,
         "triangles_full_detail": statistics.triangles_full_detail,
         "sprites_drawn": statistics.sprites_drawn,
@@ -109,7 +120,7 @@ def total_work(parts):
         for key, value in part.items():
             if isinstance(value, dict):
                 total[key] = total_work([total.get(key, {}), value])
-            elif key.endswith(("_bytes", "subpixels")):
+            elif key.endswith(("_bytes", "subpixels", "subsamples")):
                 total[key] = max(total.get(key, 0), value)
             else:
                 total[key] = total.get(key, 0) + value

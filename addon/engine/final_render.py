@@ -63,6 +63,7 @@ def render_view_layer(engine, depsgraph, heard):
                 pictures = _finish(gpu, renderer, result, heard)
         finally:
             statistics.lens_samples += renderer.samples_done
+            statistics.subsamples = max(statistics.subsamples, float(plan.subsample_counts.mean()))
             statistics.subpixels = max(statistics.subpixels, plan.subpixels)
             counts = renderer.counts
             statistics.draw_calls += counts.draw_calls

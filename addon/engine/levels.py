@@ -13,6 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+# Subtracted from every level. The mapping makes a triangle as large as the circle of confusion, so
+# that a blurred silhouette keeps its shape; but colours and normals that vary from vertex to vertex
+# are blurred by the triangles, too, and that blur should be small beside the lens'.
+COLOR_ALLOWANCE = 3.0
+
 # Triangles are counted once a side: half of them face away.
 _FACING_SHARE = 0.5
 
@@ -100,7 +105,7 @@ def choose_levels(seen, triangles, plan, bias=0.0):
         Of the mesh at full detail.
     plan : FramePlan
     bias : float
-        Subtracted from the level.
+        Subtracted from the level, besides `COLOR_ALLOWANCE`.
 
     Returns
     -------
@@ -119,7 +124,7 @@ def choose_levels(seen, triangles, plan, bias=0.0):
         size = size / np.maximum(seen.center_depth, 1e-9)
     triangle_area = np.pi * size**2 / np.maximum(_FACING_SHARE * triangles, 1e-9)
     ratio = blur_area / np.maximum(triangle_area, 1e-30)
-    level = np.log2(np.maximum(ratio, 1e-30)) - bias
+    level = np.log2(np.maximum(ratio, 1e-30)) - COLOR_ALLOWANCE - bias
     return np.where(front & (smallest > 0.0), np.maximum(level, 0.0), 0.0)
 
 
@@ -140,3 +145,36 @@ def level_for_sample(levels, sample, samples):
     lower = np.floor(levels)
     coarser = sample >= np.round((1.0 - (levels - lower)) * samples)
     return (lower + coarser).astype(np.int64)
+
+
+def meshes_with_levels(content, plan, least_triangles):
+    """Return which meshes are drawn at a lower level of detail, if they have any.
+
+    Parameters
+    ----------
+    content : SceneContent
+    plan : FramePlan
+    least_triangles : int
+        No level has fewer.
+
+    Returns
+    -------
+    list of int
+        Uids, in the order of the content.
+    """
+    if plan.level_bias is None or plan.coc_scale == 0.0:
+        return []
+    meshes = [content.meshes[group.mesh] for group in content.groups]
+    bounds = {mesh.uid: mesh.bounds for mesh in meshes}
+    seen = extents(world_corners(content, bounds), plan.view)
+    full = np.zeros(len(seen.radius))
+    for group, mesh in zip(content.groups, meshes, strict=True):
+        full[group.first : group.first + group.count] = len(mesh.triangles)
+    chosen = choose_levels(seen, full, plan, plan.level_bias)
+    wanted = {
+        mesh.uid
+        for group, mesh in zip(content.groups, meshes, strict=True)
+        if len(mesh.triangles) >= 2 * least_triangles
+        and (chosen[group.first : group.first + group.count] > 0.0).any()
+    }
+    return [uid for uid in content.meshes if uid in wanted]

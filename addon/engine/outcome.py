@@ -28,6 +28,10 @@ class RenderStatistics:
         By stage: ``extract``, ``plan``, ``upload``, ``draw``, ``resolve``, ``read_back``.
     lens_samples : int
         Of all view layers together.
+    subsamples : float
+        Places that a lens sample stood for besides its own, of the view layer that had most.
+    decimations, replays : int
+        Meshes whose levels of detail were made, and made again for other positions.
     subpixels : int
         Along each side of a pixel in a lens sample's raster, of the finest view layer.
     draw_calls : int
@@ -48,6 +52,9 @@ class RenderStatistics:
 
     seconds: dict[str, float] = field(default_factory=dict)
     lens_samples: int = 0
+    subsamples: float = 0.0
+    decimations: int = 0
+    replays: int = 0
     subpixels: int = 1
     draw_calls: int = 0
     triangles_submitted: int = 0

@@ -51,6 +51,8 @@ class FramePlan:
         int; how many of them each sample has.
     level_bias : float or None
         Subtracted from the level of detail; None draws everything in full detail.
+    least_triangles : int
+        No level of detail has fewer.
     reuse_grid : int
         Cells along a pixel in which samples share a drawing; 0 shares none.
     lens_extent : ndarray of shape (2,)
@@ -82,6 +84,7 @@ class FramePlan:
     subsample_offsets: np.ndarray
     subsample_counts: np.ndarray
     level_bias: float | None
+    least_triangles: int
     reuse_grid: int
     lens_extent: np.ndarray
     coc_scale: float
@@ -284,6 +287,7 @@ def _plan(snapshot, sampling):
         subsample_offsets=offsets_on_lens,
         subsample_counts=places,
         level_bias=sampling.level_bias if adaptive and sampling.uses_levels else None,
+        least_triangles=sampling.least_triangles,
         reuse_grid=sampling.reuse_grid if adaptive else 0,
         lens_extent=extent,
         coc_scale=scale,

@@ -39,7 +39,7 @@ class Halving:
     collapses: np.ndarray
 
 
-def simplify(mesh, least_triangles):
+def simplify(mesh, least_triangles, check=None):
     """Make the levels of a mesh.
 
     Parameters
@@ -47,6 +47,9 @@ def simplify(mesh, least_triangles):
     mesh : MeshSnapshot
     least_triangles : int
         No level has fewer, unless the mesh itself has.
+    check : callable, optional
+        Called before each level with the triangles that the mesh has lost so far; it may raise to
+        end the work.
 
     Returns
     -------
@@ -56,7 +59,10 @@ def simplify(mesh, least_triangles):
         One a level.
     """
     levels, halvings = [], []
+    full = len(mesh.triangles)
     while len(mesh.triangles) >= 2 * least_triangles:
+        if check is not None:
+            check(full - len(mesh.triangles))
         halving = _decimate(mesh, len(mesh.triangles) // 2)
         level = _replay(mesh, halving)
         if len(level.triangles) > _LEAST_REDUCTION * len(mesh.triangles):

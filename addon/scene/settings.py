@@ -68,12 +68,28 @@ def _pixel(fraction, size):
 def read_sampling(scene):
     """Return how a final render is sampled."""
     settings = scene.aplanat
-    return Sampling("REFERENCE", settings.render_samples, settings.seed)
+    return Sampling(
+        method=settings.method,
+        lens_samples=settings.render_samples,
+        seed=settings.seed,
+        target_error=settings.render_error if settings.use_target_error else None,
+        subsamples=settings.subsamples,
+        reuse_grid=settings.sharing_cells if settings.use_sharing else 0,
+        uses_levels=settings.use_levels,
+        level_bias=settings.level_bias,
+        least_triangles=settings.least_triangles,
+    )
 
 
 def read_preview_sampling(scene):
-    """Return how a viewport is sampled: as the final render, with its own number of samples."""
-    return replace(read_sampling(scene), lens_samples=scene.aplanat.preview_samples)
+    """Return how a viewport is sampled: as the final render, with its own numbers."""
+    settings = scene.aplanat
+    return replace(
+        read_sampling(scene),
+        lens_samples=settings.preview_samples,
+        target_error=settings.preview_error if settings.use_target_error else None,
+        progressive=True,
+    )
 
 
 def read_passes(view_layer):

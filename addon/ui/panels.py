@@ -42,9 +42,25 @@ class APLANAT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
         settings = context.scene.aplanat
         column = self.column()
         column.prop(settings, "method")
-        samples = column.column(align=True)
-        samples.prop(settings, "preview_samples", text="Viewport")
-        samples.prop(settings, "render_samples", text="Render")
+        adaptive = settings.method == "ADAPTIVE"
+        if adaptive:
+            column.prop(settings, "use_target_error")
+        if adaptive and settings.use_target_error:
+            errors = column.column(align=True)
+            errors.prop(settings, "preview_error", text="Viewport Error")
+            errors.prop(settings, "render_error", text="Render")
+        else:
+            samples = column.column(align=True)
+            samples.prop(settings, "preview_samples", text="Viewport Samples")
+            samples.prop(settings, "render_samples", text="Render")
+            if adaptive:
+                column.prop(settings, "subsamples")
+        if adaptive:
+            sharing = column.row(heading="Share Drawings")
+            sharing.prop(settings, "use_sharing", text="")
+            cells = sharing.row()
+            cells.active = settings.use_sharing
+            cells.prop(settings, "sharing_cells")
         column.prop(settings, "seed")
         pixel = column.column()
         pixel.prop(settings, "pixel_filter")

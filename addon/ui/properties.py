@@ -1,7 +1,13 @@
 """What Aplanat adds to Blender's data-blocks: one property group each."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    IntProperty,
+    PointerProperty,
+)
 
 from .camera_properties import AplanatCameraSettings
 
@@ -17,12 +23,47 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
         description="How the picture is put together from views through the lens",
         items=(
             (
+                "ADAPTIVE",
+                "Adaptive",
+                "Draw blurred objects with fewer triangles, share drawings of what is in focus, and"
+                " blur each lens sample over the part of the lens it stands for",
+            ),
+            (
                 "REFERENCE",
                 "Reference",
                 "Draw everything in full detail for every lens sample: exact, the slowest",
             ),
         ),
-        default="REFERENCE",
+        default="ADAPTIVE",
+    )
+    use_target_error: BoolProperty(
+        name="Automatic",
+        description="Choose lens samples, subsamples and detail from the largest blur in the"
+        " picture and one number for quality",
+        default=True,
+    )
+    render_error: FloatProperty(
+        name="Render",
+        description="How much the final render may differ from a perfect one, as 1 - SSIM: 0.02 is"
+        " a draft, 0.01 looks clean, 0.002 is for large prints. It changes the noise, never the"
+        " amount of blur",
+        default=0.01,
+        min=0.0005,
+        max=0.5,
+        soft_max=0.05,
+        precision=4,
+        step=0.1,
+    )
+    preview_error: FloatProperty(
+        name="Viewport",
+        description="How much the picture may differ from a perfect one when the viewport rests, as"
+        " 1 - SSIM",
+        default=0.03,
+        min=0.0005,
+        max=0.5,
+        soft_max=0.1,
+        precision=4,
+        step=0.1,
     )
     render_samples: IntProperty(
         name="Render",
@@ -40,6 +81,52 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
         min=1,
         max=MAX_SAMPLES,
         soft_max=1024,
+    )
+    subsamples: IntProperty(
+        name="Subsamples",
+        description="Places on the lens for which each lens sample is blurred besides its own. They"
+        " cost less than samples, but see only what the sample sees",
+        default=4,
+        min=0,
+        max=64,
+        soft_max=8,
+    )
+    use_sharing: BoolProperty(
+        name="Share Drawings",
+        description="Draw what is nearly in focus once for all lens samples that put it at the same"
+        " place of the raster",
+        default=True,
+    )
+    sharing_cells: IntProperty(
+        name="Cells",
+        description="Places along a pixel that are told apart when drawings are shared. More give"
+        " smoother edges, fewer share more",
+        default=2,
+        min=1,
+        max=8,
+    )
+    use_levels: BoolProperty(
+        name="Level of Detail",
+        description="Draw blurred objects with fewer triangles; what is in focus keeps all of them",
+        default=True,
+    )
+    level_bias: FloatProperty(
+        name="Bias",
+        description="Levels of detail by which objects are drawn finer (or coarser, if negative)"
+        " than their blur asks for; each has twice the triangles",
+        default=0.0,
+        soft_min=-4.0,
+        soft_max=4.0,
+        min=-16.0,
+        max=16.0,
+    )
+    least_triangles: IntProperty(
+        name="Minimum Triangles",
+        description="No level of detail has fewer triangles",
+        default=256,
+        min=4,
+        soft_max=10000,
+        max=10000000,
     )
     seed: IntProperty(
         name="Seed",

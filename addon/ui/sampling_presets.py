@@ -22,8 +22,14 @@ class APLANAT_OT_sampling_preset_add(AddPresetBase, bpy.types.Operator):
     preset_defines = ("scene = bpy.context.scene",)
     preset_values = (
         "scene.aplanat.method",
+        "scene.aplanat.use_target_error",
+        "scene.aplanat.render_error",
+        "scene.aplanat.preview_error",
         "scene.aplanat.render_samples",
         "scene.aplanat.preview_samples",
+        "scene.aplanat.subsamples",
+        "scene.aplanat.use_sharing",
+        "scene.aplanat.sharing_cells",
         "scene.aplanat.pixel_filter",
         "scene.render.filter_size",
     )

@@ -60,6 +60,7 @@ def build():
     scene.render.engine = "APLANAT"
     scene.render.resolution_x, scene.render.resolution_y = 160, 90
     scene.render.resolution_percentage = 100
+    scene.aplanat.method = "REFERENCE"
     scene.aplanat.preview_samples = scene.aplanat.render_samples = 16
     scene.view_settings.view_transform = "Standard"
     scene.render.image_settings.file_format = "PNG"

@@ -20,6 +20,7 @@ def note(share, text):
     progress.append(share)
 def long_render(samples, **options):
     ticks.clear(); progress.clear()
+    bpy.context.scene.aplanat.method = "REFERENCE"
     bpy.context.scene.aplanat.render_samples = samples
     start_render(**options)
 """

@@ -29,6 +29,7 @@ use_passes(layer, "z", "normal", "position", "vector", "cryptomatte_object")
 use_passes(layer, "cryptomatte_material")
 layer.aplanat.use_pass_coc = layer.aplanat.use_pass_focus_matte = True
 scene.render.engine = "APLANAT"
+scene.aplanat.method = "REFERENCE"
 scene.aplanat.render_samples = 48
 write_passes(scene, {path!r})
 """

@@ -38,6 +38,7 @@ def build_scene(bpy):
     render.resolution_x, render.resolution_y = SIZE
     render.resolution_percentage = 100
     scene.view_settings.view_transform = "Standard"
+    scene.aplanat.method = "REFERENCE"
     scene.aplanat.render_samples = 4
     return scene
 

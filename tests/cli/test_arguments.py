@@ -96,15 +96,20 @@ def test_unusable_words_are_refused_and_named(words, told):
     [
         ["capture", "x.blend", "-o", "y.exr"],
         ["refocus", "y.exr", "-o", "z.exr"],
-        [*RENDER, "--method", "adaptive"],
         [*RENDER, "--method", "layered"],
-        [*RENDER, "--subsamples", "4"],
         [*RENDER, "--layers", "8"],
     ],
 )
 def test_what_is_not_built_yet_names_what_brings_it(words):
     with pytest.raises(InputError, match=r"is not in version .*; it comes later, with \w+ \w+"):
         parse(words)
+
+
+def test_subsamples_belong_to_the_adaptive_method():
+    arguments = parse([*RENDER, "--method", "adaptive", "--samples", "32", "--subsamples", "4"])
+    assert (arguments.method, arguments.samples, arguments.subsamples) == ("adaptive", 32, 4)
+    with pytest.raises(InputError, match="the reference method has none"):
+        parse([*RENDER, "--method", "reference", "--subsamples", "4"])
 
 
 def test_all_words_of_render_are_understood():

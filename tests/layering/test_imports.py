@@ -28,7 +28,10 @@ ROOMS = {
     "reference": {"sampling", "scene.snapshot", "optics", "bokeh"},
     "scene": {"sampling", "optics", "lens_io", "scene.snapshot", "scene.surface_graph"},
     "layers": {"sampling", "scene.snapshot"},
-    "engine": {"device", "passes", "sampling", "scene", "scene.snapshot", "scene.surface_graph"},
+    "engine": {
+        *("files", "device", "passes", "sampling"),
+        *("scene", "scene.snapshot", "scene.surface_graph"),
+    },
     "compositor": {"engine", "scene.snapshot"},
     "ui": {"engine", "scene", "scene.snapshot", "files", "optics", "bokeh", "lens_io", "plots"},
     "cli": {

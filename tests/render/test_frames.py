@@ -25,6 +25,7 @@ def render(scene, samples=16):
     import bpy
 
     scene.render.engine = "APLANAT"
+    scene.aplanat.method = "REFERENCE"
     scene.aplanat.render_samples = samples
     scene.aplanat.pixel_filter = "BOX"
     scene.render.filter_size = 1.0

@@ -65,6 +65,7 @@ def _measure(bpy, case):
     bpy.ops.wm.open_mainfile(filepath=str(file))
     scene = bpy.context.scene
     scene.render.engine = "APLANAT"
+    scene.aplanat.method = "REFERENCE"
     scene.aplanat.render_samples = case.samples
     scene.aplanat.pixel_filter = "BOX"
     scene.render.filter_size = 1.0

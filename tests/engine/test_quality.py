@@ -1,0 +1,79 @@
+"""One number for quality: what it chooses, and which blur it looks at."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from addon.engine.plan import plan_frame
+from addon.engine.quality import largest_coc
+from addon.sampling.thin_lens import ThinLens
+from addon.scene.snapshot import InstanceGroup, InstanceTable, MeshSnapshot, Sampling, next_uid
+
+from .test_plan import snapshot
+
+FOCUS = 4.0
+
+
+def box_frame(center, half, lens, error=0.01):
+    corners = np.array(np.meshgrid((-1, 1), (-1, 1), (-1, 1))).reshape(3, 8).T
+    positions = (np.array(center) + np.array(half) * corners).astype(np.float32)
+    triangles = np.array([[0, 1, 2], [5, 6, 7], [3, 4, 0]], np.int32)
+    mesh = MeshSnapshot(next_uid(), "box", positions, triangles, ((0, 0, 3),))
+    frame = snapshot(lens)
+    content = replace(
+        frame.content,
+        meshes={mesh.uid: mesh},
+        instances=InstanceTable(np.eye(4, dtype=np.float32)[None], np.zeros(1, np.float32)),
+        groups=(InstanceGroup(mesh.uid, (), 0, 1),),
+    )
+    sampling = Sampling("ADAPTIVE", 1, target_error=error, subsamples=9)
+    return replace(frame, content=content, sampling=sampling)
+
+
+def coc(depth, plan):
+    return abs(plan.coc_scale * (depth - FOCUS) / (depth * FOCUS))
+
+
+def test_the_largest_blur_is_that_of_the_nearest_visible_part():
+    frame = box_frame((0, 0, -1.5), (0.1, 0.1, 0.5), ThinLens(0.1, FOCUS))
+    plan = plan_frame(frame)
+    assert largest_coc(frame.content, plan) == pytest.approx(coc(1.0, plan), rel=1e-6)
+
+
+def test_what_is_outside_the_frame_does_not_count():
+    # A floor that runs below the camera: its nearest visible part is where the frame ends.
+    frame = box_frame((0, -1.0, -0.2), (20.0, 0.001, 4.0), ThinLens(0.1, FOCUS))
+    plan = plan_frame(frame)
+    edge = plan.projection[1, 1] * 0.999
+    assert largest_coc(frame.content, plan) == pytest.approx(coc(edge, plan), rel=0.02)
+
+
+def test_a_box_behind_the_camera_has_no_blur():
+    frame = box_frame((0, 0, 5.0), (0.1, 0.1, 0.5), ThinLens(0.1, FOCUS))
+    assert largest_coc(frame.content, plan_frame(frame)) == 0.0
+
+
+def test_less_error_or_more_blur_takes_more_samples():
+    def samples(radius, error):
+        frame = box_frame((0, 0, -1.5), (0.1, 0.1, 0.5), ThinLens(radius, FOCUS), error)
+        return plan_frame(frame).samples
+
+    assert samples(0.6, 0.01) > samples(0.3, 0.01)
+    assert samples(0.6, 0.005) > samples(0.6, 0.01)
+
+
+def test_a_pinhole_needs_no_more_than_its_edges_do():
+    plan = plan_frame(box_frame((0, 0, -1.5), (0.1, 0.1, 0.5), None))
+    assert plan.samples == 32
+    assert not plan.blurs
+
+
+def test_the_amount_of_blur_does_not_depend_on_the_error():
+    frames = [
+        box_frame((0, 0, -1.5), (0.1, 0.1, 0.5), ThinLens(0.1, FOCUS), error)
+        for error in (0.05, 0.001)
+    ]
+    plans = [plan_frame(frame) for frame in frames]
+    assert plans[0].coc_scale == plans[1].coc_scale
+    assert np.array_equal(plans[0].lens_extent, plans[1].lens_extent)
