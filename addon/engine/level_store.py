@@ -33,8 +33,13 @@ _AREA_TOLERANCE = 1.15
 @dataclass(frozen=True, eq=False)
 class _Made:
     levels: tuple
-    halvings: tuple
     bytes: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Known:
+    halvings: tuple
+    shrinkage: float
 
 
 class LevelStore:
@@ -55,8 +60,8 @@ class LevelStore:
     Attributes
     ----------
     decimations, replays, loads : int
-        How many meshes were simplified, got their levels by the collapses of another frame, and
-        from disk.
+        How many meshes were simplified, got their levels by the collapses of another mesh or frame,
+        and by those on disk.
     """
 
     def __init__(self, memory_limit=_MEMORY_LIMIT, folder=None, disk_limit=_DISK_LIMIT):
@@ -68,7 +73,7 @@ class LevelStore:
         self._wanted = {}
         self._keys = {}
         self._made = OrderedDict()
-        self._topologies = OrderedDict()
+        self._known = OrderedDict()
         self._queue = OrderedDict()
         self._fresh = set()
         self._work_done = self._work_total = self._work_begun = 0
@@ -146,26 +151,29 @@ class LevelStore:
         RenderCancelledError
             If `cancelled` says so; what was not begun is not made then.
         """
-        with self._changed:
-            while self._thread is not None:
-                if cancelled is not None and cancelled():
+        while self._pending():
+            if cancelled is not None and cancelled():
+                with self._changed:
                     self._queue.clear()
-                    raise RenderCancelledError("cancelled while levels of detail were made")
-                if progress is not None:
-                    progress(*self.progress)
-                self._changed.wait(_POLL_SECONDS)
+                raise RenderCancelledError("cancelled while levels of detail were made")
+            if progress is not None:
+                progress(*self.progress)
+            with self._changed:
+                if self._thread is not None:
+                    self._changed.wait(_POLL_SECONDS)
+        if progress is not None:
+            progress(*self.progress)
+
+    def _pending(self):
+        """Return whether a requested mesh lacks its levels; somebody is making them, then."""
+        with self._changed:
+            if self._thread is not None:
+                return True
             if self._error is not None:
                 error, self._error = self._error, None
                 raise error
-            if self._queue_missing():
-                self._enqueue()
-                again = True
-            else:
-                again = False
-        if again:
-            self.finish(progress, cancelled)
-        elif progress is not None:
-            progress(*self.progress)
+            self._enqueue()
+            return self._thread is not None
 
     @property
     def memory_bytes(self):
@@ -176,10 +184,10 @@ class LevelStore:
     def rebuild(self):
         """Forget every level, in memory and on disk, and make the requested ones again."""
         with self._changed:
-            for key in {*self._made, *self._keys.values()}:
-                self._files.forget(key)
+            for shape in [key for key in self._known if isinstance(key, str)]:
+                self._files.forget(shape)
             self._made.clear()
-            self._topologies.clear()
+            self._known.clear()
             self._keys.clear()
             self._queue.clear()
             self._fresh = set(self._wanted)
@@ -199,12 +207,6 @@ class LevelStore:
     def _is_small(self, mesh):
         return len(mesh.triangles) < 2 * self._least_triangles
 
-    def _queue_missing(self):
-        return any(
-            self._keys.get(uid) not in self._made and not self._is_small(mesh)
-            for uid, mesh in self._wanted.items()
-        )
-
     def _enqueue(self):
         if self._thread is None:
             self._work_done = self._work_total = self._work_begun = 0
@@ -219,9 +221,7 @@ class LevelStore:
             self._queue[mesh.uid] = mesh
             self._work_total += len(mesh.triangles)
         if self._queue and self._thread is None and not self._stopping:
-            self._thread = threading.Thread(
-                target=self._work, name="aplanat-levels", daemon=True
-            )
+            self._thread = threading.Thread(target=self._work, name="aplanat-levels", daemon=True)
             self._thread.start()
 
     def _work(self):
@@ -258,17 +258,14 @@ class LevelStore:
                 self._changed.notify_all()
 
     def _make(self, mesh, key, least, fresh):
+        shape = _shape_hash(mesh, least)
         topology = _topology_hash(mesh, least)
-        with self._changed:
-            known, shrinkage = self._topologies.get(topology, (None, 0.0))
-        if known is not None:
-            levels = replay(mesh, known)
-            ratio = _shrinkage(mesh, levels) / max(shrinkage, 1e-30)
-            if 1.0 / _AREA_TOLERANCE <= ratio <= _AREA_TOLERANCE:
-                self.replays += 1
-                return _Made(levels, known, _size(levels))
+        made = self._replayed(mesh, shape, topology)
+        if made is not None:
+            self.replays += 1
+            return made
         large = len(mesh.triangles) >= _LEAST_TRIANGLES_ON_DISK
-        halvings = self._files.read(key) if large and not fresh else None
+        halvings = self._files.read(shape) if large and not fresh else None
         if halvings is not None:
             levels = replay(mesh, halvings)
             self.loads += 1
@@ -276,10 +273,25 @@ class LevelStore:
             levels, halvings = simplify(mesh, least, self._check)
             self.decimations += 1
             if large:
-                self._files.write(key, halvings)
+                self._files.write(shape, halvings)
+        known = _Known(halvings, _shrinkage(mesh, levels))
         with self._changed:
-            self._topologies[topology] = (halvings, _shrinkage(mesh, levels))
-        return _Made(levels, halvings, _size(levels))
+            self._known[shape] = self._known[topology] = known
+        return _Made(levels, _size(levels))
+
+    def _replayed(self, mesh, shape, topology):
+        with self._changed:
+            same, deformed = self._known.get(shape), self._known.get(topology)
+        if same is not None:
+            levels = replay(mesh, same.halvings)
+            return _Made(levels, _size(levels))
+        if deformed is None:
+            return None
+        levels = replay(mesh, deformed.halvings)
+        ratio = _shrinkage(mesh, levels) / max(deformed.shrinkage, 1e-30)
+        if not 1.0 / _AREA_TOLERANCE <= ratio <= _AREA_TOLERANCE:
+            return None
+        return _Made(levels, _size(levels))
 
     def _check(self, done):
         with self._changed:
@@ -289,18 +301,17 @@ class LevelStore:
 
     def _evict(self):
         used = {self._keys.get(uid) for uid in self._wanted}
-        for key in used:
-            if key in self._made:
-                self._made.move_to_end(key)
+        for key in used & self._made.keys():
+            self._made.move_to_end(key)
         spare = sum(made.bytes for key, made in self._made.items() if key not in used)
         for key in [key for key in self._made if key not in used]:
             if spare <= self._memory_limit:
                 break
             spare -= self._made.pop(key).bytes
-        held = sum(_halvings_size(halvings) for halvings, _ in self._topologies.values())
-        while held > self._memory_limit and len(self._topologies) > 1:
-            halvings, _ = self._topologies.popitem(last=False)[1]
-            held -= _halvings_size(halvings)
+        # Each is there by its shape and by its topology: counted twice, removed twice.
+        held = sum(_halvings_size(known.halvings) for known in self._known.values())
+        while held > self._memory_limit and len(self._known) > 2:
+            held -= _halvings_size(self._known.popitem(last=False)[1].halvings)
 
 
 def _close(reference):
@@ -315,6 +326,14 @@ def _content_hash(mesh, least_triangles):
     for name, array in (("", mesh.positions), ("", mesh.triangles), *mesh.attributes.items()):
         digest.update(f"|{name} {array.dtype} {array.shape}|".encode())
         digest.update(np.ascontiguousarray(array))
+    return digest.hexdigest()
+
+
+def _shape_hash(mesh, least_triangles):
+    """Hash what the collapses depend on."""
+    digest = hashlib.blake2b(f"{least_triangles}".encode(), digest_size=20)
+    digest.update(np.ascontiguousarray(mesh.positions))
+    digest.update(np.ascontiguousarray(mesh.triangles))
     return digest.hexdigest()
 
 
