@@ -208,8 +208,6 @@ class LevelStore:
         return len(mesh.triangles) < 2 * self._least_triangles
 
     def _enqueue(self):
-        if self._thread is None:
-            self._work_done = self._work_total = self._work_begun = 0
         missing = [
             mesh
             for uid, mesh in self._wanted.items()
@@ -217,6 +215,8 @@ class LevelStore:
             and uid not in self._queue
             and not self._is_small(mesh)
         ]
+        if missing and self._thread is None:
+            self._work_done = self._work_total = self._work_begun = 0
         for mesh in sorted(missing, key=lambda mesh: len(mesh.triangles)):
             self._queue[mesh.uid] = mesh
             self._work_total += len(mesh.triangles)
