@@ -4,6 +4,8 @@ Only the sums of the samples and the Cryptomatte tables outlive a sample, so mem
 on their number.
 """
 
+from contextlib import nullcontext
+
 import numpy as np
 
 from ..device import geometry, readback, state
@@ -109,12 +111,21 @@ class FrameRenderer:
             specs += self._blur.specs()
         return tuple(specs)
 
-    def advance(self, samples):
-        """Render up to `samples` more lens samples."""
+    def advance(self, samples, stage=nullcontext):
+        """Render up to `samples` more lens samples.
+
+        Parameters
+        ----------
+        samples : int
+        stage : callable, optional
+            For measuring: called with the name of each part of a sample's work (``bounds``,
+            ``surfaces``, ``sum``), it returns a context manager in which that is given to the
+            device.
+        """
         self._targets.forget_framebuffers()
         end = min(self.samples_done + samples, self.plan.samples)
         for index in range(self.samples_done, end):
-            self._render_sample(index)
+            self._render_sample(index, stage)
             if (index + 1) % _SAMPLES_IN_FLIGHT == 0:
                 self.wait()
         self.samples_done = end
@@ -123,10 +134,18 @@ class FrameRenderer:
         """Return when the device has drawn everything it was given."""
         readback.wait(self._targets.framebuffer("sum"))
 
-    def _render_sample(self, index):
-        plan, targets = self.plan, self._targets
+    def _render_sample(self, index, stage):
         if self._blur and index == 0:
-            self._find_bounds()
+            with stage("bounds"):
+                self._find_bounds()
+        with stage("surfaces"):
+            self._draw_sample(index)
+        with stage("sum"):
+            self._add_sample(index)
+        self.counts.triangles_full_detail += self._drawing.full_detail
+
+    def _draw_sample(self, index):
+        plan, targets = self.plan, self._targets
         framebuffer = targets.framebuffer("sample", depth="sample_depth")
         with framebuffer.bind():
             framebuffer.clear(color=self._background, depth=1.0)
@@ -139,8 +158,6 @@ class FrameRenderer:
             with targets.framebuffer("sample", depth="sample_depth").bind():
                 self._draw_background(plan.lens_sample(index))
         self._drawing.draw_glows(index, framebuffer, self._view)
-        self._add_sample(index)
-        self.counts.triangles_full_detail += self._drawing.full_detail
 
     def _find_bounds(self):
         targets = self._targets
