@@ -15,6 +15,8 @@ from ..device import context
 from ..device.shaders import compiled_count
 from ..scene.extract import SceneExtractor
 from .gpu_thread import gpu_of_render
+from .level_store import level_store
+from .levels import meshes_with_levels
 from .outcome import LayerPicture, PassPicture
 from .pacing import Pacer
 from .pipeline import FrameRenderer
@@ -51,12 +53,13 @@ def render_view_layer(engine, depsgraph, heard):
     _show_report(engine, heard, (*snapshot.camera.report, *snapshot.content.report))
     with statistics.timed("plan"):
         plan = plan_frame(snapshot)
+    levels = _make_levels(engine, plan, snapshot, heard)
     compiled_before = compiled_count()
     slice_seconds = depsgraph.scene.aplanat.chunk_milliseconds / 1000.0
     with gpu_of_render(engine.test_break, slice_seconds, bpy.app.background) as gpu:
         statistics.device = gpu.call(_open_device)
         with statistics.timed("upload"):
-            renderer = gpu.run(_prepare(plan, snapshot, statistics))
+            renderer = gpu.run(_prepare(plan, snapshot, levels, statistics))
         try:
             with _result(engine, snapshot) as result:
                 _draw(engine, gpu, renderer, result, heard)
@@ -97,9 +100,32 @@ def _open_device():
     return context.device_name()
 
 
-def _prepare(plan, snapshot, statistics):
+def _make_levels(engine, plan, snapshot, heard):
+    """Return the levels of detail that the frame draws, by mesh; a final picture waits for them."""
+    statistics, content = heard.statistics, snapshot.content
+    wanted = meshes_with_levels(content, plan)
+    with statistics.timed("levels"):
+        store = level_store()
+        decimations, replays = store.decimations, store.replays
+        store.request([content.meshes[uid] for uid in wanted], plan.least_triangles)
+
+        def progress(done, total):
+            engine.update_stats("", f"Levels of detail: {done:,} of {total:,} triangles")
+
+        try:
+            store.finish(progress, engine.test_break)
+        finally:
+            statistics.decimations += store.decimations - decimations
+            statistics.replays += store.replays - replays
+    return {uid: store.ready(uid) for uid in wanted}
+
+
+def _prepare(plan, snapshot, levels, statistics):
     buffers = SceneBuffers()
     yield from buffers.update_steps(snapshot.content)
+    for uid, meshes in levels.items():
+        buffers.add_levels(uid, meshes)
+        yield
     renderer = FrameRenderer(plan, snapshot, buffers)
     for kind, count in buffers.uploads.items():
         statistics.uploads[kind] = statistics.uploads.get(kind, 0) + count

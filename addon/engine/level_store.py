@@ -11,6 +11,7 @@ import threading
 import weakref
 from collections import OrderedDict
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -312,6 +313,17 @@ class LevelStore:
         held = sum(_halvings_size(known.halvings) for known in self._known.values())
         while held > self._memory_limit and len(self._known) > 2:
             held -= _halvings_size(self._known.popitem(last=False)[1].halvings)
+
+
+@cache
+def level_store():
+    """Return the store of this process, shared by final renders and viewports.
+
+    Returns
+    -------
+    LevelStore
+    """
+    return LevelStore()
 
 
 def _close(reference):

@@ -147,15 +147,13 @@ def level_for_sample(levels, sample, samples):
     return (lower + coarser).astype(np.int64)
 
 
-def meshes_with_levels(content, plan, least_triangles):
+def meshes_with_levels(content, plan):
     """Return which meshes are drawn at a lower level of detail, if they have any.
 
     Parameters
     ----------
     content : SceneContent
     plan : FramePlan
-    least_triangles : int
-        No level has fewer.
 
     Returns
     -------
@@ -174,7 +172,7 @@ def meshes_with_levels(content, plan, least_triangles):
     wanted = {
         mesh.uid
         for group, mesh in zip(content.groups, meshes, strict=True)
-        if len(mesh.triangles) >= 2 * least_triangles
+        if len(mesh.triangles) >= 2 * plan.least_triangles
         and (chosen[group.first : group.first + group.count] > 0.0).any()
     }
     return [uid for uid in content.meshes if uid in wanted]

@@ -146,6 +146,11 @@ class SceneBuffers:
         self.levels[uid] = tuple(MeshBuffers(level) for level in levels)
         self.levels_version += 1
 
+    def drop_levels(self):
+        """Give the levels of detail back; full detail is drawn until new ones come."""
+        self.levels.clear()
+        self.levels_version += 1
+
     def texture_bytes(self):
         """Return how many bytes the images and the instance table take on the device."""
         textures = [*self.images.values(), *([self.instances] if self.instances else [])]

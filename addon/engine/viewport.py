@@ -17,6 +17,8 @@ from ..scene.extract import SceneExtractor
 from ..scene.settings import read_preview_sampling
 from ..scene.snapshot import SceneSnapshot
 from ..scene.view import read_view
+from .level_store import level_store
+from .levels import meshes_with_levels
 from .pacing import Pacer
 from .pipeline import FrameRenderer
 from .plan import plan_frame
@@ -38,6 +40,8 @@ class _ViewedScene:
     def __init__(self, space):
         self.buffers = SceneBuffers()
         self._extractor = SceneExtractor(space)
+        self._wanted = set()
+        self._least_triangles = None
 
     def note_updates(self, depsgraph):
         self._extractor.note_updates(depsgraph)
@@ -47,6 +51,29 @@ class _ViewedScene:
         content = self._extractor.extract_content(depsgraph)
         self.buffers.update(content)
         return content
+
+    def want_levels(self, content, plan):
+        """Have the levels of detail made that a frame draws."""
+        self._wanted.update(meshes_with_levels(content, plan))
+        self._wanted &= content.meshes.keys()
+        missing = self._wanted - self.buffers.levels.keys()
+        if missing or plan.least_triangles != self._least_triangles:
+            if plan.least_triangles != self._least_triangles:
+                self._least_triangles = plan.least_triangles
+                self.buffers.drop_levels()
+            level_store().request(
+                [mesh for uid, mesh in content.meshes.items() if uid in self._wanted],
+                plan.least_triangles,
+            )
+            self.take_levels()
+
+    def take_levels(self):
+        """Upload the levels that have been made since; until then full detail is drawn."""
+        store = level_store()
+        for uid in sorted(self._wanted - self.buffers.levels.keys()):
+            levels = store.ready(uid)
+            if levels is not None:
+                self.buffers.add_levels(uid, levels)
 
 
 # Lives as long as a viewport shows it.
@@ -159,6 +186,9 @@ class Viewport:
             with state.confined(x, y, width, height):
                 renderer.resolve((x, y), view.pixel_size)
         self.text = f"Sample {renderer.samples_done}/{renderer.plan.samples}"
+        done, total = level_store().progress
+        if done < total:
+            self.text += f" | Levels of detail {done / total:.0%}"
         return not renderer.finished()
 
     def _begin_if_changed(self, snapshot):
@@ -166,10 +196,15 @@ class Viewport:
         self._snapshot = snapshot
         if self._renderer is None or self._drawn_scene is not self._scene:
             self.release()
-            self._renderer = FrameRenderer(plan_frame(snapshot), snapshot, self._scene.buffers)
+            self._renderer = FrameRenderer(self._plan(snapshot), snapshot, self._scene.buffers)
             self._drawn_scene = self._scene
         elif changed & Change.PICTURE:
-            self._renderer.restart(plan_frame(snapshot), snapshot)
+            self._renderer.restart(self._plan(snapshot), snapshot)
+
+    def _plan(self, snapshot):
+        plan = plan_frame(snapshot)
+        self._scene.want_levels(snapshot.content, plan)
+        return plan
 
     def release(self):
         """Give the picture back to the device."""
