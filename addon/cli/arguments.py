@@ -72,6 +72,8 @@ def parse(words, program="aplanat"):
         raise InputError(f"no command given (see `{program} --help`)")
     if arguments.command == "render":
         _check_render(arguments)
+    elif arguments.command == "bench":
+        _check_bench(arguments)
     elif arguments.command == "lens":
         check_lens(arguments)
     return arguments
@@ -102,6 +104,12 @@ def _check_render(arguments):
             )
     if len(set(arguments.output)) < len(arguments.output):
         raise InputError(f"-o {arguments.output[0]} is given twice; give two different names")
+
+
+def _check_bench(arguments):
+    for option in ("focus_pull", "peers"):
+        if getattr(arguments, option) and (arguments.method != "adaptive" or arguments.lens):
+            raise InputError(f"--{option.replace('_', '-')} belongs to --method adaptive")
 
 
 _frame = whole_number(-MAX_FRAME, MAX_FRAME)
@@ -219,8 +227,9 @@ def _add_bench(commands):
         "bench",
         help="measure cost and quality",
         description="Renders scenes with and without depth of field and compares the cost of a"
-        " lens sample with that of a pinhole pass, and the pictures with references. With --lens:"
-        " traces lenses, and compares their bokeh profiles with a direct trace.",
+        " lens sample with that of a pinhole pass, and the pictures with references. With --method"
+        " adaptive: compares work, time and quality of the adaptive method with plain accumulation."
+        " With --lens: traces lenses, and compares their bokeh profiles with a direct trace.",
         allow_abbrev=False,
     )
     add = parser.add_argument
@@ -241,12 +250,34 @@ def _add_bench(commands):
     )
     add("-o", "--output", metavar="FILE", type=Path, help="write the result as JSON")
     add(
+        "--method",
+        choices=("reference", "adaptive"),
+        default="reference",
+        help="what is measured (default reference)",
+    )
+    also = parser.add_mutually_exclusive_group()
+    also.add_argument(
+        "--focus-pull",
+        action="store_true",
+        help="adaptive method: measure flicker in a focus pull instead",
+    )
+    also.add_argument(
+        "--peers",
+        action="store_true",
+        help="adaptive method: compare with EEVEE and Cycles at equal quality instead; takes long",
+    )
+    add(
         "--samples",
         metavar="N",
         type=whole_number(1, MAX_SAMPLES),
-        help="lens samples (default 512; 2048 for christmas_tree)",
+        help="lens samples of the reference method (default 512; 2048 for christmas_tree)",
     )
-    add("--resolution", metavar="WxH", type=_resolution, default=(480, 270), help="default 480x270")
+    add(
+        "--resolution",
+        metavar="WxH",
+        type=_resolution,
+        help="default 480x270; 1024x576 with --method adaptive",
+    )
     add(
         "--reference",
         metavar="FILE.exr",

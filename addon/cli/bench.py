@@ -5,19 +5,16 @@ twice, without depth of field and with it, and each picture is compared with its
 """
 
 import math
-from dataclasses import dataclass
-from pathlib import Path
 
 from ..device.context import ensure_context
-from ..errors import InputError
 from ..files.whole_file import check_writable, removed_on_signals
 from . import statistics
+from .bench_scenes import check_folder, find_cases, open_scene, save_picture
 from .json_file import write_json
 from .picture_metrics import compare, read_picture
 from .render import heard_render
-from .scene_setup import check_camera, load_scene, use_engine
-from .shared_scenes import is_shared_name, shared_references, shared_scene
 
+_RESOLUTION = (480, 270)
 _DEFAULT_SAMPLES = 512
 # Small bright lights in strong blur need more.
 _SAMPLES_OF = {"christmas_tree": 2048}
@@ -27,14 +24,6 @@ _PINHOLE_SAMPLES = 256
 # the machine then touches both alike.
 _COST_ROUNDS = 5
 _COST_SAMPLES = 32
-
-
-@dataclass(frozen=True)
-class _Case:
-    name: str
-    file: Path
-    samples: int
-    references: dict[str, Path]
 
 
 def bench(arguments, console):
@@ -58,9 +47,8 @@ def bench(arguments, console):
     with removed_on_signals():
         if arguments.output:
             check_writable(arguments.output)
-        if arguments.pictures and not arguments.pictures.is_dir():
-            raise InputError(f"--pictures: folder '{arguments.pictures}' does not exist")
-        cases = [_case(word, arguments, console) for word in arguments.scene or ["toys"]]
+        check_folder(arguments.pictures)
+        cases = find_cases(arguments, console, _DEFAULT_SAMPLES, _SAMPLES_OF)
         runs = [_run(case, arguments, console) for case in cases]
         answer = {"command": "bench", **statistics.machine(), "runs": runs}
         for run in runs:
@@ -70,31 +58,8 @@ def bench(arguments, console):
     return answer
 
 
-def _case(word, arguments, console):
-    samples = arguments.samples or _SAMPLES_OF.get(word, _DEFAULT_SAMPLES)
-    if arguments.reference and len(arguments.scene) != 1:
-        raise InputError("--reference belongs to one scene; give exactly one --scene with it")
-    if arguments.reference and not arguments.reference.is_file():
-        raise InputError(f"reference picture '{arguments.reference}' does not exist")
-    if is_shared_name(word) and not Path(word).exists():
-        file = shared_scene(word, arguments.look, console)
-        references = shared_references(word, arguments.look)
-    else:
-        file, references = Path(word), {}
-    if arguments.reference:
-        references = {"lens": arguments.reference}
-    return _Case(word, file, samples, references)
-
-
 def _run(case, arguments, console):
-    scene = load_scene(case.file)
-    use_engine(scene)
-    check_camera(scene)
-    scene.render.resolution_x, scene.render.resolution_y = arguments.resolution
-    scene.render.resolution_percentage = 100
-    # What the references were rendered with.
-    scene.aplanat.pixel_filter = "BOX"
-    scene.render.filter_size = 1.0
+    scene = open_scene(case, arguments.resolution or _RESOLUTION)
     ensure_context()
     uses_lens = scene.camera.data.dof.use_dof
     measured = {}
@@ -138,7 +103,7 @@ def _measure(case, kind, heard, arguments):
     drawing = work["seconds"].get("draw", 0.0)
     picture = heard.layers[0].passes["Combined"].pixels[::-1, :, :3]
     if arguments.pictures:
-        _save(arguments.pictures / f"{Path(case.name).stem}_{kind}.exr", picture)
+        save_picture(arguments.pictures / f"{case.stem}_{kind}.exr", picture)
     reference = case.references.get(kind)
     return {
         "samples_per_second": work["lens_samples"] / drawing if drawing else math.inf,
@@ -147,17 +112,6 @@ def _measure(case, kind, heard, arguments):
         "reference": str(reference) if reference else None,
         "compared": compare(picture, read_picture(reference)) if reference else None,
     }
-
-
-def _save(path, picture):
-    import numpy as np
-    import OpenEXR
-
-    from ..files.whole_file import whole_file
-
-    header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
-    with whole_file(path) as place:
-        OpenEXR.File(header, {"RGB": np.ascontiguousarray(picture)}).write(place)
 
 
 def _line(run):

@@ -296,24 +296,28 @@ class FrameRenderer:
         if not names:
             return {}
         plan = self.plan
-        vector = "Vector" in names
-        draws = self._drawing.full_detail_draws(data.target(vector))
+        slots = data.targets(names)
+        draws = self._drawing.full_detail_draws(data.target(names))
         bindings = [("data_buf", data.data_params(
             plan.previous, plan.next, plan.width, plan.height, plan.alpha_threshold
         ))]  # fmt: skip
-        if vector:
+        if "Vector" in names:
             tables = self._buffers.neighbouring_instances(self._content.instances)
             bindings += zip(("previous_tx", "next_tx"), tables, strict=True)
-        specs = [TargetSpec(name, "RGBA32F") for name in data.TARGETS]
+        instances = self._buffers.instances
+        if "Detail" in names:
+            instances = self._drawing.detail_table()
+        specs = [TargetSpec(name, "RGBA32F") for name in slots]
         specs.append(TargetSpec("depth", "DEPTH_COMPONENT32F"))
         with Targets(plan.width, plan.height, specs) as targets:
-            for name, value in data.empty_values(plan.empty_coc).items():
-                targets.clear(name, value)
-            framebuffer = targets.framebuffer(*data.TARGETS, depth="depth")
+            empty = data.empty_values(plan.empty_coc)
+            for name in slots:
+                targets.clear(name, empty[name])
+            framebuffer = targets.framebuffer(*slots, depth="depth")
             with framebuffer.bind():
                 framebuffer.clear(depth=1.0)
                 state.opaque()
-                data.draw(draws, self._view, self._buffers.instances, tuple(bindings))
+                data.draw(draws, self._view, instances, tuple(bindings))
             self.counts.draw_calls += len(draws)
             pictures = {
                 name: readback.read_color(targets.framebuffer(name), plan.width, plan.height)

@@ -10,6 +10,8 @@ after this table, and asks for the passes of a view layer through `register`.
   camera; Vector holds the movement since the previous frame and to the next in pixels, with
   Cycles' signs. CoC is the signed radius of the circle of confusion in pixels, negative in front of
   the focus plane.
+- **Detail** shows where the adaptive method saves work: the object's level of detail, the share of
+  the lens samples that copy a drawing of it, and 1 where there is an object.
 - **Focus Matte** and the **Cryptomattes** are seen through the lens, so that they fit the blurred
   edges of Combined. Focus Matte is the share of a pixel that sharp surfaces fill; see
   `plan.sharp_radius`.
@@ -56,6 +58,7 @@ _TABLE = {
         RenderPass("Position", "XYZ", "VECTOR", "DATA"),
         RenderPass("Vector", "XYZW", "VECTOR", "DATA"),
         RenderPass("CoC", "X", "VALUE", "DATA"),
+        RenderPass("Detail", "XYZ", "VECTOR", "DATA"),
         RenderPass("Focus Matte", "X", "VALUE", "MATTE"),
     )
 }

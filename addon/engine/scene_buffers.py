@@ -192,12 +192,14 @@ class SceneBuffers:
         return buffer
 
 
-def instance_texels(instances):
+def instance_texels(instances, detail=None):
     """Lay out the instance table as `lib/instance_lib.glsl` reads it.
 
     Parameters
     ----------
     instances : InstanceTable
+    detail : ndarray of shape (I, 2), optional
+        Level of detail and share of shared drawings.
 
     Returns
     -------
@@ -209,4 +211,6 @@ def instance_texels(instances):
     texels = np.zeros((rows * INSTANCES_PER_ROW, 4, 4), np.float32)
     texels[:count, :3] = instances.world[:, :3]
     texels[:count, 3, 0] = instances.cryptomatte_id
+    if detail is not None:
+        texels[:count, 3, 1:3] = detail
     return texels.reshape(rows, INSTANCES_PER_ROW * 4, 4)

@@ -258,6 +258,17 @@ class SceneDrawing:
             )
         ]
 
+    def detail_table(self):
+        """Return an instance table that also tells levels and shared drawings.
+
+        Returns
+        -------
+        GPUTexture
+            With rows of the content's own instance table.
+        """
+        detail = np.column_stack([self.levels, self._shared.shares(len(self.levels), self._plan)])
+        return texture_2d(instance_texels(self._content.instances, detail))
+
     def texture_bytes(self):
         """Return how many bytes shared drawings take on the device."""
         return self._shared.bytes()

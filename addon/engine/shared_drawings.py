@@ -86,6 +86,13 @@ class SharedDrawings:
         """Return the rows that are not drawn for a lens sample but copied."""
         return self._members.get(sample, {}).keys()
 
+    def shares(self, count, plan):
+        """Return which share of the lens samples copies a drawing of each of `count` rows."""
+        copied = np.zeros(count)
+        for found in self._members.values():
+            copied[list(found)] += 1.0
+        return copied / plan.samples
+
     def specs(self):
         """Return the targets that it needs beside the sample's."""
         if not self.rows:

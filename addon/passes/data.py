@@ -16,8 +16,9 @@ DATA_PARAMS = UniformStruct("shared/data_params.glsl", "DataParams")
 
 EMPTY_DEPTH = 1e10
 
-# Colour targets by slot, all RGBA32F.
-TARGETS = ("normal_depth", "position_coc", "vector")
+# Colour targets by slot, all RGBA32F; the last only where it is asked for.
+_GEOMETRY = ("normal_depth", "position_coc", "vector")
+_DETAIL = "detail"
 
 # Where each pass lies: target, first channel, channels.
 PLACES = {
@@ -26,32 +27,45 @@ PLACES = {
     "Position": ("position_coc", 0, 3),
     "CoC": ("position_coc", 3, 1),
     "Vector": ("vector", 0, 4),
+    "Detail": ("detail", 0, 3),
 }
 
 _STILL = surface.SurfaceTarget(
     "passes/data_frag.glsl",
-    tuple(("VEC4", f"out_{name}") for name in TARGETS),
+    tuple(("VEC4", f"out_{name}") for name in _GEOMETRY),
     attributes=("normal",),
     structs=DATA_PARAMS.source,
     uniforms=(("DataParams", "data_buf"),),
     shades=False,
 )
 
-_MOVING = replace(
-    _STILL,
-    varyings=(("VEC4", "previous_clip"), ("VEC4", "next_clip")),
-    samplers=(("FLOAT_2D", "previous_tx"), ("FLOAT_2D", "next_tx")),
-    defines=("HAS_VECTOR",),
-)
+
+def targets(names):
+    """Return the names of the colour targets, by slot, that the named passes need."""
+    return (*_GEOMETRY, _DETAIL) if "Detail" in names else _GEOMETRY
 
 
-def target(vector):
-    """Return the `SurfaceTarget` of the data passes, with or without movement."""
-    return _MOVING if vector else _STILL
+def target(names):
+    """Return the `SurfaceTarget` of the named passes."""
+    made = _STILL
+    if "Vector" in names:
+        made = replace(
+            made,
+            varyings=(("VEC4", "previous_clip"), ("VEC4", "next_clip")),
+            samplers=(("FLOAT_2D", "previous_tx"), ("FLOAT_2D", "next_tx")),
+            defines=("HAS_VECTOR",),
+        )
+    if "Detail" in names:
+        made = replace(
+            made,
+            outputs=(*made.outputs, ("VEC4", f"out_{_DETAIL}")),
+            defines=(*made.defines, "HAS_DETAIL"),
+        )
+    return made
 
 
 def empty_values(empty_coc):
-    """Return what each of `TARGETS` holds where nothing is.
+    """Return what each target holds where nothing is.
 
     Parameters
     ----------
@@ -66,6 +80,7 @@ def empty_values(empty_coc):
         "normal_depth": (0.0, 0.0, 0.0, EMPTY_DEPTH),
         "position_coc": (0.0, 0.0, 0.0, empty_coc),
         "vector": (0.0, 0.0, 0.0, 0.0),
+        "detail": (0.0, 0.0, 0.0, 0.0),
     }
 
 
@@ -94,7 +109,7 @@ def data_params(previous, following, width, height, alpha_threshold):
 
 
 def draw(draws, view_buffer, instances, bindings):
-    """Draw the data passes into the bound frame buffer, over `TARGETS` by slot.
+    """Draw the data passes into the bound frame buffer, over `targets` by slot.
 
     Parameters
     ----------

@@ -1,42 +1,35 @@
 """Levels of detail of a mesh: each with about half the triangles of the one before (methods 3).
 
-A level is made from its predecessor by edge collapses. The sequence of collapses is kept, so that a
-mesh that deforms without changing its topology gets its levels by replaying it on the new
-positions. What a vertex carries follows. Colours and normals are averaged over the old vertices that
-were collapsed into a new one on the same side of every seam, by the area each stood for, so that the
-light of a blurred surface stays the same; UVs are those of the nearest of them, since a mean of
-places in a texture need not lie near any.
+A level follows from its predecessor by merging places that edges connect. Which places merge is
+decided once, by collapses of least quadric error; where they merge to, and what the vertices carry,
+follows from the mesh. So a mesh that deforms without changing its topology gets its levels by
+merging the same places again.
 
 References
 ----------
-Garland and Heckbert, *Surface simplification using quadric error metrics*, SIGGRAPH 1997, as
-implemented by fast-simplification.
+Garland and Heckbert, *Surface simplification using quadric error metrics*, SIGGRAPH 1997; the
+collapses are those of fast-simplification.
 """
-
-from dataclasses import dataclass
 
 import numpy as np
 
+from .level_attributes import carry
+from .level_collapses import Halving, decimate, merged_places, weld
 from .snapshot import MeshSnapshot, next_uid
+
+__all__ = ["Halving", "available", "replay", "simplify"]
 
 # A level that keeps more than this share of its predecessor's triangles is not worth its memory.
 _LEAST_REDUCTION = 0.75
 
 
-@dataclass(frozen=True, eq=False)
-class Halving:
-    """How one level follows from the one before.
-
-    Parameters
-    ----------
-    weld : ndarray of shape (V,)
-        int32; the place of each vertex: those of one place are the sides of a seam.
-    collapses : ndarray of shape (C, 2)
-        int32; pairs of places, the second moves into the first, in order.
-    """
-
-    weld: np.ndarray
-    collapses: np.ndarray
+def available():
+    """Return whether meshes can be simplified here; some platforms lack the library."""
+    try:
+        import fast_simplification  # noqa: F401
+    except ImportError:
+        return False
+    return True
 
 
 def simplify(mesh, least_triangles, check=None):
@@ -60,16 +53,18 @@ def simplify(mesh, least_triangles, check=None):
     """
     levels, halvings = [], []
     full = len(mesh.triangles)
+    places = None
     while len(mesh.triangles) >= 2 * least_triangles:
         if check is not None:
             check(full - len(mesh.triangles))
-        halving = _decimate(mesh, len(mesh.triangles) // 2)
-        level = _replay(mesh, halving)
+        places = weld(mesh.positions) if places is None else places
+        halving = decimate(mesh, places, len(mesh.triangles) // 2)
+        level, following = _merge(mesh, halving)
         if len(level.triangles) > _LEAST_REDUCTION * len(mesh.triangles):
             break
         levels.append(level)
         halvings.append(halving)
-        mesh = level
+        mesh, places = level, following
     return tuple(levels), tuple(halvings)
 
 
@@ -88,69 +83,50 @@ def replay(mesh, halvings):
     """
     levels = []
     for halving in halvings:
-        mesh = _replay(mesh, halving)
+        mesh, _ = _merge(mesh, halving)
         levels.append(mesh)
     return tuple(levels)
 
 
-def _decimate(mesh, triangles):
-    import fast_simplification
-
-    weld = _weld(mesh.positions)
-    places = _places(mesh.positions, weld)
-    faces = _faces(mesh, weld)
-    _, _, collapses = fast_simplification.simplify(
-        places, faces, target_count=triangles, return_collapses=True
-    )
-    return Halving(weld, np.ascontiguousarray(collapses, np.int32))
-
-
-def _weld(positions):
-    """Number the distinct positions, equal bit by bit, in the order of their first vertices."""
-    rows = np.ascontiguousarray(positions, np.float32)
-    # 0.0 and -0.0 are one place.
-    bits = (rows + np.float32(0.0)).view(np.dtype((np.void, 12))).ravel()
-    _, first, inverse = np.unique(bits, return_index=True, return_inverse=True)
-    rank = np.empty(len(first), np.int32)
-    rank[np.argsort(first, kind="stable")] = np.arange(len(first), dtype=np.int32)
-    return rank[inverse.ravel()]
-
-
-def _places(positions, weld):
-    places = np.empty((int(weld.max(initial=-1)) + 1, 3), np.float32)
-    places[weld[::-1]] = positions[::-1]
-    return places
-
-
-def _faces(mesh, weld):
-    return np.ascontiguousarray(weld[mesh.triangles], np.int32)
-
-
-def _replay(mesh, halving):
-    import fast_simplification
-
-    weld = halving.weld
-    places = _places(mesh.positions, weld)
-    faces = _faces(mesh, weld)
-    # What has no area already would be taken for an edge.
-    proper = _proper(faces)
-    points, _, moved = fast_simplification.replay_simplification(
-        places, np.ascontiguousarray(faces[proper]), halving.collapses
-    )
-    target = np.asarray(moved, np.int64)[faces]
-    kept = np.flatnonzero(proper & _proper(target) & (target >= 0).all(axis=1))
-    kept = kept[_first_of_equal(target[kept])]
-    vertices, vertex_of, triangles = _vertices(
-        mesh, weld, np.asarray(moved, np.int64), kept, points
-    )
-    positions = np.ascontiguousarray(points[vertices], np.float32)
-    attributes = {
-        key: _carry(key, values, mesh, vertex_of, positions, triangles)
-        for key, values in mesh.attributes.items()
-    }
-    return MeshSnapshot(
+def _merge(mesh, halving):
+    """Return the next level, and the place of each of its vertices."""
+    place = halving.groups[halving.places]
+    corners = place[mesh.triangles]
+    kept = _kept(halving.places[mesh.triangles], corners)
+    points = merged_places(mesh, halving)
+    vertex_of, vertex_places = _vertices(mesh, halving, place, kept)
+    triangles = np.ascontiguousarray(vertex_of[mesh.triangles[kept]], np.int32)
+    positions = np.ascontiguousarray(points[vertex_places], np.float32)
+    attributes = carry(mesh, vertex_of, positions, triangles)
+    level = MeshSnapshot(
         next_uid(), mesh.name, positions, triangles, _slots(mesh.slots, kept), attributes
     )
+    return level, vertex_places
+
+
+def _kept(before, corners):
+    """Return the triangles that stay: with three corners, and not twice.
+
+    Where two that face each other have come to lie on one another, there is no inside left between
+    them, and both go, unless they lay so already.
+    """
+    proper = _proper(corners) & _proper(before)
+    kept = np.flatnonzero(proper)
+    faces = corners[kept]
+    order, starts = _runs(np.sort(faces, axis=1))
+    if starts.all():
+        return kept
+    run = np.cumsum(starts) - 1
+    faces, old = faces[order], np.sort(before[kept[order]], axis=1)
+    a, b, c = faces.T
+    # Cyclic order of the corners tells the side that a triangle faces.
+    side = np.where((a < b) ^ (b < c) ^ (c < a), 1, -1)
+    first = np.flatnonzero(starts)
+    fresh = np.logical_or.reduceat((old != old[first[run]]).any(axis=1), first)
+    balance = np.add.reduceat(side, first)
+    count = np.diff(np.append(first, len(order)))
+    goes = fresh & (balance == 0) & (count > 1)
+    return np.sort(kept[order[first[~goes]]])
 
 
 def _proper(faces):
@@ -158,10 +134,14 @@ def _proper(faces):
     return (a != b) & (b != c) & (c != a)
 
 
-def _first_of_equal(faces):
-    """Return which faces to keep: of those with the same corners, the first."""
-    _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
-    return np.sort(first)
+def _runs(rows):
+    """Sort rows of three; return their order and where a row differs from the one before."""
+    keys = rows.astype(np.int64)
+    order = np.lexsort((keys[:, 2], (keys[:, 0] << 32) | keys[:, 1]))
+    ordered = rows[order]
+    starts = np.ones(len(rows), bool)
+    starts[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    return order, starts
 
 
 def _slots(slots, kept):
@@ -174,36 +154,31 @@ def _slots(slots, kept):
     return tuple(counts)
 
 
-def _vertices(mesh, weld, moved, kept, points):
+def _vertices(mesh, halving, place, kept):
     """Find the new vertices: one for each place and side of a seam that a kept triangle touches.
 
     Returns
     -------
-    vertices : ndarray of shape (W,)
-        Index into `points`.
     vertex_of : ndarray of shape (V,)
-        New vertex that each old one was collapsed into, -1 where it is gone.
-    triangles : ndarray of shape (T, 3)
-        int32, of new vertices.
+        New vertex that each old one was merged into, -1 where it is gone.
+    vertex_places : ndarray of shape (W,)
+        int32; the merged place of each new vertex, numbered without gaps.
     """
-    place = moved[weld]
-    if len(mesh.positions) == len(moved):
-        key = place
-    else:
-        sides = _sides(mesh.triangles, len(mesh.positions))
-        key = np.where(place >= 0, place * len(mesh.positions) + sides, -1)
+    key = place.astype(np.int64)
+    count = len(mesh.positions)
+    if count > len(halving.groups):
+        key = key * count + _sides(mesh.triangles, count)
     used = np.unique(key[mesh.triangles[kept]])
-    index = np.clip(np.searchsorted(used, key), 0, max(len(used) - 1, 0))
-    found = used[index] == key if len(used) else np.zeros(len(key), bool)
-    vertex_of = np.where(found & (place >= 0), index, -1)
-    triangles = np.ascontiguousarray(vertex_of[mesh.triangles[kept]], np.int32)
-    vertices = np.empty(len(used), np.int64)
-    vertices[vertex_of[vertex_of >= 0]] = place[vertex_of >= 0]
-    return vertices, vertex_of, triangles
+    index = np.minimum(np.searchsorted(used, key), max(len(used) - 1, 0))
+    found = used[index] == key if len(used) else np.zeros(count, bool)
+    vertex_of = np.where(found, index, -1)
+    vertex_places = np.empty(len(used), np.int32)
+    vertex_places[vertex_of[found]] = place[found]
+    return vertex_of, vertex_places
 
 
 def _sides(triangles, count):
-    """Number the parts into which seams cut a mesh: vertices that triangles connect."""
+    """Number the parts into which seams cut a mesh: the vertices that triangles connect."""
     sides = np.arange(count)
     edges = np.concatenate([triangles[:, :2], triangles[:, 1:]])
     while True:
@@ -217,63 +192,3 @@ def _sides(triangles, count):
         if np.array_equal(following, sides):
             return sides
         sides = following
-
-
-def _carry(key, values, mesh, vertex_of, positions, triangles):
-    if key.startswith("uv:"):
-        return np.ascontiguousarray(values[_nearest(mesh.positions, vertex_of, positions)])
-    total = _mean(values, mesh, vertex_of, len(positions))
-    if key == "normal":
-        total = _upright_facets(total, positions, triangles)
-        total /= np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-30)
-    return np.ascontiguousarray(total, np.float32)
-
-
-def _nearest(old, vertex_of, new):
-    """Return, for each new vertex, the nearest of the old ones that were collapsed into it."""
-    members = np.flatnonzero(vertex_of >= 0)
-    owner = vertex_of[members]
-    distance = np.square(old[members] - new[owner]).sum(axis=1)
-    order = np.lexsort((distance, owner))
-    first = np.searchsorted(owner[order], np.arange(len(new)))
-    return members[order[first]]
-
-
-def _mean(values, mesh, vertex_of, count):
-    """Average values over each new vertex, by the area that its old ones stood for."""
-    members = np.flatnonzero(vertex_of >= 0)
-    owner = vertex_of[members]
-    area = _vertex_areas(mesh)[members]
-    columns = [
-        np.bincount(owner, weights=area * values[members, k], minlength=count)
-        for k in range(values.shape[1])
-    ]
-    weight = np.bincount(owner, weights=area, minlength=count)
-    return np.stack(columns, axis=1) / np.maximum(weight, 1e-300)[:, None]
-
-
-def _vertex_areas(mesh):
-    """Return a third of the area of the triangles round each vertex, never quite 0."""
-    across = np.linalg.norm(_facets(mesh.positions, mesh.triangles), axis=1)
-    areas = np.zeros(len(mesh.positions))
-    for corner in mesh.triangles.T:
-        areas += np.bincount(corner, weights=across / 6.0, minlength=len(areas))
-    return areas + max(float(areas.mean()) if len(areas) else 0.0, 1e-30) * 1e-6
-
-
-def _facets(positions, triangles):
-    """Return the triangles' normals, twice their area long."""
-    a, b, c = (positions[corner].astype(np.float64) for corner in triangles.T)
-    return np.cross(b - a, c - a)
-
-
-def _upright_facets(normals, positions, triangles):
-    """Give a vertex of one triangle only, a flat facet's, that facet's own normal."""
-    uses = np.bincount(triangles.ravel(), minlength=len(positions))
-    across = _facets(positions, triangles)
-    facet = np.zeros((len(positions), 3))
-    for corner in triangles.T:
-        facet[corner] = across
-    alone = (uses == 1) | (np.linalg.norm(normals, axis=1) < 1e-6)
-    facing = np.where((facet * normals).sum(axis=1, keepdims=True) < 0.0, -facet, facet)
-    return np.where(alone[:, None], facing, normals)

@@ -112,6 +112,7 @@ def read_passes(view_layer):
         ("Position", view_layer.use_pass_position),
         ("Vector", view_layer.use_pass_vector),
         ("CoC", own.use_pass_coc),
+        ("Detail", own.use_pass_detail),
         ("Focus Matte", own.use_pass_focus_matte),
     )
     names = ["Combined", *(name for name, wanted in switches if wanted)]

@@ -2,7 +2,9 @@
 
 import bpy
 
+from ..engine.level_store import level_store
 from ..engine.render_engine import ENGINE_ID
+from .level_operators import APLANAT_OT_rebuild_levels
 from .sampling_presets import APLANAT_PT_sampling_presets
 
 _GEOMETRY = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
@@ -65,6 +67,38 @@ class APLANAT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
         pixel = column.column()
         pixel.prop(settings, "pixel_filter")
         pixel.prop(context.scene.render, "filter_size", text="Width")
+
+
+class APLANAT_RENDER_PT_level_of_detail(EnginePanel, bpy.types.Panel):
+    """How blurred objects are simplified."""
+
+    bl_label = "Level of Detail"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Whether the method simplifies anything."""
+        return super().poll(context) and context.scene.aplanat.method == "ADAPTIVE"
+
+    def draw_header(self, context):
+        """Draw the switch."""
+        self.layout.prop(context.scene.aplanat, "use_levels", text="")
+
+    def draw(self, context):
+        """Draw the settings, and what the levels take."""
+        settings = context.scene.aplanat
+        column = self.column()
+        column.active = settings.use_levels
+        column.prop(settings, "level_bias")
+        column.prop(settings, "least_triangles")
+        store = level_store()
+        done, total = store.progress
+        if done < total:
+            column.progress(factor=done / total, text=f"{done:,} of {total:,} triangles")
+        row = column.row()
+        row.label(text=f"{store.memory_bytes / 2**20:.0f} MB in memory")
+        row.operator(APLANAT_OT_rebuild_levels.bl_idname, icon="FILE_REFRESH", text="Rebuild")
 
 
 class APLANAT_RENDER_PT_film(EnginePanel, bpy.types.Panel):
@@ -140,6 +174,8 @@ class APLANAT_VIEWLAYER_PT_data(EnginePanel, bpy.types.Panel):
         lens = column.column(heading="Lens")
         lens.prop(layer.aplanat, "use_pass_coc")
         lens.prop(layer.aplanat, "use_pass_focus_matte")
+        diagnosis = column.column(heading="Diagnosis")
+        diagnosis.prop(layer.aplanat, "use_pass_detail")
 
 
 class APLANAT_VIEWLAYER_PT_cryptomatte(EnginePanel, bpy.types.Panel):
@@ -199,6 +235,7 @@ class APLANAT_MATERIAL_PT_settings(EnginePanel, bpy.types.Panel):
 
 CLASSES = (
     APLANAT_RENDER_PT_sampling,
+    APLANAT_RENDER_PT_level_of_detail,
     APLANAT_RENDER_PT_film,
     APLANAT_RENDER_PT_performance,
     APLANAT_RENDER_PT_simplify,

@@ -168,6 +168,13 @@ class AplanatViewLayerSettings(bpy.types.PropertyGroup):
         default=False,
         update=_update_passes,
     )
+    use_pass_detail: BoolProperty(
+        name="Detail",
+        description="Where the adaptive method saves work: level of detail (X), share of the lens"
+        " samples that copy a drawing of the object (Y), and 1 where there is an object (Z)",
+        default=False,
+        update=_update_passes,
+    )
     use_pass_focus_matte: BoolProperty(
         name="Focus Matte",
         description="Share of each pixel that is in focus, blurred like the picture: 1 up to a"

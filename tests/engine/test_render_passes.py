@@ -19,6 +19,7 @@ def view_layer(depth=6, **switches):
     own = Record(
         use_pass_coc=switches.get("coc", False),
         use_pass_focus_matte=switches.get("focus_matte", False),
+        use_pass_detail=switches.get("detail", False),
     )
     return Record(pass_cryptomatte_depth=depth, aplanat=own, **values)
 
