@@ -12,13 +12,13 @@ others of their number would: what is found is unfair to the adaptive method, if
 
 import math
 import os
-from dataclasses import dataclass
 
 import numpy as np
 
 from ..device.context import ensure_context
 from ..files.whole_file import check_writable, removed_on_signals
 from . import statistics
+from .bench_curve import Curve, samples_to_reach
 from .bench_focus_pull import focus_pull, focus_pull_line
 from .bench_frames import BenchScene
 from .bench_peers import peers, peers_lines
@@ -35,23 +35,6 @@ _MARKS = (8, 16, 32, 48, 64, 96, 128, 192, 256, 384)
 # The two take turns in short rounds, and the middle one of their ratios counts: other work of the
 # machine then touches both alike.
 _ROUNDS = 5
-
-
-@dataclass(frozen=True)
-class Curve:
-    """How plain accumulation comes nearer to the truth.
-
-    Parameters
-    ----------
-    samples : tuple of int
-    seconds : tuple of float
-        Of drawing that many.
-    ssim : tuple of float
-    """
-
-    samples: tuple[int, ...]
-    seconds: tuple[float, ...]
-    ssim: tuple[float, ...]
 
 
 def bench_adaptive(arguments, console):
@@ -182,34 +165,6 @@ def _curve(pictures, truth, stop=1.0):
         if ssim[-1] >= stop:
             break
     return Curve(tuple(samples), tuple(seconds), tuple(ssim))
-
-
-def samples_to_reach(curve, ssim):
-    """Return how many samples accumulation takes to a structural similarity.
-
-    Between two marks ``log(1 - SSIM)`` is taken to be linear in the logarithm of the number.
-
-    Parameters
-    ----------
-    curve : Curve
-    ssim : float
-
-    Returns
-    -------
-    samples : float
-        Of the last mark if it is not reached.
-    reached : bool
-    """
-    error = np.log(np.maximum(1.0 - np.array(curve.ssim), 1e-12))
-    number = np.log(np.array(curve.samples, float))
-    wanted = math.log(max(1.0 - ssim, 1e-12))
-    if wanted >= error[0]:
-        return float(curve.samples[0]), True
-    for i in range(1, len(error)):
-        if error[i] <= wanted:
-            share = (error[i - 1] - wanted) / (error[i - 1] - error[i])
-            return float(np.exp(number[i - 1] + share * (number[i] - number[i - 1]))), True
-    return float(curve.samples[-1]), False
 
 
 def _against(bench, adaptive, plain, curve, ssim):

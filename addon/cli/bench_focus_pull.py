@@ -1,4 +1,4 @@
-"""`aplanat bench --method adaptive --focus-pull`: does the adaptive method flicker?
+"""`aplanat bench --method adaptive --focus-pull`: whether the adaptive method flickers.
 
 The focus moves through the scene in 24 frames, by the same factor from frame to frame. In each pair
 of frames every pixel changes in the adaptive pictures and in those of the reference method; what

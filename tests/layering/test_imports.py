@@ -69,6 +69,7 @@ BLENDER_FREE = {
     "scene.cryptomatte",
     "scene.vertex_split",
     "cli.arguments",
+    "cli.bench_curve",
     "cli.console",
     "cli.json_file",
     "cli.lens",
