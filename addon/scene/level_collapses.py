@@ -16,6 +16,8 @@ import numpy as np
 # fast-simplification's thresholds begin at 2e-6 in squared lengths: the mesh is scaled so that its
 # edges are long against that, and the best collapses come first.
 _EDGE_LENGTH = 0.5
+# Of a triangle that takes part, in mean areas.
+_LEAST_AREA = 1e-9
 # Height of the cone over a hole, in radii of the hole.
 _CONE_HEIGHT = 3.0
 # Weight of a border's perpendicular plane against the triangle at the border.
@@ -92,7 +94,10 @@ def decimate(mesh, places, triangles):
     points = _points(mesh.positions, places).astype(np.float64)
     faces = places[mesh.triangles]
     a, b, c = faces.T
-    faces = np.ascontiguousarray(faces[(a != b) & (b != c) & (c != a)])
+    across = np.cross(points[b] - points[a], points[c] - points[a])
+    size = np.linalg.norm(across, axis=1)
+    # A triangle without area has no plane, and none of its errors would be a number.
+    faces = np.ascontiguousarray(faces[size > _LEAST_AREA * size.mean()])
     groups = np.arange(len(points), dtype=np.int32)
     if len(faces) == 0:
         return Halving(places, groups)
