@@ -56,10 +56,14 @@ class MeshSnapshot:
 
     @property
     def bounds(self):
-        """Lower and upper corner, shape (2, 3)."""
-        if len(self.positions) == 0:
+        """Lower and upper corner of the triangles, shape (2, 3)."""
+        if len(self.triangles) == 0:
             return np.zeros((2, 3), np.float32)
-        return np.stack([self.positions.min(axis=0), self.positions.max(axis=0)])
+        used = np.zeros(len(self.positions), bool)
+        used[self.triangles.ravel()] = True
+        # Loose vertices are rare: nothing is copied without them.
+        shown = self.positions if used.all() else self.positions[used]
+        return np.stack([shown.min(axis=0), shown.max(axis=0)])
 
 
 @dataclass(frozen=True, eq=False)
