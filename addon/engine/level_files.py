@@ -44,7 +44,7 @@ class LevelFiles:
         """Return the halvings of a key, or None if there are none that can be used."""
         path = self.path(key)
         try:
-            with np.load(path, allow_pickle=False) as arrays:
+            with open(path, "rb") as file, np.load(file, allow_pickle=False) as arrays:
                 if int(arrays["version"]) != _VERSION or _digest(arrays) != str(arrays["digest"]):
                     return None
                 halvings = tuple(

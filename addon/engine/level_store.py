@@ -273,7 +273,7 @@ class LevelStore:
         else:
             levels, halvings = simplify(mesh, least, self._check)
             self.decimations += 1
-            if large:
+            if large and halvings:
                 self._files.write(shape, halvings)
         known = _Known(halvings, _shrinkage(mesh, levels))
         with self._changed:

@@ -91,7 +91,7 @@ class _Fit:
         return self._bounded(x, old)
 
     def _at(self, x):
-        return (self._weights[:, :, None] * x[self._corners]).sum(axis=1)
+        return np.einsum("ik,ikj->ij", self._weights, x[self._corners])
 
     def _gather(self, corners, weights, values):
         result = np.zeros((self._count, values.shape[1]))
@@ -102,14 +102,15 @@ class _Fit:
         return result
 
     def _bounded(self, x, old):
-        low = np.full((self._count, old.shape[1]), np.inf)
-        high = -low
+        """Keep values within the range of the old ones, widened by as much again."""
         order = np.argsort(self._owner, kind="stable")
         first = np.searchsorted(self._owner[order], np.arange(self._count))
         low = np.minimum.reduceat(old[order], first, axis=0)
         high = np.maximum.reduceat(old[order], first, axis=0)
         spread = high - low
-        return np.clip(x, np.where(low >= 0.0, np.maximum(low - spread, 0.0), low - spread), high + spread)
+        # What has no negative values gets none.
+        floor = np.where(low >= 0.0, np.maximum(low - spread, 0.0), low - spread)
+        return np.clip(x, floor, high + spread)
 
 
 def _incident(points_owner, triangles, count):
@@ -150,7 +151,7 @@ def _closest(points, owner, face, positions, triangles):
     p = points[owner]
     place = _nearest_weights(p, a, b, c)
     nearest = place[:, :1] * a + place[:, 1:2] * b + place[:, 2:] * c
-    distance = np.square(nearest - p).sum(axis=1)
+    distance = np.einsum("ij,ij->i", nearest - p, nearest - p)
     starts = np.flatnonzero(np.append(True, owner[1:] != owner[:-1]))
     least = np.minimum.reduceat(distance, starts)
     run = np.cumsum(np.append(True, owner[1:] != owner[:-1])) - 1
@@ -164,8 +165,9 @@ def _closest(points, owner, face, positions, triangles):
 def _nearest_weights(p, a, b, c):
     """Return the barycentric weights of the place of triangles nearest to points."""
     ab, ac, ap = b - a, c - a, p - a
-    d00, d01, d11 = ((x * y).sum(axis=1) for x, y in ((ab, ab), (ab, ac), (ac, ac)))
-    d20, d21 = (ap * ab).sum(axis=1), (ap * ac).sum(axis=1)
+    d00, d01, d11, d20, d21 = (
+        np.einsum("ij,ij->i", x, y) for x, y in ((ab, ab), (ab, ac), (ac, ac), (ap, ab), (ap, ac))
+    )
     area = np.maximum(d00 * d11 - d01 * d01, 1e-300)
     v = (d11 * d20 - d01 * d21) / area
     w = (d00 * d21 - d01 * d20) / area

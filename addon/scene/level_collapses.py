@@ -21,8 +21,8 @@ _LEAST_AREA = 1e-9
 # Height of the cone over a hole, in radii of the hole.
 _CONE_HEIGHT = 3.0
 # Weight of a border's perpendicular plane against the triangle at the border.
-_BORDER_WEIGHT = 1.0
-# How much of the quadric's trace pulls a merged place to the mean of its group.
+_BORDER_WEIGHT = 10.0
+# How much of the quadric's trace, without borders, pulls a merged place to the mean of its group.
 _PULL = 0.1
 
 # The library keeps its mesh in global variables.
@@ -46,7 +46,7 @@ class Halving:
 
 
 def weld(positions):
-    """Number the distinct positions, equal bit by bit, in the order of their first vertices.
+    """Give a number to each distinct position, bit by bit, in the order of their first vertices.
 
     Parameters
     ----------
@@ -107,11 +107,17 @@ def decimate(mesh, places, triangles):
     with _library:
         _, _, collapses = fast_simplification.simplify(
             np.concatenate([scaled, apexes]),
-            np.concatenate([faces, cones]).astype(np.int32),
+            _shuffled(np.concatenate([faces, cones])),
             target_count=min(triangles + len(cones) // 2, len(faces) + len(cones)),
             return_collapses=True,
         )
     return Halving(places, _groups(np.asarray(collapses).reshape(-1, 2), len(points), len(apexes)))
+
+
+def _shuffled(faces):
+    """Return faces in an order without meaning: the library stops in the midst of a round."""
+    order = np.random.default_rng(0).permutation(len(faces))
+    return np.ascontiguousarray(faces[order], np.int32)
 
 
 def _points(positions, places):
@@ -158,7 +164,7 @@ def _cones(points, faces):
         return np.empty((0, 3)), np.empty((0, 3), np.int32)
     used, local = np.unique(border, return_inverse=True)
     local = local.reshape(border.shape)
-    hole = _connected(local, len(used))
+    hole = connected(local, len(used))
     numbers, hole = np.unique(hole, return_inverse=True)
     count = len(numbers)
 
@@ -176,12 +182,25 @@ def _cones(points, faces):
     return apexes, cones
 
 
-def _connected(edges, count):
-    """Number the parts that edges connect."""
+def connected(edges, count):
+    """Give a number to each part that edges connect.
+
+    Parameters
+    ----------
+    edges : ndarray of shape (E, 2)
+    count : int
+        Of the nodes.
+
+    Returns
+    -------
+    ndarray of shape (count,)
+        The least node of each one's part.
+    """
     label = np.arange(count)
     while True:
         least = np.minimum(label[edges[:, 0]], label[edges[:, 1]])
         following = label.copy()
+        # The roots are joined, too, so that the number of rounds grows with the logarithm.
         for end in edges.T:
             np.minimum.at(following, end, least)
             np.minimum.at(following, label[end], least)
@@ -218,6 +237,9 @@ def merged_places(mesh, halving):
     pull = np.zeros((count, 3))
     moving = sizes > 1
     _add_planes(quadric, pull, mean, groups[faces], a, normal, length, moving)
+    trace = np.trace(quadric, axis1=1, axis2=2)
+    strength = np.where(trace > 0.0, _PULL * trace, 1.0)
+    quadric += strength[:, None, None] * np.eye(3)
     border, owner = _borders(faces)
     if len(border):
         start, end = points[border[:, 0]], points[border[:, 1]]
@@ -226,9 +248,6 @@ def merged_places(mesh, halving):
         outward /= np.maximum(strength, 1e-300)[:, None]
         weight = _BORDER_WEIGHT * strength**2
         _add_planes(quadric, pull, mean, groups[border], start, outward, weight, moving)
-    trace = np.trace(quadric, axis1=1, axis2=2)
-    strength = np.where(trace > 0.0, _PULL * trace, 1.0)
-    quadric += strength[:, None, None] * np.eye(3)
     move = np.linalg.solve(quadric, pull[:, :, None])[:, :, 0]
     return mean + move
 

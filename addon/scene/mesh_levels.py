@@ -14,7 +14,7 @@ collapses are those of fast-simplification.
 import numpy as np
 
 from .level_attributes import carry
-from .level_collapses import Halving, decimate, merged_places, weld
+from .level_collapses import Halving, connected, decimate, merged_places, weld
 from .snapshot import MeshSnapshot, next_uid
 
 __all__ = ["Halving", "available", "replay", "simplify"]
@@ -47,10 +47,12 @@ def simplify(mesh, least_triangles, check=None):
     Returns
     -------
     levels : tuple of MeshSnapshot
-        From level 1 up; empty if the mesh cannot be simplified.
+        From level 1 up; empty if the mesh cannot be simplified, or none can (see `available`).
     halvings : tuple of Halving
         One a level.
     """
+    if not available():
+        return (), ()
     levels, halvings = [], []
     full = len(mesh.triangles)
     places = None
@@ -60,7 +62,7 @@ def simplify(mesh, least_triangles, check=None):
         places = weld(mesh.positions) if places is None else places
         halving = decimate(mesh, places, len(mesh.triangles) // 2)
         level, following = _merge(mesh, halving)
-        if len(level.triangles) > _LEAST_REDUCTION * len(mesh.triangles):
+        if not 0 < len(level.triangles) <= _LEAST_REDUCTION * len(mesh.triangles):
             break
         levels.append(level)
         halvings.append(halving)
@@ -101,7 +103,7 @@ def _merge(mesh, halving):
     level = MeshSnapshot(
         next_uid(), mesh.name, positions, triangles, _slots(mesh.slots, kept), attributes
     )
-    return level, vertex_places
+    return level, _without_gaps(vertex_places)
 
 
 def _kept(before, corners):
@@ -162,12 +164,13 @@ def _vertices(mesh, halving, place, kept):
     vertex_of : ndarray of shape (V,)
         New vertex that each old one was merged into, -1 where it is gone.
     vertex_places : ndarray of shape (W,)
-        int32; the merged place of each new vertex, numbered without gaps.
+        int32; the merged place of each new vertex.
     """
+    # The sides of a seam stay apart, also where the seam does not cut the mesh in two.
     key = place.astype(np.int64)
     count = len(mesh.positions)
     if count > len(halving.groups):
-        key = key * count + _sides(mesh.triangles, count)
+        key = key * count + _sides(mesh.triangles, halving.places, place)
     used = np.unique(key[mesh.triangles[kept]])
     index = np.minimum(np.searchsorted(used, key), max(len(used) - 1, 0))
     found = used[index] == key if len(used) else np.zeros(count, bool)
@@ -177,18 +180,33 @@ def _vertices(mesh, halving, place, kept):
     return vertex_of, vertex_places
 
 
-def _sides(triangles, count):
-    """Number the parts into which seams cut a mesh: the vertices that triangles connect."""
-    sides = np.arange(count)
-    edges = np.concatenate([triangles[:, :2], triangles[:, 1:]])
-    while True:
-        least = np.minimum(sides[edges[:, 0]], sides[edges[:, 1]])
-        following = sides.copy()
-        # The roots are joined, too, so that the number of rounds grows with the logarithm.
-        for corner in edges.T:
-            np.minimum.at(following, corner, least)
-            np.minimum.at(following, sides[corner], least)
-        following = following[following]
-        if np.array_equal(following, sides):
-            return sides
-        sides = following
+def _without_gaps(numbers):
+    seen = np.zeros(int(numbers.max(initial=-1)) + 1, bool)
+    seen[numbers] = True
+    return (np.cumsum(seen, dtype=np.int32) - 1)[numbers]
+
+
+def _sides(triangles, places, merged):
+    """Give a number to each side of the seams at merging places: to what triangles connect there.
+
+    Parameters
+    ----------
+    triangles : ndarray of shape (T, 3)
+    places, merged : ndarray of shape (V,)
+        Of each vertex, before and after.
+
+    Returns
+    -------
+    ndarray of shape (V,)
+        Equal for vertices of one side; 0 where no seam passes.
+    """
+    sides = np.zeros(len(places), np.int64)
+    at_seam = np.zeros(int(merged.max()) + 1, bool)
+    at_seam[merged[np.bincount(places)[places] > 1]] = True
+    seam = at_seam[merged]
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    edges = edges[seam[edges[:, 0]] & seam[edges[:, 1]]]
+    edges = edges[merged[edges[:, 0]] == merged[edges[:, 1]]]
+    number = np.cumsum(seam) - 1
+    sides[seam] = connected(number[edges], int(seam.sum()))
+    return sides
