@@ -66,8 +66,7 @@ class FrameRenderer:
         world = snapshot.content.world
         self._background = (0.0,) * 4 if snapshot.film.transparent else (*world.color, 1.0)
         self._shows_image = bool(world.image) and not snapshot.film.transparent
-        nearest = self._drawing.nearest
-        self._blur = SubsampleBlur(plan, nearest, self._shows_image) if plan.blurs else None
+        self._blur = SubsampleBlur(plan, self._drawing.nearest) if plan.blurs else None
         self._prepare_targets()
 
     @property
@@ -166,17 +165,13 @@ class FrameRenderer:
             framebuffer.clear(depth=1.0)
         self._drawing.draw_coarsest(framebuffer, self._view)
         self._blur.find_bounds(self._fullscreen, targets)
-        if self._shows_image:
-            with targets.framebuffer("backdrop").bind():
-                self._draw_background((0.0, 0.0, 0.0, 0.0), background.draw_alone)
 
-    def _draw_background(self, lens_sample, draw=background.draw):
-        buffers = self._buffers
-        draw(
+    def _draw_background(self, lens_sample):
+        background.draw(
             self._fullscreen,
             self._view,
-            buffers.environment_buffer,
-            buffers.environment_image,
+            self._buffers.environment_buffer,
+            self._buffers.environment_image,
             lens_sample,
         )
         self.counts.draw_calls += 1
@@ -186,8 +181,7 @@ class FrameRenderer:
         weights = plan.subpixel_weights[index]
         with targets.framebuffer("sum").bind():
             if self._blur:
-                backdrop = targets["backdrop"] if self._shows_image else self._background
-                self._blur.add(self._fullscreen, targets, index, backdrop)
+                self._blur.add(self._fullscreen, targets, index)
             else:
                 accumulate.accumulate(self._fullscreen, targets["sample"], weights)
         # The mattes are those of the sample's own place, with the weight of all it stands for.

@@ -20,13 +20,10 @@ class SubsampleBlur:
     plan : FramePlan
     nearest : float
         Least depth of anything that can be seen, m.
-    shows_image : bool
-        What is behind everything is an image.
     """
 
-    def __init__(self, plan, nearest, shows_image):
+    def __init__(self, plan, nearest):
         self._plan = plan
-        self._shows_image = shows_image
         self._nearest = float(self._window_depth(max(nearest, 0.0)))
         offsets = np.zeros((*plan.subsample_offsets.shape[:2], 4))
         offsets[..., :2] = plan.subsample_offsets
@@ -49,7 +46,6 @@ class SubsampleBlur:
         return (
             TargetSpec("depth_levels", "RG32F", self._layers),
             TargetSpec("blur_bounds", "RG32F"),
-            *[TargetSpec("backdrop", "RGBA32F")] * self._shows_image,
         )
 
     def find_bounds(self, fullscreen, targets):
@@ -72,7 +68,7 @@ class SubsampleBlur:
                 (self._nearest, 1.0),
             )
 
-    def add(self, fullscreen, targets, index, backdrop):
+    def add(self, fullscreen, targets, index):
         """Blur a lens sample and add it to the bound frame buffer.
 
         Parameters
@@ -80,16 +76,12 @@ class SubsampleBlur:
         fullscreen : GPUBatch
         targets : Targets
         index : int
-        backdrop : tuple of 4 float or GPUTexture
-            What is behind everything: a colour, or a picture of it from the lens' centre.
         """
         plan = self._plan
         subsample.blur(
             fullscreen,
             (targets["sample"], targets["sample_depth"], targets["blur_bounds"], self._offsets),
             sweep=plan.sweep,
-            backdrop=backdrop,
-            lens_sample=plan.lens_sample(index),
             spread=self._spread,
             weight=float(plan.subpixel_weights[index].prod()),
             index=index,

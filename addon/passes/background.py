@@ -32,16 +32,6 @@ def draw(fullscreen, view_buffer, environment_buffer, image, lens_sample):
         Place on the lens in m, jitter in clip units.
     """
     state.behind()
-    _draw(fullscreen, view_buffer, environment_buffer, image, lens_sample)
-
-
-def draw_alone(fullscreen, view_buffer, environment_buffer, image, lens_sample):
-    """Draw the world's image over the whole bound frame buffer; arguments as for `draw`."""
-    state.overwrite()
-    _draw(fullscreen, view_buffer, environment_buffer, image, lens_sample)
-
-
-def _draw(fullscreen, view_buffer, environment_buffer, image, lens_sample):
     shader = compile_shader(_INFO)
     shader.bind()
     shader.uniform_block("view_buf", view_buffer)

@@ -66,7 +66,7 @@ def blur_bounds(depth, sweep, opening, depth_range, iterations=3):
     return bounds
 
 
-def subsample_sum(color, depth, bounds, offsets, sweep, backdrop, tolerance=1.0):
+def subsample_sum(color, depth, bounds, offsets, sweep, tolerance=1.0):
     """Sum of a lens sample's picture and of those seen from places beside its own.
 
     Parameters
@@ -76,7 +76,7 @@ def subsample_sum(color, depth, bounds, offsets, sweep, backdrop, tolerance=1.0)
     bounds : ndarray of shape (height, width, 2)
     offsets : ndarray of shape (K, 2)
         In m.
-    sweep, backdrop : ndarray of shape (4,)
+    sweep : ndarray of shape (4,)
     tolerance : float
         In texels.
 
@@ -91,38 +91,40 @@ def subsample_sum(color, depth, bounds, offsets, sweep, backdrop, tolerance=1.0)
     margin = np.full((height, width), np.inf)
     spread = np.abs(offsets).max(axis=0)
     for y, x in np.ndindex(depth.shape):
-        low, high = bounds[y, x]
-        reach = max(np.abs(sweep_px(spread, sweep, d)).max() for d in (low, high))
+        ends = bounds[y, x]
+        reach = max(np.abs(sweep_px(spread, sweep, d)).max() for d in ends)
         margin[y, x] = abs(reach - 0.5)
         if reach <= 0.5:
             total[y, x] = color[y, x] * (len(offsets) + 1)
             continue
         total[y, x] = color[y, x]
-        center = np.array([x, y]) + 0.5
         for move in offsets:
-            value, sure = _cast(center, color, depth, (low, high), move, sweep, tolerance)
-            if value is None:
-                value = backdrop if high >= 1.0 else color[y, x]
-            total[y, x] += value
+            place, sure = _cast(np.array([x, y]) + 0.5, depth, ends, move, sweep, tolerance)
+            total[y, x] += color[place]
             margin[y, x] = min(margin[y, x], sure)
     return total, margin
 
 
-def _cast(center, color, depth, bounds, move, sweep, tolerance):
-    height, width = depth.shape
+def _cast(center, depth, bounds, move, sweep, tolerance):
+    """Return the texel that a ray hits, or what lies farthest on its way; and the margin."""
     near, far = (sweep_px(move, sweep, d) for d in bounds)
     way = near - far
     length = np.abs(way).max()
     steps = int(np.ceil(length))
     # One step, whatever the rounding, if nothing lies before or behind.
     sure = abs(length - np.round(length)) if length > 0.0 else np.inf
+    hit, closest, farthest, behind = None, tolerance, -1.0, None
     for k in range(steps + 1):
         place = center - near + way * (k / max(steps, 1))
         sure = min(sure, np.abs(place - np.round(place)).min())
-        x, y = np.clip(np.floor(place).astype(int), 0, (width - 1, height - 1))
+        x, y = np.clip(np.floor(place).astype(int), 0, (depth.shape[1] - 1, depth.shape[0] - 1))
         miss = np.array([x, y]) + 0.5 + sweep_px(move, sweep, depth[y, x]) - center
         distance = np.abs(miss).max()
-        sure = min(sure, abs(distance - tolerance))
-        if distance <= tolerance:
-            return color[y, x], sure
-    return None, sure
+        sure = min(sure, abs(distance - closest)) if (y, x) != hit else sure
+        if distance <= closest:
+            hit, closest = (y, x), distance
+        elif hit is not None:
+            break
+        if depth[y, x] > farthest:
+            farthest, behind = depth[y, x], (y, x)
+    return (behind if hit is None else hit), sure

@@ -1,5 +1,6 @@
 // The instance table: one texture, 256 instances a row, 4 texels an instance.
-// Texels 0 to 2: rows of the object-to-world matrix. Texel 3, x: Cryptomatte id of the object.
+// Texels 0 to 2: rows of the object-to-world matrix. Texel 3, x: Cryptomatte id of the object; y, z:
+// level of detail and share of shared drawings, for the pass that shows them.
 #ifndef INSTANCE_LIB_GLSL
 #define INSTANCE_LIB_GLSL
 

@@ -3,9 +3,13 @@
 // Inputs: varyings of surface_vert; view_buf; data_buf; surface_closure() of transparent surfaces.
 // Outputs: normal in world space, towards the camera (xyz) and depth along the axis, m (w); position
 // in world space (xyz) and signed circle of confusion, px (w); movement since the previous frame
-// (xy) and to the next (zw), px.
+// (xy) and to the next (zw), px. HAS_DETAIL: level of detail (x), share of the lens samples that copy
+// a drawing of it (y), whether there is anything (z); from the instance table.
 // Source: methods 1; signs and conventions of Cycles' passes.
 #include "lib/lens_lib.glsl"
+#ifdef HAS_DETAIL
+#include "lib/instance_lib.glsl"
+#endif
 
 // Depth where nothing is, as in Blender.
 #define EMPTY_DEPTH 1e10
@@ -21,6 +25,9 @@ void main()
   out_normal_depth = vec4(0.0, 0.0, 0.0, EMPTY_DEPTH);
   out_position_coc = vec4(0.0, 0.0, 0.0, coc_radius_px(EMPTY_DEPTH, view_buf.lens));
   out_vector = vec4(0.0);
+#ifdef HAS_DETAIL
+  out_detail = vec4(0.0);
+#endif
 #else
 #ifdef TRANSPARENT
   if (1.0 - closure_through(surface_closure()) < data_buf.raster.z) {
@@ -46,6 +53,9 @@ void main()
   out_vector = vec4(clip_to_pixels(previous_clip) - now, now - clip_to_pixels(next_clip));
 #else
   out_vector = vec4(0.0);
+#endif
+#ifdef HAS_DETAIL
+  out_detail = vec4(texelFetch(instances_tx, instance_texel(instance_row, 3), 0).yz, 1.0, 0.0);
 #endif
 #endif
 }

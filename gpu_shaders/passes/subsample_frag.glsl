@@ -1,9 +1,8 @@
 // One lens sample's picture, blurred over the part of the lens that it stands for: rays from places
 // near the sample's are cast through its own colour and depth.
-// Inputs: sample_tx, depth_tx (the sample); bounds_tx (depths that can reach a pixel);
-// backdrop (what is behind everything) or backdrop_tx (a picture of it from the lens' centre) with
-// lens_sample (the sample's place on the lens, m; jitter in clip units); offsets_tx (row: sample; column: place on the
-// lens relative to the sample's, m); sample_index, count; spread (largest offset, m); sweep; weight.
+// Inputs: sample_tx, depth_tx (the sample); bounds_tx (depths that can reach a pixel); offsets_tx
+// (row: sample; column: place on the lens relative to the sample's, m); sample_index, count; spread
+// (largest offset, m); sweep; weight.
 // Outputs: the weighted sum of the sample and its subsamples.
 // Source: methods 6 (JKL13 section 6, algorithm 3).
 #include "lib/sweep_lib.glsl"
@@ -11,37 +10,39 @@
 // A hit is a texel whose surface comes to lie within so many texels of the pixel.
 #define TOLERANCE 1.0
 
-// What is behind everything, as seen from `move` beside the sample's place.
-vec4 seen_behind(vec2 center, ivec2 size, vec2 move)
-{
-#ifdef BACKDROP_IMAGE
-  vec2 place = center - sweep_px(lens_sample.xy + move, sweep, 1.0);
-  place -= lens_sample.zw * 0.5 * vec2(size);
-  return texelFetch(backdrop_tx, clamp(ivec2(floor(place)), ivec2(0), size - 1), 0);
-#else
-  return backdrop;
-#endif
-}
-
-vec4 cast_ray(ivec2 pixel, ivec2 size, vec2 move, vec2 bounds, vec4 primary)
+vec4 cast_ray(ivec2 pixel, ivec2 size, vec2 move, vec2 bounds)
 {
   vec2 near = sweep_px(move, sweep, bounds.x);
   vec2 far = sweep_px(move, sweep, bounds.y);
   vec2 way = near - far;
   int steps = int(ceil(max(abs(way.x), abs(way.y))));
   vec2 center = vec2(pixel) + 0.5;
+  ivec2 hit = pixel, behind = pixel;
+  float closest = TOLERANCE, farthest = -1.0;
+  bool found = false;
   for (int k = 0; k <= steps; k++) {
     vec2 place = center - near + way * (float(k) / float(max(steps, 1)));
     ivec2 texel = clamp(ivec2(floor(place)), ivec2(0), size - 1);
     float depth = texelFetch(depth_tx, texel, 0).x;
-    vec2 miss = vec2(texel) + 0.5 + sweep_px(move, sweep, depth) - center;
-    if (max(abs(miss.x), abs(miss.y)) <= TOLERANCE) {
-      return texelFetch(sample_tx, texel, 0);
+    vec2 miss = abs(vec2(texel) + 0.5 + sweep_px(move, sweep, depth) - center);
+    float distance = max(miss.x, miss.y);
+    if (distance <= closest) {
+      // The nearest surface that is hit, where it is hit best.
+      closest = distance;
+      hit = texel;
+      found = true;
+    }
+    else if (found) {
+      break;
+    }
+    if (depth > farthest) {
+      farthest = depth;
+      behind = texel;
     }
   }
-  // Nothing came to lie here: what is behind everything shows if it can be seen from near the pixel
-  // at all; else some hidden surface would, and the sample's own stands for it.
-  return (bounds.y >= 1.0) ? seen_behind(center, size, move) : primary;
+  // Nothing that the sample sees came to lie here, so the ray looks past an edge at what the sample
+  // does not see: that continues what lies farthest along the way, the background if it is there.
+  return texelFetch(sample_tx, found ? hit : behind, 0);
 }
 
 void main()
@@ -57,7 +58,7 @@ void main()
     total = primary;
     for (int i = 0; i < count; i++) {
       vec2 move = texelFetch(offsets_tx, ivec2(i, sample_index), 0).xy;
-      total += cast_ray(pixel, size, move, bounds, primary);
+      total += cast_ray(pixel, size, move, bounds);
     }
   }
   out_color = total * weight;

@@ -1,4 +1,4 @@
-"""Shared drawings: the same bits as drawing every lens sample at its rounded place of the raster."""
+"""Shared drawings: the bits of drawing every lens sample at its rounded place of the raster."""
 
 from dataclasses import replace
 

@@ -93,7 +93,6 @@ def test_subsample_blur_equals_its_twin(places):
     color = rng.random((HEIGHT, WIDTH, 4)).astype(np.float32)
     offsets = rng.uniform(-0.02, 0.02, (places, 2)).astype(np.float32)
     targets, bounds = bounds_on_device(depth, (float(depth.min()), 1.0))
-    backdrop = (0.2, 0.4, 0.6, 1.0)
     targets.add(TargetSpec("sum", "RGBA32F"))
     targets.clear("sum", (0.0, 0.0, 0.0, 0.0))
     table = np.zeros((1, places, 4), np.float32)
@@ -109,15 +108,13 @@ def test_subsample_blur_equals_its_twin(places):
             geometry.fullscreen_batch(),
             textures,
             sweep=SWEEP,
-            backdrop=backdrop,
-            lens_sample=(0.0, 0.0, 0.0, 0.0),
             spread=np.abs(offsets).max(axis=0),
             weight=0.5,
             index=0,
             count=places,
         )
     found = readback.read_color(targets.framebuffer("sum"), WIDTH, HEIGHT)
-    total, margin = twin.subsample_sum(color, depth, bounds, offsets, SWEEP, np.array(backdrop))
+    total, margin = twin.subsample_sum(color, depth, bounds, offsets, SWEEP)
     # Where a decision hangs on less than rounding, it may turn out otherwise.
     sure = margin > 1e-4
     assert sure.mean() > 0.8
