@@ -17,6 +17,9 @@ import numpy as np
 # What copying a pixel of a sprite costs, in triangles drawn. A copy tests and writes depth and
 # colour; measured on software OpenGL.
 _COPY_COST = 0.08
+# From this radius on, blur hides a step of the raster twice as long, and there are cells enough for
+# smooth edges where the object is sharp: every parent keeps its own movement for the pixel filter.
+_BLUR_HIDES_PX = 1.5
 # Sprites are worth their copies only if this share of the work is saved.
 _LEAST_SAVING = 0.1
 
@@ -65,7 +68,7 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan):
     rectangle : tuple of 4 int
         x, y, width, height of what it may cover in the raster of any sample.
     plan : FramePlan
-        Its `reuse_grid` tells the cells along a pixel.
+        Its `reuse_grid` tells the cells along a pixel; half as many where there is blur.
 
     Returns
     -------
@@ -73,8 +76,9 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan):
         Empty where drawing every sample costs less.
     """
     moves, shifts = raster_moves(coc, plan)
-    cells = np.round(moves * plan.reuse_grid)
-    distance = np.square(moves * plan.reuse_grid - cells).sum(axis=1)
+    grid = plan.reuse_grid if abs(coc) < _BLUR_HIDES_PX else max(1, plan.reuse_grid // 2)
+    cells = np.round(moves * grid)
+    distance = np.square(moves * grid - cells).sum(axis=1)
     keys = np.column_stack([levels, cells.astype(np.int64)])
     if _touches_edge(rectangle, plan):
         # A shift would bring in what lies outside the parent's raster.
