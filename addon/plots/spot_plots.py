@@ -4,7 +4,7 @@ import numpy as np
 
 from ..optics.aberrations import best_focus, spot
 from ..optics.pupil import pupil_outline
-from .style import INK, QUIET, RULE, SMALL_SIZE, SPECTRUM, TEXT_SIZE, frame_picture
+from .style import INK, QUIET, RULE, SMALL_SIZE, SPECTRUM, TEXT_SIZE, frame_picture, length
 
 _GRID = 41
 _OUTLINE = 128
@@ -113,4 +113,4 @@ def _size(points, centre):
     if not len(points):
         return "no light"
     radius = np.sqrt(np.mean(np.sum((points - centre) ** 2, axis=1)))
-    return f"rms {1000.0 * radius:.3g} µm"
+    return f"rms {length(radius)}"
