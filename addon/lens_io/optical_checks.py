@@ -204,7 +204,7 @@ def _check_rims(position, findings):
             "W04",
             path,
             f"surfaces {number} and {number + 1} overlap by {overlap:.4g} mm at {rim:.6g} mm "
-            "from the axis; the distance or a semi-diameter is wrong",
+            "from the axis; check the distance and the semi-diameters",
         )
 
 

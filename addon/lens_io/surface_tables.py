@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ..optics.prescription import Surface
 from .material import read_material
 from .optical_checks import asphere_fault
-from .toml_table import Range, Table, nearest, show
+from .toml_table import Range, Table, show
 
 SURFACE_KEYS = (
     "id",
@@ -82,7 +82,7 @@ def read_surfaces(document):
     sound = None not in surfaces and all(
         error.code == "E05" or error.path.endswith("].id") for error in findings.errors[before:]
     )
-    return SurfaceTables(surfaces, numbers, sound and findings.left_out == 0)
+    return SurfaceTables(surfaces, numbers, sound)
 
 
 def check_rim(surface, semi_diameter, path, findings):
@@ -173,13 +173,11 @@ def _read_asphere(table):
     terms, complete = [], True
     for key in inner.values:
         if key not in ASPHERE_ORDERS:
-            near = nearest(key, ASPHERE_ORDERS)
-            hint = f"; did you mean {show(near)}?" if near else ""
             inner.add(
                 "E15",
                 key,
                 f"{show(key)} is no asphere key; they are a2_per_mm1, a4_per_mm3 ... "
-                f"a20_per_mm19, even orders only{hint}",
+                f"a20_per_mm19, even orders only{inner.hint(key, ASPHERE_ORDERS)}",
             )
             continue
         value = inner.number(key)
