@@ -293,7 +293,8 @@ def _image_of_stop(scale, shift, configuration):
     scale, shift = float(scale), float(shift)
     if not (abs(scale) * LARGEST_PUPIL > 1.0 and math.isfinite(scale) and math.isfinite(shift)):
         return None
-    return shift / scale, 2.0 * radius / abs(scale)
+    pupil = shift / scale, 2.0 * radius / abs(scale)
+    return pupil if all(map(math.isfinite, pupil)) else None
 
 
 def _focusing_matrix(configuration, wavelength_nm, meridian):
