@@ -196,10 +196,8 @@ def _check_stops(rows, findings):
             "E12", "surface", f"surfaces {shown} are all stops; exactly one must have stop = true"
         )
     elif not stops and not unknown:
-        which = (
-            f"none of the surfaces 1 to {len(rows)}" if rows else "none, as there is no surface,"
-        )
-        findings.add("E12", "surface", f"{which} is the stop; exactly one must have stop = true")
+        none = f"none of the surfaces 1 to {len(rows)} is the stop" if rows else "there is no stop"
+        findings.add("E12", "surface", f"{none}; exactly one surface must have stop = true")
 
 
 def _read_ids(rows, tables):
