@@ -112,5 +112,4 @@ def _round_up(value):
 def _size(points, centre):
     if not len(points):
         return "no light"
-    radius = np.sqrt(np.mean(np.sum((points - centre) ** 2, axis=1)))
-    return f"rms {length(radius)}"
+    return f"half in ⌀ {length(2.0 * np.median(np.hypot(*(points - centre).T)))}"
