@@ -51,9 +51,8 @@ def cases(request, shared, referee):
 
 
 def wavelengths(case, referee):
-    return [
-        (nm, case["wavelengths"][f"{nm:.6g}"]) for nm in referee["conventions"]["wavelengths_nm"]
-    ]
+    asked = referee["conventions"]["wavelengths_nm"]
+    return [(nm, case["wavelengths"][f"{nm:.6g}"]) for nm in asked]
 
 
 def test_every_lens_of_the_referee_is_asked(referee):

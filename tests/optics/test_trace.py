@@ -129,8 +129,8 @@ def test_aplanatic_points_of_a_sphere():
 def test_cylinder_bends_in_one_meridian_only():
     bar = lens(surface(30.0, 5.0, CROWN, curved_along="x", is_stop=True), surface(math.inf, 50.0))
     ball = lens(surface(30.0, 5.0, CROWN, is_stop=True), surface(math.inf, 50.0))
-    fan = random_rays(slope=0.0)
-    seen, wanted = trace(bar, fan, NM), trace(ball, fan, NM)
+    fan = random_rays(spread=6.0, slope=0.0)
+    seen = trace(bar, fan, NM)
     np.testing.assert_allclose(seen.directions[:, 1], 0.0, atol=1.0e-15)
     across = rays(fan.origins * (1.0, 0.0, 1.0), (0.0, 0.0, 1.0))
     wanted = trace(ball, across, NM)
@@ -140,17 +140,14 @@ def test_cylinder_bends_in_one_meridian_only():
 def test_status_tells_how_each_ray_fared():
     single = lens(
         surface(20.0, 15.0, FLINT, semi_diameter=19.0, is_stop=True),
-        surface(math.inf, 50.0, semi_diameter=17.0),
+        surface(math.inf, 50.0, semi_diameter=3.0),
     )
-    # Through; outside the second rim; beside the sphere; steep inside the glass.
-    fan = rays(
-        [(0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 25.0, 0.0), (0.0, 19.0, -1.0)],
-        [(0.0, 0.0, 1.0), (0.0, 2.9, 1.0), (0.0, 0.0, 1.0), (0.0, -0.9, 1.0)],
-    )
-    traced = trace(single, fan, NM)
-    assert traced.status[0] == RayStatus.PASSED and traced.surface[0] == 0
-    assert traced.status[2] == RayStatus.MISSED and traced.surface[2] == 1
-    assert traced.reached.tolist() == traced.passed.tolist()
+    # Through; outside the first rim; beside the sphere; outside the second rim.
+    traced = trace(single, parallel([1.0, 19.5, 25.0, 10.0]), NM)
+    blocked, missed = RayStatus.BLOCKED, RayStatus.MISSED
+    assert traced.status.tolist() == [RayStatus.PASSED, blocked, missed, blocked]
+    assert traced.surface.tolist() == [0, 1, 1, 2]
+    assert traced.reached.tolist() == [True, False, False, False]
     assert np.isfinite(traced.points).all() and np.isfinite(traced.directions).all()
 
 
