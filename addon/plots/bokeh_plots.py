@@ -126,7 +126,7 @@ def _show_traced(axes, configuration, source):
         axes.imshow(picture, origin="lower", interpolation="bilinear")
 
 
-def traced_disk(configuration, source):
+def traced_disk(configuration, source, wavelengths_nm=None):
     """Colours of the light of an object on the sensor.
 
     Parameters
@@ -135,6 +135,8 @@ def traced_disk(configuration, source):
         Focused.
     source : float or tuple of 3 float
         As for `pupil_rays`.
+    wavelengths_nm : sequence of float or None
+        None: a few over the spectrum.
 
     Returns
     -------
@@ -142,6 +144,8 @@ def traced_disk(configuration, source):
         sRGB; None if nothing gets there.
     """
     wavelengths = spectrum_wavelengths(_TRACED_WAVELENGTHS)
+    if wavelengths_nm is not None:
+        wavelengths = np.array(wavelengths_nm, dtype=float)
     # Rims cut all colours alike, so far as one sees.
     bundle = pupil_rays(configuration, source, _TRACED_GRID)
     landed = []

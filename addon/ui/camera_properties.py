@@ -31,7 +31,7 @@ def _item(identifier, name, description, icon=0):
 
 def _lens_items(camera, _context):
     library = shelf()
-    items = [_item(_THIN, "Thin Lens", "An ideal lens without a prescription")]
+    items = [_item(_THIN, "Thin Lens", "An ideal lens without a prescription", "CAMERA_DATA")]
     ids = library.ids()
     for lens_id in ids:
         found = library.find(lens_id)
@@ -61,9 +61,10 @@ def _choose_lens(camera, number):
     camera.lens = identifier.removeprefix(_LENS) if identifier != _THIN else ""
 
 
-def _found_lenses(_camera, _context, typed):
+def _found_lenses(camera, _context, typed):
     library = shelf()
-    typed = typed.casefold()
+    # Before anything is typed the field holds the lens that is there: then all are wanted.
+    typed = "" if typed == camera.lens else typed.casefold()
     for lens_id in library.ids():
         found = library.find(lens_id)
         if found and (typed in lens_id.casefold() or typed in found.name.casefold()):
