@@ -14,7 +14,7 @@ from ..optics.glass import REFERENCE_WAVELENGTH_NM, Air
 from ..optics.media import indices
 from ..optics.paraxial import LEAST_POWER, entrance_pupil, first_order, power
 from ..optics.prescription import Configuration
-from ..optics.surfaces import sag
+from ..optics.surfaces import FAR, sag
 from ..optics.trace import Rays, trace
 
 # Allowed differences between computed and nominal values, as shares.
@@ -304,15 +304,20 @@ def light_passes(configuration, field_deg):
         # Round rims about the axis are symmetric to the meridian of the field: a beam that gets
         # through has rays in it.
         return False
-    rim = configuration.surfaces[0].semi_diameter
+    rim = _front_rim(configuration)
     x, y = np.meshgrid(*2 * [np.linspace(-rim, rim, GRID)])
     inside = np.hypot(x, y) <= rim
     return bool(_trace_beam(configuration, x[inside], y[inside], field_deg).passed.any())
 
 
 def _fan(configuration):
-    rim = configuration.surfaces[0].semi_diameter
+    rim = _front_rim(configuration)
     return np.linspace(-rim, rim, FAN)
+
+
+def _front_rim(configuration):
+    # No ray meets a surface farther out.
+    return min(configuration.surfaces[0].semi_diameter, FAR)
 
 
 def _trace_beam(configuration, x, y, field_deg):
