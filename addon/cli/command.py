@@ -137,8 +137,7 @@ def _errors(error, command):
         }
     name = type(error).__name__.removesuffix("Error")
     code = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
-    told = {"code": code, "message": " ".join(str(error).split())}
-    if command == "lens":
-        # As findings have it, so that a caller reads both alike.
-        told["path"] = ""
+    # A lens' findings have a path, so that a caller reads both alike.
+    path = {"path": ""} if command == "lens" else {}
+    told = {"code": code, **path, "message": " ".join(str(error).split())}
     return {"errors": [told], "warnings": []}

@@ -179,3 +179,24 @@ def test_a_lens_is_told_without_blender_or_heavy_libraries(tmp_path):
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout.splitlines()[0])["name"]
     assert done.stderr == ""
+
+
+def test_names_that_are_no_text_are_told_as_json(refused):
+    # As Python hands over bytes of a command line that are not UTF-8.
+    lines, answer = refused("lens", "info", "tessar-50mm-f2.8", "--zoom", "\udcff", "--json")
+    assert len(lines) == 1
+    assert "\udcff" in answer["errors"][0]["message"]
+
+
+def test_a_reader_that_leaves_early_is_no_failure():
+    words = [sys.executable, "-P", "-m", "addon.cli", "lens", "list"]
+    process = subprocess.Popen(
+        words,
+        env=os.environ | {"PYTHONPATH": str(REPOSITORY), "PYTHONDONTWRITEBYTECODE": "1"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    process.stdout.close()
+    with process.stderr:
+        told = process.stderr.read()
+    assert (process.wait(60), told) == (0, b"")
