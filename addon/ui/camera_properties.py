@@ -97,10 +97,16 @@ def _choose_zoom(camera, number):
     camera.zoom_label = next((key for key, value in _numbers.items() if value == number), "")
 
 
-def _forget_zoom(camera, _context):
+def _lens_changed(camera, _context):
     labels = _labels(camera)
     if camera.zoom_label and labels and camera.zoom_label not in labels:
         camera.zoom_label = ""
+    camera.id_data.update_tag()
+
+
+def _zoom_changed(camera, _context):
+    # Without this Blender evaluates the camera again only if the change came from its windows.
+    camera.id_data.update_tag()
 
 
 class AplanatCameraSettings(bpy.types.PropertyGroup):
@@ -114,7 +120,7 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
         options=set(),
         override={"LIBRARY_OVERRIDABLE"},
         search=_found_lenses,
-        update=_forget_zoom,
+        update=_lens_changed,
     )
     zoom_label: StringProperty(
         name="Zoom Position",
@@ -122,6 +128,7 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
         maxlen=_LONGEST_TEXT,
         options=set(),
         override={"LIBRARY_OVERRIDABLE"},
+        update=_zoom_changed,
     )
     lens_choice: EnumProperty(
         name="Lens",
