@@ -27,6 +27,8 @@ from .ray_map_tracing import (
 GROUP_STATES = 9
 # As near as a group is followed, focal lengths before H: half life size.
 _NEAREST_FOCUS = 3.0
+# How many times longer or shorter the focal length may become.
+_SAME_LENS = 1.5
 # Of the search for the nearest focus, and for a distance from a principal plane that moves.
 _STEPS = 24
 
@@ -193,24 +195,25 @@ def _reach(configuration, focus_group):
     """Return 1 / the nearest focus, from surface 1; half life size at most."""
     order = first_order(configuration)
     nearest = min(nearest_object(configuration, order), order.h - _NEAREST_FOCUS * order.efl)
-    most = -1.0 / nearest
-    if _focuses(configuration, focus_group, most):
-        return most
-    low, high = 0.0, most
+
+    def focuses(nearness):
+        try:
+            efl = first_order(focused(configuration, _distance(nearness), focus_group)).efl
+        except PrescriptionError:
+            return False
+        # Where a group turns the lens into another one, its numbers are not smooth any more.
+        return order.efl / _SAME_LENS < efl < order.efl * _SAME_LENS
+
+    # Beyond a gap a group may focus again, but that is another motion.
+    steps = np.linspace(0.0, -1.0 / nearest, _STEPS + 1)
+    failed = next((i for i, nearness in enumerate(steps) if not focuses(nearness)), None)
+    if failed is None:
+        return steps[-1]
+    low, high = steps[max(failed - 1, 0)], steps[failed]
     for _ in range(_STEPS):
         middle = (low + high) / 2.0
-        low, high = (
-            (middle, high) if _focuses(configuration, focus_group, middle) else (low, middle)
-        )
+        low, high = (middle, high) if focuses(middle) else (low, middle)
     return low
-
-
-def _focuses(configuration, focus_group, nearness):
-    try:
-        focused(configuration, _distance(nearness), focus_group)
-    except PrescriptionError:
-        return False
-    return True
 
 
 def _distance(nearness):

@@ -142,7 +142,7 @@ def pattern_row(profile, object_distance, focus_distance, f_number, radii=1024):
     return row_of_fan(fan, shift, profile.color, radii)
 
 
-def frame_table(profile, focus_distance, f_number, rows=256, radii=256, nearest=None):
+def frame_table(profile, focus_distance, f_number, rows=512, radii=512, nearest=None):
     """Patterns over depth at one focus and f-number, for a shader.
 
     Parameters

@@ -13,7 +13,7 @@ Parts of the file, all in single precision:
 
 The first header says in plain attributes what the file is (format, version, lens, zoom position,
 hash of the prescription, wavelengths, units), and in ``profile``, as JSON with all digits, the
-numbers of the profile besides the arrays. ``checksum`` is that of the arrays.
+numbers of the profile besides the arrays. ``checksum`` is that of attributes and arrays.
 """
 
 import hashlib
@@ -36,6 +36,8 @@ _CHANNELS = {1: "Y", 3: "RGB"}
 _ROW_CHANNELS = ("plane_mm", "image_distance_mm", "extent_mm")
 _RAYS, _TABLE, _TABLE_ROWS = "rays.", "table", "table.rows"
 _ARRAYS = ("values", "limits")
+# Words of the file that belong to the EXR part, and the checksum itself.
+_NOT_CHECKED = {"name", "type", "channelOrder", "checksum"}
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,8 @@ def save_profile(path, stored, *, lens_id="", content_hash=""):
         pictures |= _table_pictures(stored.table)
         words["objectDistance_mm"] = repr(float(stored.table.object_distance))
     pictures |= stored.pictures
-    words = stored.words | words | {"checksum": _checksum(pictures)}
+    words = stored.words | words
+    words["checksum"] = _checksum(words, pictures)
     # All parts of a file share one display window.
     size = np.max([pixels.shape[1::-1] for pixels in pictures.values()], axis=0)
     window = (np.zeros(2, np.int32), (size - 1).astype(np.int32))
@@ -137,7 +140,7 @@ def load_profile(path):
             f"'{path}' has version {words.get('formatVersion')} of the profile format; this "
             f"Aplanat reads version {FORMAT_VERSION}: bake the lens again"
         )
-    if words.get("checksum") != _checksum(pictures):
+    if words.get("checksum") != _checksum(words, pictures):
         raise InputError(f"'{path}' is damaged: its checksum is wrong; bake the lens again")
     try:
         profile = _profile(words, pictures) if "profile" in words else None
@@ -170,8 +173,9 @@ def _names(part, count):
     return tuple(_CHANNELS.get(count) or (f"c{i:03d}" for i in range(count)))
 
 
-def _checksum(pictures):
-    digest = hashlib.sha256()
+def _checksum(words, pictures):
+    told = {name: word for name, word in words.items() if name not in _NOT_CHECKED}
+    digest = hashlib.sha256(json.dumps(told, sort_keys=True).encode())
     for name in sorted(pictures):
         pixels = np.ascontiguousarray(pictures[name], np.float32)
         digest.update(f"{name} {pixels.shape} ".encode())
