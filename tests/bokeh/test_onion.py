@@ -2,9 +2,17 @@ import numpy as np
 import pytest
 
 from addon.bokeh.iris_mask import texel_centres
-from addon.bokeh.onion import OnionRings, aspheric_surfaces, ring_contrast, transmission
+from addon.bokeh.onion import (
+    OnionRings,
+    aspheric_surfaces,
+    ring_contrast,
+    rings_of_lens,
+    transmission,
+)
 from addon.errors import InputError
 from addon.lens_io.toml_reader import read_lens
+from addon.optics.paraxial import first_order
+from addon.optics.trace import Rays, trace
 
 POINTS = texel_centres(256)
 
@@ -59,6 +67,26 @@ def test_only_lenses_with_aspheres_have_turned_surfaces(shared):
 
     assert found("double-gauss-50mm-f2") == ()
     assert found("aspheric-30mm-f2") == (4,)
+
+
+def test_rings_of_a_lens_are_centred_where_the_axis_of_its_asphere_is(shared):
+    lens = read_lens(shared / "lenses" / "aspheric-30mm-f2.toml").prescription.configuration()
+    rings = rings_of_lens(lens, 100.0)
+    order = first_order(lens)
+    # A point that the camera sees at height +t sends rays of slope -t. The one through the ring
+    # centre meets the asphere (surface 4) on the axis, to third order in t.
+    t = 0.01
+    height = rings.shift * t * order.enp_diameter / 2.0
+    direction = np.array([0.0, -t, 1.0]) / np.hypot(1.0, t)
+    origin = np.array([0.0, height + t * order.enp_z, 0.0])
+    hits = trace(lens, Rays([origin], [direction]), 587.5618, clip=False, record=True).hits
+    assert abs(hits[3, 0, 1]) < 1e-4
+    # And the pitch is that of the ripple where the marginal ray passes.
+    marginal = Rays([[0.0, 0.01 * order.enp_diameter / 2.0, 0.0]], [[0.0, 0.0, 1.0]])
+    hits = trace(lens, marginal, 587.5618, record=True).hits
+    assert rings.pitch == pytest.approx(0.45 / (100.0 * hits[3, 0, 1]), rel=1e-3)
+    spherical = read_lens(shared / "lenses" / "double-gauss-50mm-f2.toml").prescription
+    assert rings_of_lens(spherical.configuration(), 100.0) is None
 
 
 def test_values_out_of_range_are_refused():

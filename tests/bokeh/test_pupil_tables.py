@@ -9,6 +9,7 @@ from addon.bokeh.appearance import Appearance
 from addon.bokeh.deposit import open_weights, pattern
 from addon.bokeh.iris_mask import BladedIris, iris_mask
 from addon.bokeh.pupil_beam import beam_from_infinity, beam_from_point
+from addon.bokeh.pupil_box import beam_rays
 from addon.bokeh.pupil_parts import pack, unpack
 from addon.bokeh.pupil_tables import build_pupil_tables
 from addon.bokeh.sprite import sprite, sprite_of_beam
@@ -151,8 +152,6 @@ def test_other_wavelengths_land_where_their_rays_do(lens):
     beam = beam_from_infinity(tables, angle, wavelength=1)
     at = beam.clearance > 0.02
     centre = tables.curves_at(angle)[2]
-    from addon.bokeh.pupil_box import beam_rays
-
     rays = beam_rays(angle, beam.pupil[at][:, 0], beam.pupil[at][:, 1] + centre)
     traced = trace(configuration, rays, 460.0)
     landed = traced.at_plane(configuration.sensor)
@@ -160,6 +159,19 @@ def test_other_wavelengths_land_where_their_rays_do(lens):
     colour = np.abs(landed - achromatic).max()
     # A grid of 33 leaves a hundredth of the colour itself.
     assert np.abs(beam.image[at] - landed)[traced.passed].max() < 0.02 * colour
+
+
+def test_colours_of_a_sprite_have_the_patterns_of_their_wavelengths(lens):
+    configuration, _ = lens("double-gauss-50mm-f2")
+    tables = build_pupil_tables(configuration, (587.5618, 460.0, 640.0), grid=33)
+    angle = np.radians(18.0)
+    blue, red = (beam_from_infinity(tables, angle, wavelength=i) for i in (1, 2))
+    args = dict(size=PIXELS, extent=0.8, centre=blue.chief[1] + 3.0 * blue.chief[3])
+    both = sprite_of_beam([(red, (1.0, 0.0, 0.0)), (blue, (0.0, 0.0, 1.0))], 3.0, **args)
+    assert both.shape == (PIXELS, PIXELS, 3)
+    assert np.allclose(both.sum(axis=(0, 1)), (1.0, 0.0, 1.0))
+    assert np.allclose(both[..., 2], sprite_of_beam(blue, 3.0, **args)[..., 0])
+    assert np.allclose(both[..., 0], sprite_of_beam(red, 3.0, **args)[..., 0])
 
 
 def test_sprites_of_beams_are_upright_behind_focus_and_turn_with_the_point(lens):
