@@ -1,5 +1,7 @@
 """Focus, depth and f-number to patterns, against tracing every ray."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,7 @@ def test_bench_tells_times_energies_and_patterns(lens_of):
     assert set(told["seconds"]) == {"achromatic", "chromatic", "frame_table", "row"}
     assert told["row_energy_error"] < 1e-4
     assert len(told["psnr"]["values"]) == 2 * 2 * 3
+    assert json.loads(json.dumps(told, allow_nan=False)) == told
 
 
 def as_rings(row):

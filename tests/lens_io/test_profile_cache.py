@@ -12,7 +12,7 @@ import pytest
 
 from addon.errors import RenderCancelledError
 from addon.lens_io import profile_cache as module
-from addon.lens_io.profile_cache import cache_folder, content_hash, profile, prune
+from addon.lens_io.profile_cache import cache_folder, content_hash, profile, prune, pupil_tables
 from addon.lens_io.toml_reader import read_lens
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -164,3 +164,11 @@ def test_folder_is_the_users_choice_or_the_systems(monkeypatch, tmp_path):
     monkeypatch.setattr(sys, "platform", "win32")
     monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "local"))
     assert cache_folder() == tmp_path / "local" / "aplanat" / "profiles"
+
+
+def test_off_axis_pupil_is_kept_too(lens, tmp_path, monkeypatch):
+    first = pupil_tables(lens, folder=tmp_path)
+    # Nothing is made, so nothing is written.
+    monkeypatch.setattr(module, "save_profile", None)
+    second = pupil_tables(lens, folder=tmp_path)
+    np.testing.assert_array_equal(first.tables, second.tables)
