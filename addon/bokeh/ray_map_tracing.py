@@ -16,8 +16,8 @@ from ..optics.paraxial import first_order, ray_matrix
 from ..optics.trace import Rays, trace
 from .ray_map import ENERGY, HEIGHT, SLOPE, STOP, RayMap
 
-# Grid over s and V: with cubic interpolation the error stays below a thousandth of the aberration
-# itself, measured on fast, wide and long lenses.
+# Grid over s and V. Patterns of a dozen fast, wide and long lenses then agree with a direct trace
+# to 75 dB in the median and 48 dB at worst, where the direct trace itself has noise at 75 dB.
 PUPIL_SAMPLES = 129
 VERGENCES = 17
 # The search for the pupil's end: paraxial radii searched, rays, and rays between the last that
