@@ -3,7 +3,7 @@
 The paper stores one table, the pattern of a point at 1000 mm over image distance and radius, and
 maps focus and object depth to its rows by equal circles of confusion. That leaves out how
 aberrations change with the object's distance and how a closed stop cuts the pattern from inside.
-Here the profile is the *ray map* (see `ray_map`): a grid of 50 to 150 kilobytes for each wavelength,
+Here the profile is the *ray map* (see `ray_map`): a grid of 50 to 150 kilobytes a wavelength,
 nine times that with a focus group. From it the pattern of any object distance, focus and f-number
 is laid out in a millisecond (achromatic; see `mapping`). The paper's table is a product of it.
 
