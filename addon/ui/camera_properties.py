@@ -37,7 +37,7 @@ def _lens_items(camera, _context):
         found = library.find(lens_id)
         if found is None:
             continue
-        icon = lens_thumbnails.icon_id(found)
+        icon = lens_thumbnails.icon_id(found) if found.lens else "ERROR"
         items.append(_item(_LENS + lens_id, found.name, _describe(found), icon))
     if camera.lens and camera.lens not in ids:
         items.append(_item(_LENS + camera.lens, camera.lens, "Not in the library", "ERROR"))

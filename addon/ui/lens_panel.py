@@ -29,7 +29,7 @@ _SAME_LENGTH = 0.05
 # Part of an f-number that a photographer calls the same.
 _SAME_F_NUMBER = 0.005
 _MOST_FINDINGS = 8
-_PIXELS_PER_LETTER = 7.0
+_PIXELS_PER_LETTER = 6.5
 
 
 class APLANAT_MT_lens(bpy.types.Menu):
@@ -277,7 +277,7 @@ def _draw_fact(column, name, value, letters):
 def _letters(context):
     """Return how many letters fit into a line of the editor."""
     scale = _PIXELS_PER_LETTER * context.preferences.system.ui_scale
-    return max(24, int(context.region.width / scale) - 8)
+    return max(24, int(context.region.width / scale) - 7)
 
 
 def _sentences(column, text, letters):
