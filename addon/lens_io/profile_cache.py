@@ -154,7 +154,7 @@ def pupil_tables(
     PrescriptionError, RenderCancelledError
         As for `profile`.
     """
-    from ..bokeh.pupil_parts import pack, unpack
+    from ..bokeh.pupil_parts import LAYOUT, pack, unpack
     from ..bokeh.pupil_tables import build_pupil_tables
 
     configuration = prescription.configuration(label)
@@ -168,7 +168,7 @@ def pupil_tables(
         return StoredProfile(None, None, words, pictures)
 
     colors = hashlib.sha256(repr(options).encode()).hexdigest()[:8]
-    stored = _kept(prescription, configuration.label, f"pupil-{colors}", folder, lens_id, make)
+    stored = _kept(prescription, configuration.label, f"pupil{LAYOUT}-{colors}", folder, lens_id, make)
     if progress:
         progress(1.0)
     return unpack(stored.words, stored.pictures)
