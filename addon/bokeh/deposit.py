@@ -60,14 +60,18 @@ def open_weights(fine, iris=None, fresnel=False, stop_rim=True):
     ndarray of shape (n, n)
         mm^2; rims and iris antialiased.
     """
-    rim = _edge(fine.clearance)
+    rim = np.min([_edge(each) for each in np.moveaxis(fine.rims, -1, 0)], axis=0)
     energy = fine.weight * fine.transmission if fresnel else fine.weight
     if not stop_rim:
         return energy * rim
     points = fine.stop / fine.stop_scale
     iris = iris or BladedIris()
     width = np.maximum(spacing(points[..., 0]), spacing(points[..., 1]))
-    return energy * rim * iris.coverage(points, width)
+    opened = iris.coverage(points, width)
+    # Where the rim of a lens and hard blades run side by side, the narrower of the two is left;
+    # their product would count the edge twice.
+    both = np.minimum(rim, opened) if isinstance(iris, BladedIris) else rim * opened
+    return energy * both
 
 
 def pattern(beam, shift, size, extent, *, iris=None, centre=None, fresnel=False):

@@ -100,7 +100,6 @@ def diffraction_pattern(iris, number, size, extent=None):
     if not (np.isfinite(number) and number > 0.0):
         raise InputError(f"Fresnel number is {number:g}; it must be greater than 0 and finite")
     extent = pattern_extent(number) if extent is None else extent
-    # Two samples a texel, each axis: the mean of a texel, not its middle.
     if number > _LARGEST_NUMBER_OF_MATRIX and extent <= _WINDOW:
         return _by_convolution(iris, number, size, extent)
     return _by_matrix(iris, number, size, extent)
@@ -134,28 +133,29 @@ def chromatic_pattern(iris, number, size, extent, wavelengths_nm, weights, refer
 
 
 def _by_matrix(iris, number, size, extent):
-    # The phase may turn by half a turn at most from sample to sample at the farthest point.
+    # The phase may turn by half a turn at most from sample to sample at the farthest point, and
+    # the finest fringes (1 / N wide at the far rim) are averaged over a texel.
     samples = int(np.ceil(max(_FEWEST_SAMPLES, 4.4 * number * (1.0 + extent))))
+    parts = int(np.clip(np.ceil(4.0 * number * extent / size), 2, 8))
     amplitude = iris_mask(iris.amplitude(), samples)
     step = 2.0 / samples
     x = (np.arange(samples) + 0.5) * step - 1.0
-    u = (np.arange(2 * size) + 0.5) * (extent / size) - extent
+    u = (np.arange(parts * size) + 0.5) * (2.0 * extent / (parts * size)) - extent
     kernel = np.exp(1j * np.pi * number * (x - u[:, None]) ** 2) * (np.sqrt(number) * step)
-    return _texel_means(np.abs(kernel @ amplitude @ kernel.T) ** 2)
+    intensity = np.abs((kernel @ amplitude) @ kernel.T) ** 2
+    return intensity.reshape(size, parts, size, parts).mean(axis=(1, 3))
 
 
 def _by_convolution(iris, number, size, extent):
-    amplitude = iris_mask(iris.amplitude(), _WINDOW_SAMPLES, _WINDOW)
+    # Single precision: its rounding is far below the ripple of the window.
+    amplitude = iris_mask(iris.amplitude(), _WINDOW_SAMPLES, _WINDOW, 2).astype(np.complex64)
     frequency = np.fft.fftfreq(_WINDOW_SAMPLES, 2.0 * _WINDOW / _WINDOW_SAMPLES)
-    chirp = np.exp(-1j * np.pi / number * frequency**2)
-    spectrum = np.fft.fft2(amplitude) * chirp * chirp[:, None]
-    intensity = np.abs(np.fft.ifft2(spectrum)) ** 2
-    return _resampled(intensity, size, extent)
-
-
-def _texel_means(fine):
-    size = fine.shape[0] // 2
-    return fine.reshape(size, 2, size, 2).mean(axis=(1, 3))
+    chirp = np.exp(-1j * np.pi / number * frequency**2).astype(np.complex64)
+    spectrum = np.fft.fft2(amplitude)
+    spectrum *= chirp
+    spectrum *= chirp[:, None]
+    wave = np.fft.ifft2(spectrum)
+    return _resampled(wave.real.astype(float) ** 2 + wave.imag.astype(float) ** 2, size, extent)
 
 
 def _resampled(intensity, size, extent):

@@ -36,7 +36,7 @@ def undistorted(points, k, centre=(0.0, 0.0)):
     offset = np.asarray(points, dtype=float) - centre
     divisor = 1.0 + k * np.sum(offset**2, axis=-1, keepdims=True)
     # Beyond |k| r^2 = 1 the model folds (k > 0) or has a pole (k < 0).
-    if k != 0.0 and np.any(np.abs(divisor - 1.0) >= 1.0):
+    if np.any(np.abs(divisor - 1.0) >= 1.0):
         raise InputError(
             f"distortion {k:g} reaches to a radius of {1.0 / np.sqrt(abs(k)):.6g} from the centre,"
             " the picture goes farther; use a coefficient nearer to 0"
@@ -63,9 +63,9 @@ def distorted(points, k, centre=(0.0, 0.0)):
     offset = np.asarray(points, dtype=float) - centre
     square = np.sum(offset**2, axis=-1, keepdims=True)
     if k > 0.0:
-        limit = 0.25 / k
-        offset = offset * np.sqrt(limit / np.maximum(square, limit))
-        square = np.minimum(square, limit)
+        over = np.maximum(4.0 * k * square, 1.0)
+        offset = offset / np.sqrt(over)
+        square = square / over
     return centre + 2.0 * offset / (1.0 + np.sqrt(np.maximum(1.0 - 4.0 * k * square, 0.0)))
 
 

@@ -1,8 +1,8 @@
 """A lens focused at a distance: its first-order values and its ray map.
 
 A lens that is moved as a whole has one state: focusing changes the distance to the sensor only.
-A lens with a focus group has a state for each of a few distances, even in 1 / distance; all their
-numbers are smooth over it, and cubic interpolation gives the states between.
+A lens with a focus group has a state for each of a few distances, Chebyshev's points over
+1 / distance; all their numbers are smooth over it, and one polynomial gives the states between.
 
 Distances of focus and objects are from the first principal plane of the focused lens, mm.
 """
@@ -15,10 +15,20 @@ from ..errors import FocusError, InputError, PrescriptionError
 from ..optics.focus import focused
 from ..optics.paraxial import FirstOrder, first_order
 from .ray_map import RayMap, lagrange_weights
-from .ray_map_tracing import map_vergences, nearest_object, trace_ray_map
+from .ray_map_tracing import (
+    map_vergences,
+    nearest_object,
+    pupil_reach,
+    trace_ray_map,
+    without_idle_rims,
+)
 
-# States of a lens with a focus group.
-GROUP_STATES = 7
+# States of a lens with a focus group: planes of focus then are right to a millionth of a mm.
+GROUP_STATES = 9
+# As near as a group is followed, focal lengths before H: half life size.
+_NEAREST_FOCUS = 3.0
+# How many times longer or shorter the focal length may become.
+_SAME_LENS = 1.5
 # Of the search for the nearest focus, and for a distance from a principal plane that moves.
 _STEPS = 24
 
@@ -109,20 +119,26 @@ def trace_states(configuration, wavelengths_nm, *, focus_group=None, step=None, 
     """
     lenses, nearness = [configuration], np.zeros(1)
     if focus_group:
-        nearness = np.linspace(0.0, _reach(configuration, focus_group), GROUP_STATES)
+        turn = np.linspace(0.0, np.pi, GROUP_STATES)
+        nearness = _reach(configuration, focus_group) * (1.0 - np.cos(turn)) / 2.0
         lenses = [focused(configuration, _distance(n), focus_group) for n in nearness]
         if nearness[-1] == 0.0:
             lenses, nearness = lenses[:1], nearness[:1]
-    states = []
+    maps = []
     vergences = map_vergences(lenses[0], first_order(lenses[0]))
+    # The same for all states, so that a place in the map is the same ray in each.
+    reach = pupil_reach(lenses, wavelengths_nm, vergences)
     for i, lens in enumerate(lenses):
 
         def part(share, done=i):
             if step:
                 step((done + share) / len(lenses))
 
-        ray_map = trace_ray_map(lens, wavelengths_nm, vergences=vergences, step=part, **options)
-        states.append(FocusState(first_order(lens), lens.vertices[-1], ray_map))
+        maps.append(trace_ray_map(lens, wavelengths_nm, vergences, reach, step=part, **options))
+    states = [
+        FocusState(first_order(lens), lens.vertices[-1], ray_map)
+        for lens, ray_map in zip(lenses, without_idle_rims(maps), strict=True)
+    ]
     return nearness, tuple(states)
 
 
@@ -152,15 +168,15 @@ def state_at(nearness, states, distance):
     before = distance
     for _ in range(_STEPS):
         at = 1.0 / before if before > 0.0 else np.inf
-        weights, chosen = lagrange_weights(nearness, at)
-        before = distance - float(weights @ shifts[chosen])
+        weights, _ = lagrange_weights(nearness, at, len(nearness))
+        before = distance - float(weights @ shifts)
     if not 0.0 <= at <= nearness[-1] * (1.0 + 1.0e-9):
         nearest = 1.0 / nearness[-1] + shifts[-1]
         raise FocusError(
             f"focus distance {distance:g} mm is out of reach of the focus group; the nearest is "
             f"{nearest:.6g} mm"
         )
-    return _blended(states[chosen], weights)
+    return _blended(states, weights)
 
 
 def _blended(states, weights):
@@ -176,25 +192,28 @@ def _blended(states, weights):
 
 
 def _reach(configuration, focus_group):
-    """1 / the nearest distance from surface 1 at which the group focuses; at most the map's."""
-    most = -1.0 / nearest_object(configuration, first_order(configuration))
-    if _focuses(configuration, focus_group, most):
-        return most
-    low, high = 0.0, most
+    """Return 1 / the nearest focus, from surface 1; half life size at most."""
+    order = first_order(configuration)
+    nearest = min(nearest_object(configuration, order), order.h - _NEAREST_FOCUS * order.efl)
+
+    def focuses(nearness):
+        try:
+            efl = first_order(focused(configuration, _distance(nearness), focus_group)).efl
+        except PrescriptionError:
+            return False
+        # Where a group turns the lens into another one, its numbers are not smooth any more.
+        return order.efl / _SAME_LENS < efl < order.efl * _SAME_LENS
+
+    # Beyond a gap a group may focus again, but that is another motion.
+    steps = np.linspace(0.0, -1.0 / nearest, _STEPS + 1)
+    failed = next((i for i, nearness in enumerate(steps) if not focuses(nearness)), None)
+    if failed is None:
+        return steps[-1]
+    low, high = steps[max(failed - 1, 0)], steps[failed]
     for _ in range(_STEPS):
         middle = (low + high) / 2.0
-        low, high = (
-            (middle, high) if _focuses(configuration, focus_group, middle) else (low, middle)
-        )
+        low, high = (middle, high) if focuses(middle) else (low, middle)
     return low
-
-
-def _focuses(configuration, focus_group, nearness):
-    try:
-        focused(configuration, _distance(nearness), focus_group)
-    except PrescriptionError:
-        return False
-    return True
 
 
 def _distance(nearness):

@@ -55,13 +55,14 @@ class BladedIris:
             return np.pi
         half = np.pi / self.blades
         straight = self.blades * np.sin(half) * np.cos(half)
-        if self.curvature == 0.0:
-            return straight
-        # A segment of half angle b of the circle with radius 1 / curvature stands on each side;
+        # On each side stands a segment, of half angle b, of the circle of radius 1 / curvature.
         # b - sin b cos b loses its digits for small b, its series does not.
-        b = np.arcsin(self.curvature * np.sin(half))
-        bulge = 2.0 / 3.0 * b**3 - 2.0 / 15.0 * b**5 if b < 1e-3 else b - np.sin(b) * np.cos(b)
-        return straight + self.blades * bulge / self.curvature**2
+        k = self.curvature
+        chord = k * np.sin(half)
+        if chord < 1e-3:
+            return straight + self.blades * k * np.sin(half) ** 3 * (2.0 / 3.0 + chord**2 / 5.0)
+        b = np.arcsin(chord)
+        return straight + self.blades * (b - np.sin(b) * np.cos(b)) / k**2
 
     def amplitude(self):
         """Return the opening whose coverage is the share of amplitude: itself, being binary."""

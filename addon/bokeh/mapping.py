@@ -142,7 +142,7 @@ def pattern_row(profile, object_distance, focus_distance, f_number, radii=1024):
     return row_of_fan(fan, shift, profile.color, radii)
 
 
-def frame_table(profile, focus_distance, f_number, rows=256, radii=256, nearest=None):
+def frame_table(profile, focus_distance, f_number, rows=512, radii=512, nearest=None):
     """Patterns over depth at one focus and f-number, for a shader.
 
     Parameters
@@ -170,7 +170,7 @@ def frame_table(profile, focus_distance, f_number, rows=256, radii=256, nearest=
     shift = state.image_plane(focus_distance) - ray_map.plane
     linear = ray_map.reference[0] + shift * ray_map.reference[1]
     # Light of far objects has crossed the axis before it reaches the sensor.
-    blur = tuple((-opening * linear).tolist())
+    blur = tuple((-opening * ray_map.pupil_radius * linear).tolist())
     height, slope, _ = ray_map.rays(state.vergence(focus_distance), opening, 65)
     in_focus = np.abs(height + shift * slope).max()
     soft = max(float(in_focus), _LEAST_BLUR)

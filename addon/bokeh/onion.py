@@ -18,6 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import InputError
+from ..optics.glass import REFERENCE_WAVELENGTH_NM
+from ..optics.media import indices
+from ..optics.paraxial import entrance_pupil, ray_matrix
 
 # Rings of this amplitude and width on a moulded asphere give the contrast of a few per cent that
 # onion rings in photographs have (C = 0.1 for a 10 mm beam, dn = 0.6, N = 100).
@@ -70,7 +73,7 @@ def ring_contrast(
     fresnel_number,
     amplitude_nm=DEFAULT_AMPLITUDE_NM,
     pitch_mm=DEFAULT_PITCH_MM,
-    wavelength_nm=587.5618,
+    wavelength_nm=REFERENCE_WAVELENGTH_NM,
 ):
     """Contrast of the rings that a ripple makes.
 
@@ -113,6 +116,58 @@ def aspheric_surfaces(configuration):
         for number, surface in enumerate(configuration.surfaces, 1)
         if surface.conic != 0.0 or any(value != 0.0 for _, value in surface.asphere)
     )
+
+
+def rings_of_lens(
+    configuration,
+    fresnel_number,
+    amplitude_nm=DEFAULT_AMPLITUDE_NM,
+    pitch_mm=DEFAULT_PITCH_MM,
+    irregularity=0.5,
+    seed=0,
+):
+    """Rings that the turned surface of a lens makes which shows most.
+
+    Parameters
+    ----------
+    configuration : Configuration
+        At the opening wanted.
+    fresnel_number : float
+        Of the defocus, > 0.
+    amplitude_nm, pitch_mm : float
+        Of the ripple.
+    irregularity, seed
+        As in `OnionRings`.
+
+    Returns
+    -------
+    OnionRings or None
+        None if no surface is aspheric.
+
+    Raises
+    ------
+    PrescriptionError
+        If the stop has no finite image in object space.
+    """
+    numbers = aspheric_surfaces(configuration)
+    if not numbers:
+        return None
+    pupil_z, diameter = entrance_pupil(configuration)
+    media = indices(configuration, REFERENCE_WAVELENGTH_NM)
+    found = []
+    for number in numbers:
+        # Paraxial heights of the marginal ray and of a chief ray of slope 1, both from infinity.
+        matrix = ray_matrix(configuration, REFERENCE_WAVELENGTH_NM, last=number)
+        marginal = abs(matrix[0, 0]) * 0.5 * diameter
+        chief = matrix[0, 1] - matrix[0, 0] * pupil_z
+        step = media[number] - media[number - 1]
+        contrast = ring_contrast(step, marginal, fresnel_number, amplitude_nm, pitch_mm)
+        found.append((contrast, marginal, chief / (matrix[0, 0] * 0.5 * diameter)))
+    contrast, marginal, chief = max(found)
+    pitch = float(np.clip(pitch_mm / marginal, 1e-3, 10.0))
+    # The rings' centre is the axis of the surface. A point that the camera sees at +x sends its
+    # chief ray towards -x, so that the axis lies on the +x side of the beam where chief > 0.
+    return OnionRings(contrast, pitch, irregularity, float(np.clip(chief, -1e3, 1e3)), seed)
 
 
 def transmission(rings, points, field=(0.0, 0.0), width=0.0):

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import InputError
 from .pupil_box import beam_axes
-from .pupil_tables import MARGIN
+from .pupil_tables import MARGIN, RIMS
 from .spline import spline_matrix
 
 _SEARCH_GRID = 49
@@ -31,8 +31,8 @@ class PupilBeam:
         dx/dz and dy/dz behind the lens.
     stop : ndarray of shape (n, n, 2)
         In units of the stop's radius wide open.
-    clearance : ndarray of shape (n, n)
-        Signed; positive inside all rims but the stop.
+    rims : ndarray of shape (n, n, 4)
+        Signed; positive inside the rims (see `CHANNELS` of the tables), the stop left out.
     weight : ndarray of shape (n, n)
         Area of the cell of a ray, square to the chief ray at the pupil, mm^2; for a near point the
         solid angle times the squared distance of the pupil.
@@ -52,7 +52,7 @@ class PupilBeam:
     image: np.ndarray
     slope: np.ndarray
     stop: np.ndarray
-    clearance: np.ndarray
+    rims: np.ndarray
     weight: np.ndarray
     transmission: np.ndarray
     pupil: np.ndarray
@@ -60,6 +60,11 @@ class PupilBeam:
     angle: float
     distance: float
     stop_scale: float
+
+    @property
+    def clearance(self):
+        """Smallest of `rims`, shape (n, n)."""
+        return self.rims.min(axis=-1)
 
     def landing(self, shift):
         """Landing places on a sensor that stands elsewhere.
@@ -97,7 +102,8 @@ class PupilBeam:
                 self.slope,
                 self.stop,
                 self.pupil,
-                np.stack([self.clearance, self.weight, self.transmission], axis=-1),
+                self.rims,
+                np.stack([self.weight, self.transmission], axis=-1),
             ],
             axis=-1,
         )
@@ -109,9 +115,9 @@ class PupilBeam:
             image=fine[..., 0:2],
             slope=fine[..., 2:4],
             stop=fine[..., 4:6],
-            clearance=fine[..., 8],
-            weight=np.maximum(fine[..., 9], 0.0) * share,
-            transmission=np.clip(fine[..., 10], 0.0, 1.0),
+            rims=fine[..., 8:12],
+            weight=np.maximum(fine[..., 12], 0.0) * share,
+            transmission=np.clip(fine[..., 13], 0.0, 1.0),
             pupil=fine[..., 6:8],
             chief=self.chief,
             angle=self.angle,
@@ -197,9 +203,9 @@ def _beam(tables, angle, distance, f_number, wavelength):
         image=values[..., 0:2],
         slope=values[..., 2:4],
         stop=values[..., 4:6],
-        clearance=values[..., 6:8].min(axis=-1),
+        rims=values[..., RIMS],
         weight=solid * cell,
-        transmission=values[..., 8],
+        transmission=values[..., 10],
         pupil=np.stack([x, v], axis=-1),
         chief=centre[:4],
         angle=angle,
@@ -245,7 +251,7 @@ def _rays(tables, angle, distance, box, grid, wavelength):
 def _open_part(x, v, values, scale):
     """Box of the rays that pass, wider by a cell and a half."""
     stop = np.hypot(values[..., 4], values[..., 5])
-    inside = (values[..., 6:8].min(axis=-1) > 0.0) & (stop < scale)
+    inside = (values[..., RIMS].min(axis=-1) > 0.0) & (stop < scale)
     if not inside.any():
         # A stop between the rays: the box of the nearest one to its middle.
         inside = stop == stop.min()

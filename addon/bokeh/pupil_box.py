@@ -11,9 +11,11 @@ import numpy as np
 from ..optics.surfaces import sag
 from ..optics.trace import Rays, RayStatus, trace
 
-_SEARCH_RAYS = 49
+_SEARCH_RAYS = 33
 _FINE_SEARCH_RAYS = 161
-_ROUNDS = 3
+_ROUNDS = 2
+# A ray is at a rim if it hits within this share of the rim's radius of it.
+_NEAR_RIM = 0.06
 
 
 def beam_axes(angle):
@@ -53,27 +55,66 @@ def beam_rays(angle, x, v):
     return Rays(origins, np.broadcast_to(direction, origins.shape))
 
 
-def clearances(configuration, hits):
+def clearances(configuration, hits, rims=()):
     """How far rays stay inside the rims, relative to each rim's radius.
 
     Parameters
     ----------
     configuration : Configuration
     hits : ndarray of shape (S, N, 3)
+    rims : sequence of int
+        Numbers of surfaces that are told apart, from 1; not the stop.
 
     Returns
     -------
-    front, rear : ndarray of shape (N,)
-        Smallest over the surfaces before and behind the stop; 1 where there are none.
+    inside : ndarray of shape (N, len(rims) + 1)
+        1 - radius / semi-diameter of each of `rims`, and the smallest of all others but the stop
+        (1 if there are none).
     stop : ndarray of shape (N, 2)
         x and y on the stop, in units of its radius.
     """
-    rims = np.array([surface.semi_diameter for surface in configuration.surfaces])
-    inside = 1.0 - np.hypot(hits[..., 0], hits[..., 1]) / rims[:, None]
+    radii = np.array([surface.semi_diameter for surface in configuration.surfaces])
+    inside = 1.0 - np.hypot(hits[..., 0], hits[..., 1]) / radii[:, None]
+    apart = [number - 1 for number in rims]
     stop = configuration.stop - 1
-    front = inside[:stop].min(axis=0, initial=1.0)
-    rear = inside[stop + 1 :].min(axis=0, initial=1.0)
-    return front, rear, hits[stop, :, :2] / rims[stop]
+    others = [i for i in range(len(radii)) if i != stop and i not in apart]
+    rest = inside[others].min(axis=0, initial=1.0)
+    return np.stack([*inside[apart], rest], axis=-1), hits[stop, :, :2] / radii[stop]
+
+
+def limiting_rims(configuration, beams, wavelength_nm, count):
+    """Numbers of the surfaces whose rims cut beams most.
+
+    Parameters
+    ----------
+    configuration : Configuration
+    beams : sequence of (float, tuple of float)
+        Field angles and their boxes from `passing_box`.
+    wavelength_nm : float
+    count : int
+
+    Returns
+    -------
+    tuple of int
+        At most `count`, from 1, rising; the stop is not among them.
+    """
+    radii = np.array([surface.semi_diameter for surface in configuration.surfaces])
+    cuts = np.zeros(len(radii))
+    for angle, (half_x, low, high) in beams:
+        x, v = np.meshgrid(
+            np.linspace(0.0, 1.05 * half_x, _SEARCH_RAYS // 2),
+            np.linspace(low, high, _SEARCH_RAYS) * 1.05 - 0.025 * (low + high),
+        )
+        traced = trace(
+            configuration, beam_rays(angle, x.ravel(), v.ravel()), wavelength_nm, clip=False,
+            record=True,
+        )  # fmt: skip
+        inside = 1.0 - np.hypot(traced.hits[..., 0], traced.hits[..., 1]) / radii[:, None]
+        edge = traced.reached & (np.abs(inside.min(axis=0)) < _NEAR_RIM)
+        cuts += np.bincount(inside[:, edge].argmin(axis=0), minlength=len(radii))
+    cuts[configuration.stop - 1] = 0.0
+    most = np.argsort(-cuts, kind="stable")[:count]
+    return tuple(sorted(int(i) + 1 for i in most if cuts[i] > 0.0))
 
 
 def passing_box(configuration, angle, wavelength_nm):
@@ -128,8 +169,8 @@ def _narrowed(configuration, angle, wavelength_nm, box, rays):
     passed = traced.passed.reshape(rays, rays)
     if not passed.any():
         return None
-    front, rear, stop = clearances(configuration, traced.hits)
-    inside = np.minimum(np.minimum(front, rear), 1.0 - np.hypot(stop[:, 0], stop[:, 1]))
+    inside, stop = clearances(configuration, traced.hits)
+    inside = np.minimum(inside[:, 0], 1.0 - np.hypot(stop[:, 0], stop[:, 1]))
     # A ray that failed inside all rims (total reflection) is as far outside as its neighbour is
     # inside: the rim is taken halfway.
     failed = ~traced.reached | (traced.status >= RayStatus.MISSED)

@@ -10,6 +10,8 @@ from ..errors import InputError
 from .pupil_tables import CHANNELS, CHROMATIC_CHANNELS, CURVES, PupilTables
 
 PREFIX = "pupil"
+# Part of the names of cached files: goes up when channels or their meaning change.
+LAYOUT = 2
 _NUMBERS = ("curve_step", "field_step", "sensor", "stop_radius", "f_number", "half_field_deg")
 _CHANNELS = {"curves": CURVES, "tables": CHANNELS, "chromatic": CHROMATIC_CHANNELS}
 

@@ -25,7 +25,7 @@ import numpy as np
 from ..errors import PrescriptionError, RenderCancelledError
 from ..optics.glass import REFERENCE_WAVELENGTH_NM
 from ..optics.trace import RayStatus, trace
-from .pupil_box import beam_rays, clearances, passing_box
+from .pupil_box import beam_rays, clearances, limiting_rims, passing_box
 from .spline import cubic_taps
 
 CHANNELS = (
@@ -35,12 +35,17 @@ CHANNELS = (
     "slope_y",
     "stop_x",  # on the stop, in units of its radius wide open
     "stop_y",
-    "front",  # 1 - radius / semi-diameter, smallest in front of the stop; negative is blocked
-    "rear",  # the same behind the stop
+    "rim_1",  # 1 - radius / semi-diameter on a surface; negative is blocked
+    "rim_2",
+    "rim_3",
+    "rim_others",  # the smallest over all other surfaces but the stop
     "transmission",  # Fresnel
 )
 # How the rays of another wavelength differ.
 CHROMATIC_CHANNELS = CHANNELS[:4]
+# Rims that cut are told apart, as each is a smooth function where their smallest has kinks.
+RIMS = slice(6, 10)
+_RIMS_APART = 3
 CURVES = ("image_height", "half_x", "centre_v", "half_v")
 
 GRID = 97
@@ -52,10 +57,10 @@ LARGEST_ANGLE = np.radians(89.0)
 _BOX_ANGLES = 25
 _BOX_TERMS = 5
 _CURVE_STEPS = 129
-FIELDS = 17
+FIELDS = 25
 # Change of sign of the channels when the picture is mirrored in x, and in y.
-_ODD_IN_X = np.array([-1, 1, -1, 1, -1, 1, 1, 1, 1.0])
-_ODD_IN_Y = np.array([1, -1, 1, -1, 1, -1, 1, 1, 1.0])
+_ODD_IN_X = np.array([-1, 1, -1, 1, -1, 1, 1, 1, 1, 1, 1.0])
+_ODD_IN_Y = np.array([1, -1, 1, -1, 1, -1, 1, 1, 1, 1, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +75,7 @@ class PupilTables:
         `CURVES` over the angle, mm.
     field_step : float
         Angle between tables, radians; the first one is at 0.
-    tables : ndarray of float32, shape (F, N, N, 9)
+    tables : ndarray of float32, shape (F, N, N, 11)
         `CHANNELS`; rows along v, columns along x, both from -1 to 1 in units of
         ``(1 + MARGIN)`` half boxes.
     chromatic : ndarray of float32, shape (W, F, N, N, 4)
@@ -124,7 +129,7 @@ class PupilTables:
 
         Returns
         -------
-        ndarray of shape (M, 9)
+        ndarray of shape (M, 11)
             `CHANNELS`, with the full `image_y`.
         """
         height, half_x, centre, half_v = np.moveaxis(self.curves_at(angle), -1, 0)
@@ -152,7 +157,7 @@ class PupilTables:
         # All that passes is inside the box: beyond the table rays are blocked.
         outside = np.maximum(np.maximum(np.abs(at_x), np.abs(at_v)) - 1.0, 0.0)
         beyond = outside > 0.0
-        values[beyond, 6] = np.minimum(values[beyond, 6], 0.0) - outside[beyond]
+        values[beyond, 9] = np.minimum(values[beyond, 9], 0.0) - outside[beyond]
         return values
 
 
@@ -205,8 +210,9 @@ def build_pupil_tables(
             progress(share)
 
     limit = min(np.radians(configuration.half_field_deg) * FIELD_MARGIN, LARGEST_ANGLE)
-    curves = _box_curves(configuration, limit, wavelength, lambda s: report(0.4 * s))
-    tracer = _FieldTracer(configuration, limit / (_CURVE_STEPS - 1), curves, coating)
+    curves, beams = _box_curves(configuration, limit, wavelength, lambda s: report(0.4 * s))
+    rims = limiting_rims(configuration, beams[::3], wavelength, _RIMS_APART)
+    tracer = _FieldTracer(configuration, limit / (_CURVE_STEPS - 1), curves, rims, coating)
     angles = np.linspace(0.0, limit, FIELDS)
     layers = []
     for done, angle in enumerate(angles):
@@ -232,9 +238,9 @@ def build_pupil_tables(
 
 
 def _box_curves(configuration, limit, wavelength, report):
-    """half_x, centre_v, half_v on the fine steps, shape (K, 3)."""
+    """half_x, centre_v, half_v on the fine steps, shape (K, 3); angles and boxes found."""
     angles = np.linspace(0.0, limit, _BOX_ANGLES)
-    found, boxes = [], []
+    found, boxes, beams = [], [], []
     for done, angle in enumerate(angles):
         report(done / len(angles))
         box = passing_box(configuration, angle, wavelength)
@@ -243,6 +249,7 @@ def _box_curves(configuration, limit, wavelength, report):
             break
         half_x, low, high = box
         found.append(angle)
+        beams.append((angle, box))
         boxes.append((half_x, 0.5 * (low + high), 0.5 * (high - low)))
     if not boxes:
         raise PrescriptionError("no ray of the axial beam gets through the lens")
@@ -272,15 +279,16 @@ def _box_curves(configuration, limit, wavelength, report):
     curves[:, 0] *= max(1.0, (boxes[:, 0] / fitted[:, 0]).max())
     reach = np.abs(boxes[:, 1] - fitted[:, 1]) + boxes[:, 2]
     curves[:, 2] *= max(1.0, (reach / fitted[:, 2]).max())
-    return curves
+    return curves, beams
 
 
 class _FieldTracer:
     """Traces tables of single fields, given the curves of the box."""
 
-    def __init__(self, configuration, step, boxes, coating):
+    def __init__(self, configuration, step, boxes, rims, coating):
         self.configuration = configuration
         self.step = step
+        self.rims = rims
         self.coating = coating
         self.curves = np.zeros((len(boxes), len(CURVES)))
         self.curves[:, 1:] = boxes
@@ -306,7 +314,7 @@ class _FieldTracer:
         return heights
 
     def table(self, angle, grid, wavelength):
-        """Trace the table of a field, shape (grid, grid, 9)."""
+        """Trace the table of a field, shape (grid, grid, 11)."""
         configuration = self.configuration
         height, half_x, centre, half_v = self.plain.curves_at(angle)
         axis = np.linspace(-1.0 - MARGIN, 1.0 + MARGIN, grid)
@@ -318,7 +326,7 @@ class _FieldTracer:
             transmission=True, coating=self.coating,
         )  # fmt: skip
         known = traced.reached & (traced.status < RayStatus.MISSED) & (traced.directions[:, 2] > 0)
-        front, rear, stop = clearances(configuration, traced.hits)
+        inside, stop = clearances(configuration, traced.hits, self.rims)
         values = np.zeros((len(x), len(CHANNELS)))
         values[:, :2] = traced.at_plane(configuration.sensor)
         values[:, 1] -= height
@@ -326,8 +334,9 @@ class _FieldTracer:
             traced.directions[:, :2] / np.where(known, traced.directions[:, 2], 1.0)[:, None]
         )
         values[:, 4:6] = stop
-        values[:, 6], values[:, 7] = front, rear
-        values[:, 8] = traced.transmission
+        values[:, RIMS] = 1.0
+        values[:, RIMS.stop - inside.shape[1] : RIMS.stop] = inside
+        values[:, 10] = traced.transmission
         shape = (grid, len(half))
         values = _continued(values.reshape(*shape, -1), known.reshape(shape))
         mirrored = values[:, :0:-1] * _ODD_IN_X
@@ -340,7 +349,7 @@ def _continued(values, known):
         return values
     if not known.any():
         values = np.zeros_like(values)
-        values[..., 6:8] = -1.0
+        values[..., RIMS] = -1.0
         return values
     missing = ~known
     values = np.where(known[..., None], values, 0.0)
@@ -367,11 +376,11 @@ def _continued(values, known):
         values[new] = total[new] / count[new][:, None]
         reliable = reliable | new
     # Where total reflection ends the beam inside all rims, the rim is halfway to the lost ray.
-    lost = missing & (values[..., 6:8].min(axis=-1) > 0.0)
-    values[lost, 7] = -np.abs(values[lost, 7])
+    lost = missing & (values[..., RIMS].min(axis=-1) > 0.0)
+    values[lost, 9] = -np.abs(values[lost, 9])
     # No light where no ray is known, however the slopes went on.
-    values[..., 7] = np.where(missing, np.minimum(values[..., 7], -1e-3), values[..., 7])
-    values[missing, 8] = np.clip(values[missing, 8], 0.0, 1.0)
+    values[..., 9] = np.where(missing, np.minimum(values[..., 9], -1e-3), values[..., 9])
+    values[missing, 10] = np.clip(values[missing, 10], 0.0, 1.0)
     return values
 
 

@@ -1,20 +1,25 @@
 """Where the rays of axial points go behind a lens: the ray map.
 
 The image of an axial point is made of rays that lie in planes through the axis. Behind the lens
-they are straight lines, told by a height and a slope; which ray it is, is told by its *stop
-fraction* sigma: the height at which it meets the stop over the stop's wide-open radius. The
-object is told by its *vergence* V, 1 / distance to the paraxial entrance pupil; 0 at infinity.
+they are straight lines, told by a height and a slope. Which ray it is, is told by its height p in
+the paraxial entrance pupil as a share s of the *reach* P(V), a height that no ray beyond gets
+through. (The height in the stop would not tell rays apart: in fast lenses it turns back before the
+pupil ends.) The object is told by its *vergence* V, 1 / distance to the entrance pupil; 0 at
+infinity.
 
-Near the axis height and slope are ``sigma (c0 + c1 V)``. The map stores these two coefficients
-apart and, on a grid over wavelength, V and sigma, only what the real ray adds to them. The
-aberrations are smooth over V and sigma, so that a small grid gives them to many digits, and
-they keep their digits in single precision next to heights that are a thousand times larger.
+Near the axis height and slope are ``p (c0 + c1 V)``. The map stores these two coefficients apart
+and, on a grid over wavelength, V and s, only what the real ray adds to them. The aberrations are
+smooth over V and s, so that a small grid gives them to many digits, and they keep their digits in
+single precision next to heights that are a thousand times larger.
 
-Energy: a point radiates evenly in all directions, so the rays up to sigma carry their solid angle.
-It is stored as an *effective pupil radius* g, with ``pi g^2 V^2`` the solid angle; at infinity g is
-the height of the ray itself. With Fresnel losses each ray counts with what it brings through.
+Further values of each ray on the same grid:
 
-Rims other than the stop are told by the sigma at which each begins to block.
+- *energy radius* g: a point radiates evenly in all directions, so the rays up to s carry their
+  solid angle ``pi g^2 V^2``; at infinity g is p. With Fresnel losses each ray counts with what
+  it brings through. Stored less p.
+- *stop fraction*: the height in the stop over the stop's wide-open radius. A stop closed to a share
+  of its radius blocks what is above it.
+- for each rim that blocks anything: the height there over the rim's radius.
 
 Lengths are in mm, z from the vertex of surface 1. A lens with cylinders is taken in its y meridian.
 """
@@ -22,6 +27,10 @@ Lengths are in mm, z from the vertex of surface 1. A lens with cylinders is take
 from dataclasses import dataclass, fields
 
 import numpy as np
+
+# Rays between which the edges of the pupil are looked for.
+_EDGE_RAYS = 513
+HEIGHT, SLOPE, ENERGY, STOP = range(4)
 
 
 @dataclass(frozen=True)
@@ -37,34 +46,31 @@ class RayMap:
         Where heights are told: the z of the infinity focus of the reference wavelength.
     pupil : float
         The z of the paraxial entrance pupil of the reference wavelength.
+    pupil_radius : float
+        Its radius, wide open.
+    reach : ndarray of shape (3,)
+        P(V), lowest power first.
     reference : ndarray of shape (2, 2)
         Paraxial coefficients of the reference wavelength: rows height and slope, columns c0, c1.
     paraxial : ndarray of shape (L, 2, 2)
         The same of each wavelength.
-    pupil_radius : float
-        Paraxial, wide open.
-    residuals : ndarray of float32, shape (3, L, K, M)
-        What is to be added to the paraxial height and slope, and to ``sigma pupil_radius``, over
-        sigma from 0 to 1.
-    limits : ndarray of float32, shape (L, K, S + 1)
-        Sigma at which each rim blocks, and beyond which rays miss a surface or are totally
-        reflected; the stop itself stands with 1.
+    values : ndarray of float32, shape (4 + rims, L, K, M)
+        Height and slope less the paraxial ones, energy radius less p, stop fraction, and the
+        height over each rim; over s from 0 to 1.
+    limits : ndarray of shape (L, K)
+        The s beyond which rays miss a surface or are totally reflected.
     """
 
     wavelengths_nm: np.ndarray
     vergences: np.ndarray
     plane: float
     pupil: float
+    pupil_radius: float
+    reach: np.ndarray
     reference: np.ndarray
     paraxial: np.ndarray
-    pupil_radius: float
-    residuals: np.ndarray
+    values: np.ndarray
     limits: np.ndarray
-
-    @property
-    def fractions(self):
-        """Sigma of the grid, shape (M,)."""
-        return np.linspace(0.0, 1.0, self.residuals.shape[-1])
 
     def vergence(self, object_z):
         """Vergence of an axial point.
@@ -80,8 +86,8 @@ class RayMap:
         """
         return 1.0 / (self.pupil - np.asarray(object_z, dtype=np.float64))
 
-    def rays(self, vergence, stop_fraction=1.0, count=1024):
-        """Rays of one axial point that get through, evenly spaced over the stop.
+    def rays(self, vergence, stop_fraction=1.0, count=1025):
+        """Rays of one axial point that get through, evenly spaced over the pupil.
 
         Parameters
         ----------
@@ -95,34 +101,22 @@ class RayMap:
         Returns
         -------
         height, slope, energy_radius : ndarray of shape (L, count)
-            At `plane`, mm; tangent; effective pupil radius, mm, rising.
+            At `plane`, mm; tangent; rising. If a ring of the pupil is blocked, its two edges are
+            neighbours with the same energy radius.
         """
         weights, nodes = lagrange_weights(self.vergences, vergence)
-        residuals = np.tensordot(self.residuals[:, :, nodes].astype(float), weights, (2, 0))
-        ends = self.open_fraction(vergence, stop_fraction)
-        sigma = ends[:, None] * np.linspace(0.0, 1.0, count)
-        height, slope, radius = _interpolate_odd(residuals, sigma)
+        values = np.tensordot(self.values[:, :, nodes].astype(np.float64), weights, (2, 0))
+        limits = np.tensordot(self.limits[:, nodes], weights, (1, 0))
+        share, gaps = _open_shares(values, limits, stop_fraction, count)
+        height, slope, radius = interpolate_odd(values[: ENERGY + 1], share)
+        across = share * np.polynomial.Polynomial(self.reach)(self._inside(vergence))
         linear = self.paraxial @ np.array([1.0, vergence])
-        height += sigma * linear[:, 0, None]
-        slope += sigma * linear[:, 1, None]
-        radius += sigma * self.pupil_radius
-        return height, slope, np.maximum.accumulate(np.maximum(radius, 0.0), axis=1)
-
-    def open_fraction(self, vergence, stop_fraction=1.0):
-        """Largest sigma that gets through, by wavelength.
-
-        Parameters
-        ----------
-        vergence : float
-        stop_fraction : float
-
-        Returns
-        -------
-        ndarray of shape (L,)
-        """
-        weights, nodes = lagrange_weights(self.vergences, vergence)
-        limits = np.tensordot(self.limits[:, nodes].astype(float), weights, (1, 0))
-        return np.clip(limits.min(axis=1), 1.0e-6, min(1.0, stop_fraction))
+        height += across * linear[:, 0, None]
+        slope += across * linear[:, 1, None]
+        square = np.maximum(radius + across, 0.0) ** 2
+        steps = np.maximum(np.diff(square, axis=1, prepend=0.0), 0.0)
+        steps[gaps] = 0.0
+        return height, slope, np.sqrt(np.cumsum(steps, axis=1))
 
     def focus_plane(self, vergence):
         """Return the z of the paraxial image of an axial point, reference wavelength.
@@ -139,6 +133,9 @@ class RayMap:
         height, slope = self.reference @ np.array([1.0, vergence])
         return self.plane - height / slope if slope else np.inf
 
+    def _inside(self, vergence):
+        return min(max(vergence, 0.0), self.vergences[-1])
+
     @classmethod
     def blend(cls, maps, weights):
         """Weighted mean of the maps of neighbouring settings of one lens.
@@ -146,7 +143,7 @@ class RayMap:
         Parameters
         ----------
         maps : sequence of RayMap
-            Of the same wavelengths and vergences.
+            Of the same wavelengths, vergences and rims.
         weights : sequence of float
 
         Returns
@@ -155,53 +152,53 @@ class RayMap:
         """
 
         def mean(name):
-            values = [
-                weight * getattr(each, name) for each, weight in zip(maps, weights, strict=True)
-            ]
+            values = [w * getattr(each, name) for each, w in zip(maps, weights, strict=True)]
             return sum(values[1:], values[0])
 
-        names = [field.name for field in fields(cls)]
-        return cls(**{name: mean(name) for name in names})
+        return cls(**{field.name: mean(field.name) for field in fields(cls)})
 
 
-def lagrange_weights(nodes, at):
-    """Weights of cubic interpolation between the four nearest of some nodes.
+def lagrange_weights(nodes, at, count=4):
+    """Weights of polynomial interpolation between the nearest of some nodes.
 
     Parameters
     ----------
     nodes : ndarray of shape (K,)
-        Rising, at least four.
+        Rising.
     at : float
         Clamped to the nodes' range.
+    count : int
+        How many nodes take part, even or all.
 
     Returns
     -------
-    weights : ndarray of shape (4,)
+    weights : ndarray of shape (count,)
     chosen : slice
     """
     at = float(np.clip(at, nodes[0], nodes[-1]))
-    first = int(np.clip(np.searchsorted(nodes, at) - 2, 0, len(nodes) - 4))
-    near = nodes[first : first + 4]
+    first = int(np.clip(np.searchsorted(nodes, at) - count // 2, 0, len(nodes) - count))
+    near = nodes[first : first + count]
     weights = [
-        np.prod(np.delete(at - near, i)) / np.prod(np.delete(near[i] - near, i)) for i in range(4)
+        np.prod(np.delete(at - near, i)) / np.prod(np.delete(near[i] - near, i))
+        for i in range(count)
     ]
-    return np.array(weights), slice(first, first + 4)
+    return np.array(weights), slice(first, first + count)
 
 
-def _interpolate_odd(values, sigma):
+def interpolate_odd(values, share):
     """Cubic interpolation of odd functions on an even grid over [0, 1].
 
     Parameters
     ----------
     values : ndarray of shape (C, L, M)
-    sigma : ndarray of shape (L, n)
+    share : ndarray of shape (L, n)
 
     Returns
     -------
     ndarray of shape (C, L, n)
     """
     last = values.shape[-1] - 1
-    place = sigma * last
+    place = share * last
     first = np.clip(place.astype(np.int64) - 1, -1, last - 3)
     t = place - first
     weights = (
@@ -210,10 +207,43 @@ def _interpolate_odd(values, sigma):
         -t * (t - 1.0) * (t - 3.0) / 2.0,
         t * (t - 1.0) * (t - 2.0) / 6.0,
     )
-    rows = np.arange(len(sigma))[:, None]
-    total = np.zeros((len(values), *sigma.shape))
+    rows = np.arange(len(share))[:, None]
+    total = np.zeros((len(values), *share.shape))
     for shift, weight in enumerate(weights):
         index = first + shift
-        weight = np.where(index < 0, -weight, weight)
-        total += values[:, rows, np.abs(index)] * weight
+        total += values[:, rows, np.abs(index)] * np.where(index < 0, -weight, weight)
     return total
+
+
+def _open_shares(values, limits, stop_fraction, count):
+    """Places of rays that get through, and where a blocked ring lies before one of them."""
+    colors = values.shape[1]
+    grid = np.linspace(0.0, 1.0, _EDGE_RAYS)
+    found = interpolate_odd(values[STOP:], np.broadcast_to(grid, (colors, _EDGE_RAYS)))
+    found[0] /= stop_fraction
+    # Above 1 where anything blocks.
+    blocked = np.maximum(found.max(axis=0), grid / np.minimum(limits, 1.0)[:, None])
+    share = np.empty((colors, count))
+    gaps = np.zeros((colors, count), dtype=bool)
+    for i in range(colors):
+        edges = _crossings(grid, blocked[i] - 1.0)
+        lengths = edges[1::2] - edges[::2]
+        parts = np.maximum(2, np.floor(count * lengths / lengths.sum()).astype(int))
+        parts[np.argmax(parts)] += count - parts.sum()
+        share[i] = np.concatenate(
+            [np.linspace(*edges[2 * k : 2 * k + 2], n) for k, n in enumerate(parts)]
+        )
+        gaps[i, np.cumsum(parts)[:-1]] = True
+    return share, gaps
+
+
+def _crossings(grid, level):
+    """Return the ends of the stretches on which a function is not above 0: from, to, from, to."""
+    inside = level <= 0.0
+    # The axis is always open: a closed stop still has its middle.
+    inside[0] = True
+    turns = np.flatnonzero(inside[1:] != inside[:-1])
+    rise = level[turns + 1] - level[turns]
+    t = np.divide(-level[turns], rise, out=np.ones_like(rise), where=rise != 0.0)
+    places = grid[turns] + np.clip(t, 0.0, 1.0) * grid[1]
+    return np.concatenate([[0.0], places, [1.0] if inside[-1] else []])

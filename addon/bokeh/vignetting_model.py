@@ -96,12 +96,14 @@ def transmission(rims, points, field, width=0.0):
     points = np.asarray(points, dtype=float)
     field = np.asarray(field, dtype=float)
     passing = np.ones(points.shape[:-1])
-    width = max(width, 1e-12)
     for rim in rims:
+        # Edges of a row of members are as wide as members are apart: their sum has no steps.
+        apart = np.hypot(*field) * abs(rim.shift) / rim.members if rim.members > 1 else 0.0
+        edge = max(width, apart, 1e-12)
         cleared = 0.0
         for member in range(1, rim.members + 1):
             offset = points - field * (rim.shift * member / rim.members)
             inside = rim.radius - np.hypot(offset[..., 0], offset[..., 1])
-            cleared = cleared + np.clip(0.5 + inside / width, 0.0, 1.0)
+            cleared = cleared + np.clip(0.5 + inside / edge, 0.0, 1.0)
         passing = passing * (cleared / rim.members)
     return passing

@@ -66,7 +66,7 @@ def _run(words, program, prepare, finish):
     except InputError as error:
         print(f"{program}: {error}", file=sys.stderr)
         if words_of.wants_json(words):
-            print(json_text(_errors(error)))
+            print(json_text(_errors(error, words[0] if words else None)))
         return 2
     console = Console(arguments.verbose)
     try:
@@ -90,7 +90,7 @@ def _carry_out(arguments, console, prepare):
         if not isinstance(error, _REFUSALS):
             console.show_chatter()
         if arguments.json:
-            console.answer(json_text(_errors(error)))
+            console.answer(json_text(_errors(error, arguments.command)))
         return 2 if isinstance(error, _REFUSALS) else 1
     except Exception as error:
         # Not foreseen: everything that helps to find the cause is shown.
@@ -98,7 +98,7 @@ def _carry_out(arguments, console, prepare):
         console.err.write("".join(traceback.format_exception(error)))
         console.show_chatter()
         if arguments.json:
-            console.answer(json_text(_errors(error)))
+            console.answer(json_text(_errors(error, arguments.command)))
         return 1
     if arguments.json:
         console.answer(json_text(answer))
@@ -131,7 +131,7 @@ def _lines(error):
     ]
 
 
-def _errors(error):
+def _errors(error, command):
     if isinstance(error, LensFileError):
         return {
             "errors": [found.as_json() for found in error.findings],
@@ -139,4 +139,7 @@ def _errors(error):
         }
     name = type(error).__name__.removesuffix("Error")
     code = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
-    return {"errors": [{"code": code, "message": " ".join(str(error).split())}], "warnings": []}
+    # A lens' findings have a path, so that a caller reads both alike.
+    path = {"path": ""} if command == "lens" else {}
+    told = {"code": code, **path, "message": " ".join(str(error).split())}
+    return {"errors": [told], "warnings": []}

@@ -28,7 +28,7 @@ class Console:
         _flush()
         self._kept = os.dup(1), os.dup(2)
         out, err = os.dup(1), os.dup(2)
-        self.out = os.fdopen(out, "w", encoding="utf-8")
+        self.out = os.fdopen(out, "w", encoding="utf-8", errors="replace")
         self.err = os.fdopen(err, "w", encoding="utf-8", errors="replace")
         self._chatter = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the console)
         if verbose:
@@ -46,8 +46,14 @@ class Console:
 
     def answer(self, text):
         """Print a line on stdout."""
-        self.out.write(text + "\n")
-        self.out.flush()
+        try:
+            self.out.write(text + "\n")
+            self.out.flush()
+        except BrokenPipeError:
+            # Who reads has seen enough (`| head`); what is left goes nowhere.
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self.out.fileno())
+            os.close(nowhere)
 
     def say(self, text):
         """Print a line on stderr."""

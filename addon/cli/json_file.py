@@ -7,7 +7,9 @@ from ..files.whole_file import whole_file
 
 def json_text(value, indent=None):
     """Return a value as JSON; numbers that are not finite become null."""
-    return json.dumps(_finite(value), indent=indent, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(_finite(value), indent=indent, ensure_ascii=False, allow_nan=False)
+    # Names of files may hold bytes that are no text: half surrogates, which JSON writes as \udcff.
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def write_json(path, value):

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from ..optics.prescription import Diaphragm, FocusGroup, ZoomPosition
 from .surface_tables import NOT_NEGATIVE, POSITIVE, check_asphere, check_rim
-from .toml_table import Range, Table, key_path, nearest, show
+from .toml_table import Range, Table, key_path, show
 
 LENS_KEYS = (
     "name",
@@ -52,7 +52,6 @@ def read_lens_table(document):
     """
     table = document.table("lens", LENS_KEYS) if document.require("lens") else None
     if table is None:
-        table = Table({}, "lens", document.findings)
         return {"name": None} | dict.fromkeys(("focal_length", "f_number", "half_field_deg"))
     return {
         "name": _name(table),
@@ -118,8 +117,12 @@ def read_focus(document, surface_tables):
         if name is None or surface_tables is None:
             continue
         if name not in surface_tables.numbers:
-            message = f"the focus group names surface {show(name)}"
-            table.add("E21", key, message + _known_ids(name, surface_tables))
+            hint = table.hint(name, surface_tables.numbers)
+            table.add(
+                "E21",
+                key,
+                f"the focus group names {show(name)}, an id that no surface has{hint}",
+            )
         else:
             ends.append(surface_tables.numbers[name])
     if len(ends) < len(FOCUS_KEYS):
@@ -204,8 +207,13 @@ def _position(table, nominal, surface_tables):
         thicknesses[name] = inner.number(name, NOT_NEGATIVE)
         known = known and thicknesses[name] is not None
         if surface_tables is not None and name not in surface_tables.numbers:
-            message = f"zoom position {_title(table)} sets the distance behind {show(name)}"
-            inner.add("E21", name, message + _known_ids(name, surface_tables))
+            hint = inner.hint(name, surface_tables.numbers)
+            inner.add(
+                "E21",
+                name,
+                f"zoom position {_title(table)} sets the distance behind {show(name)}, an id that "
+                f"no surface has{hint}",
+            )
             known = False
     if stop is not None and surface_tables is not None:
         for surface in surface_tables.surfaces:
@@ -263,10 +271,3 @@ def _title(table):
     label = table.values.get("label")
     number = table.path[len("zoom[") : -1]
     return f"{number} ({show(label)})" if isinstance(label, str) else number
-
-
-def _known_ids(name, surface_tables):
-    near = nearest(name, surface_tables.numbers)
-    if near:
-        return f", an id that no surface has; did you mean {show(near)}?"
-    return ", an id that no surface has"

@@ -14,7 +14,7 @@ from ..optics.glass import REFERENCE_WAVELENGTH_NM, Air
 from ..optics.media import indices
 from ..optics.paraxial import LEAST_POWER, entrance_pupil, first_order, power
 from ..optics.prescription import Configuration
-from ..optics.surfaces import sag
+from ..optics.surfaces import FAR, sag
 from ..optics.trace import Rays, trace
 
 # Allowed differences between computed and nominal values, as shares.
@@ -29,7 +29,7 @@ LEAST_OVERLAP = 1.0e-9
 SMALLEST_OPENING, LARGEST_OPENING = 1.0e-9, 1.0e9
 # Rays along the diameter of the first surface, rounds of search between two of them, and rays along
 # the side of a square grid on it.
-FAN, ROUNDS, GRID = 401, 3, 41
+FAN, ROUNDS, GRID = 101, 3, 31
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,8 @@ def check_position(position, findings):
     """
     before = len(findings.errors)
     _check_power(position, findings)
-    _check_opening(position, findings)
+    openings = _check_pupil(position, findings)
+    lit = _check_rays(position, openings, findings)
     _check_rims(position, findings)
     if len(findings.errors) > before:
         return
@@ -138,7 +139,8 @@ def check_position(position, findings):
         findings.add("E24", position.whole(), str(error))
         return
     _check_nominal(position, values, findings)
-    _check_field(position, findings)
+    if not lit:
+        _check_field(position, findings)
 
 
 def _check_power(position, findings):
@@ -157,9 +159,11 @@ def _check_power(position, findings):
         findings.add("E24", position.whole(), f"the prescription has {what}{where}")
 
 
-def _check_opening(position, findings):
+def _check_pupil(position, findings):
+    """Return the radius of the entrance pupil in each meridian where there is one."""
     configuration = position.configuration
     stop = configuration.stop
+    openings = {}
     for meridian in _meridians(configuration):
         try:
             _, diameter = entrance_pupil(configuration, meridian=meridian)
@@ -175,36 +179,56 @@ def _check_opening(position, findings):
                 f"space; it must be {SMALLEST_OPENING:g} to {LARGEST_OPENING:g} mm",
             )
             continue
-        origin = [0.0, height, 0.0] if meridian == "y" else [height, 0.0, 0.0]
-        rays = Rays(np.array([origin]), np.array([[0.0, 0.0, 1.0]]))
-        traced = trace(configuration, rays, REFERENCE_WAVELENGTH_NM, clip=False)
-        if not traced.reached[0]:
-            number = int(traced.surface[0])
-            findings.add(
-                "E25",
-                position.whole(number),
-                f"the axial ray at full opening, {height:.6g} mm from the axis, fails at surface "
-                f"{number}: it misses the surface or is totally reflected; "
-                "check its radius, or close the stop",
-            )
+        openings[meridian] = height
+    return openings
+
+
+def _check_rays(position, openings, findings):
+    """Check the axial rays at full opening; tell whether light of the checked field was seen."""
+    configuration = position.configuration
+    half_field = configuration.half_field_deg
+    rays = [
+        ([[0.0, height, 0.0] if meridian == "y" else [height, 0.0, 0.0]], [[0.0, 0.0, 1.0]])
+        for meridian, height in openings.items()
+    ]
+    if half_field is not None:
+        heights = _fan(configuration)
+        rays.append(_beam(configuration, 0.0 * heights, heights, CHECKED_FIELD * half_field))
+    if not rays:
+        return False
+    # One trace for both: the time goes into the steps from surface to surface.
+    origins, directions = (np.concatenate(parts) for parts in zip(*rays, strict=True))
+    traced = trace(configuration, Rays(origins, directions), REFERENCE_WAVELENGTH_NM, clip=False)
+    for number, height in enumerate(openings.values()):
+        if traced.reached[number]:
+            continue
+        surface = int(traced.surface[number])
+        findings.add(
+            "E25",
+            position.whole(surface),
+            f"the axial ray at full opening, {height:.6g} mm from the axis, fails at surface "
+            f"{surface}: it misses the surface or is totally reflected; "
+            "check its radius, or close the stop",
+        )
+    return half_field is None or bool(traced.passed[len(openings) :].any())
 
 
 def _check_rims(position, findings):
     surfaces = position.configuration.surfaces
     noted = {warning.path for warning in findings.warnings if warning.code == "W04"}
+    with np.errstate(all="ignore"):
+        gaps = _rim_gaps(surfaces)
     for number, (this, following) in enumerate(zip(surfaces, surfaces[1:], strict=False), 1):
         path = position.thickness(number)
         rim = min(this.semi_diameter, following.semi_diameter)
-        with np.errstate(all="ignore"):
-            gaps = this.thickness + _rim_sags(following, rim) - _rim_sags(this, rim)
-        overlap = -float(np.min(gaps))
+        overlap = -gaps[number - 1]
         if path in noted or not (math.isfinite(overlap) and overlap > LEAST_OVERLAP):
             continue
         findings.add(
             "W04",
             path,
             f"surfaces {number} and {number + 1} overlap by {overlap:.4g} mm at {rim:.6g} mm "
-            "from the axis; the distance or a semi-diameter is wrong",
+            "from the axis; check the distance and the semi-diameters",
         )
 
 
@@ -264,10 +288,9 @@ def light_passes(configuration, field_deg):
     -------
     bool
     """
-    rim = configuration.surfaces[0].semi_diameter
-    heights = np.linspace(-rim, rim, FAN)
+    heights = _fan(configuration)
     for _ in range(ROUNDS):
-        traced = _beam(configuration, np.zeros_like(heights), heights, field_deg)
+        traced = _trace_beam(configuration, np.zeros_like(heights), heights, field_deg)
         if traced.passed.any():
             return True
         # The beam may be thinner than the fan is dense: look on both sides of the ray that got
@@ -277,18 +300,37 @@ def light_passes(configuration, field_deg):
         best = farthest[np.argmin(height)]
         near = heights[max(best - 1, 0)], heights[min(best + 1, FAN - 1)]
         heights = np.linspace(*near, FAN)
+    if not _has_cylinders(configuration):
+        # Round rims about the axis are symmetric to the meridian of the field: a beam that gets
+        # through has rays in it.
+        return False
+    rim = _front_rim(configuration)
     x, y = np.meshgrid(*2 * [np.linspace(-rim, rim, GRID)])
     inside = np.hypot(x, y) <= rim
-    return bool(_beam(configuration, x[inside], y[inside], field_deg).passed.any())
+    return bool(_trace_beam(configuration, x[inside], y[inside], field_deg).passed.any())
+
+
+def _fan(configuration):
+    rim = _front_rim(configuration)
+    return np.linspace(-rim, rim, FAN)
+
+
+def _front_rim(configuration):
+    # No ray meets a surface farther out.
+    return min(configuration.surfaces[0].semi_diameter, FAR)
+
+
+def _trace_beam(configuration, x, y, field_deg):
+    rays = Rays(*_beam(configuration, x, y, field_deg))
+    return trace(configuration, rays, REFERENCE_WAVELENGTH_NM)
 
 
 def _beam(configuration, x, y, field_deg):
-    """Trace parallel rays through points of the first surface."""
+    """Origins and directions of parallel rays through points of the first surface."""
     angle = math.radians(field_deg)
     z = np.nan_to_num(sag(configuration.surfaces[0], x, y), nan=0.0)
     directions = np.tile([0.0, math.sin(angle), math.cos(angle)], (len(x), 1))
-    rays = Rays(np.stack([x, y, z], axis=-1), directions)
-    return trace(configuration, rays, REFERENCE_WAVELENGTH_NM)
+    return np.stack([x, y, z], axis=-1), directions
 
 
 def _has_cylinders(configuration):
@@ -306,9 +348,27 @@ def _sags(surface, radii):
     )
 
 
-def _rim_sags(surface, rim):
-    """Sags where the rim crosses the meridians x and y."""
-    return np.array([sag(surface, rim, 0.0), sag(surface, 0.0, rim)])
+def _on_axes(radii):
+    """Points at some radii on the axes x (row 0) and y (row 1), shapes (2, N)."""
+    nowhere = np.zeros_like(radii)
+    return np.stack([radii, nowhere]), np.stack([nowhere, radii])
+
+
+def _rim_gaps(surfaces):
+    """Distances between neighbouring surfaces at the smaller of their rims, mm.
+
+    The smallest of the meridians x and y.
+    """
+    radii = [surface.semi_diameter for surface in surfaces]
+    rims = np.minimum(radii, [*radii[1:], radii[-1]])
+    sags = [
+        sag(surface, *_on_axes(np.array([before, rim])))
+        for surface, before, rim in zip(surfaces, [rims[0], *rims[:-1]], rims, strict=True)
+    ]
+    return [
+        float(np.min(this.thickness + following[:, 0] - here[:, 1]))
+        for this, here, following in zip(surfaces, sags, sags[1:], strict=False)
+    ]
 
 
 def _differs(value, wanted, tolerance):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ..optics.prescription import Surface
 from .material import read_material
 from .optical_checks import asphere_fault
-from .toml_table import Range, Table, nearest, show
+from .toml_table import Range, Table, show
 
 SURFACE_KEYS = (
     "id",
@@ -82,7 +82,7 @@ def read_surfaces(document):
     sound = None not in surfaces and all(
         error.code == "E05" or error.path.endswith("].id") for error in findings.errors[before:]
     )
-    return SurfaceTables(surfaces, numbers, sound and findings.left_out == 0)
+    return SurfaceTables(surfaces, numbers, sound)
 
 
 def check_rim(surface, semi_diameter, path, findings):
@@ -173,13 +173,11 @@ def _read_asphere(table):
     terms, complete = [], True
     for key in inner.values:
         if key not in ASPHERE_ORDERS:
-            near = nearest(key, ASPHERE_ORDERS)
-            hint = f"; did you mean {show(near)}?" if near else ""
             inner.add(
                 "E15",
                 key,
                 f"{show(key)} is no asphere key; they are a2_per_mm1, a4_per_mm3 ... "
-                f"a20_per_mm19, even orders only{hint}",
+                f"a20_per_mm19, even orders only{inner.hint(key, ASPHERE_ORDERS)}",
             )
             continue
         value = inner.number(key)
@@ -198,10 +196,8 @@ def _check_stops(rows, findings):
             "E12", "surface", f"surfaces {shown} are all stops; exactly one must have stop = true"
         )
     elif not stops and not unknown:
-        which = (
-            f"none of the surfaces 1 to {len(rows)}" if rows else "none, as there is no surface,"
-        )
-        findings.add("E12", "surface", f"{which} is the stop; exactly one must have stop = true")
+        none = f"none of the surfaces 1 to {len(rows)} is the stop" if rows else "there is no stop"
+        findings.add("E12", "surface", f"{none}; exactly one surface must have stop = true")
 
 
 def _read_ids(rows, tables):

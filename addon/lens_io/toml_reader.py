@@ -85,10 +85,10 @@ def parse_lens(content, file_name):
     values, reason = toml_document.parse(text)
     if values is None:
         raise LensFileError(file_name, [Finding("E02", "", f"this is not TOML: {reason}")])
-    findings = Findings()
+    findings = Findings(file_name)
     prescription = _read_document(values, findings)
     if findings.errors:
-        raise LensFileError(file_name, _listed(findings), findings.warnings)
+        findings.refuse()
     return LensFile(prescription, tuple(findings.warnings))
 
 
@@ -142,11 +142,3 @@ def _shown(value):
     if isinstance(value, dict):
         return "a table"
     return "an array" if isinstance(value, list) else show(value)
-
-
-def _listed(findings):
-    if not findings.left_out:
-        return findings.errors
-    last = findings.errors[-1]
-    more = f"{last.message}; {findings.left_out} more findings are not listed"
-    return [*findings.errors[:-1], Finding(last.code, last.path, more)]

@@ -8,36 +8,56 @@ import json
 import math
 import re
 from dataclasses import dataclass, field
+from itertools import islice
 
+from ..errors import LensFileError
 from .findings import Finding
 
-# Findings beyond this number are counted, not listed: a file with more is not a lens with
-# mistakes but something else.
-MOST_FINDINGS = 1000
+# With so many errors a file is not a lens with mistakes but something else.
+MOST_ERRORS = 1000
 # Characters of a text from the file that a message repeats.
 SHOWN_LENGTH = 40
 
 
+# Known texts that an unknown one is compared with.
+MOST_COMPARED = 100
+
+
 @dataclass
 class Findings:
-    """Errors and warnings of one file, in the order in which they were found."""
+    """Errors and warnings of one file, in the order in which they were found.
 
+    Parameters
+    ----------
+    file_name : str
+    errors, warnings : list of Finding
+    """
+
+    file_name: str
     errors: list[Finding] = field(default_factory=list)
     warnings: list[Finding] = field(default_factory=list)
-    left_out: int = 0
-
-    @property
-    def is_full(self):
-        """Whether further errors are counted only."""
-        return len(self.errors) >= MOST_FINDINGS
 
     def add(self, code, path, message):
-        """Note an error, or a warning if the code starts with W."""
+        """Note an error, or a warning if the code starts with W.
+
+        Raises
+        ------
+        LensFileError
+            If there are so many errors that reading on is of no use.
+        """
         kept = self.warnings if code.startswith("W") else self.errors
-        if len(kept) < MOST_FINDINGS:
-            kept.append(Finding(code, path, message))
-        else:
-            self.left_out += 1
+        kept.append(Finding(code, path, message))
+        if len(self.errors) >= MOST_ERRORS:
+            self.errors[-1] = Finding(
+                code,
+                path,
+                f"{message}; after {MOST_ERRORS} errors the rest of the file was not checked",
+            )
+            self.refuse()
+
+    def refuse(self):
+        """Raise a LensFileError with everything that was found."""
+        raise LensFileError(self.file_name, self.errors, self.warnings)
 
 
 @dataclass(frozen=True)
@@ -106,9 +126,12 @@ class Table:
         """Note keys that are not among the known ones (E05)."""
         for key in self.values:
             if key not in keys:
-                # Likeness takes time, which a finding that is not listed is not worth.
-                hint = "" if self.findings.is_full else _hint(key, keys)
-                self.add("E05", key, f"the key {show(key)} is not known{hint}")
+                self.add("E05", key, f"the key {show(key)} is not known{self.hint(key, keys)}")
+
+    def hint(self, text, known):
+        """Return the end of a message that suggests the known text nearest to another."""
+        near = nearest(text, known)
+        return f"; did you mean {show(near)}?" if near else ""
 
     def require(self, key):
         """Note a missing key (E06); tell whether it is there."""
@@ -263,12 +286,8 @@ def nearest(text, known):
 
     if len(text) > 2 * SHOWN_LENGTH:
         return None
-    return next(iter(get_close_matches(text, known, 1, 0.6)), None)
-
-
-def _hint(key, keys):
-    near = nearest(key, keys)
-    return f"; did you mean {show(near)}?" if near else ""
+    compared = islice(known, MOST_COMPARED)
+    return next(iter(get_close_matches(text, compared, 1, 0.6)), None)
 
 
 def _wrong_type(value, wanted):

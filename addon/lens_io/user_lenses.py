@@ -10,7 +10,6 @@ from pathlib import Path
 from ..errors import LensFileError, OutputError
 from ..files.whole_file import whole_file
 from .findings import Finding
-from .importers import ImportOptions, import_lens
 from .lens_shelf import unused_id
 from .library import ENDING
 from .toml_reader import parse_lens, read_lens
@@ -69,6 +68,9 @@ def import_into(folder, path, used_ids, options=None):
     OutputError
         If the folder cannot be written to.
     """
+    # Only who imports needs them; Blender starts sooner without.
+    from .importers import ImportOptions, import_lens
+
     path = Path(path)
     if path.suffix.lower() == ENDING:
         read = read_lens(path)

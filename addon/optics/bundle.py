@@ -79,6 +79,34 @@ class Bundle:
         for name, values in zip(KEPT, kept, strict=True):
             getattr(self, name)[:] = values
 
+    def state(self, places):
+        """Return positions in mm and unit directions of some rays.
+
+        Parameters
+        ----------
+        places : ndarray of int, shape (K,)
+
+        Returns
+        -------
+        positions, directions : ndarray of shape (K, 3)
+        """
+        block = self._buffer[: len(POSITION) + len(DIRECTION), places].T
+        return block[:, :3], block[:, 3:] / self.index
+
+    def park(self, places):
+        """Let rays run along the axis, where nothing can happen to them.
+
+        Parameters
+        ----------
+        places : ndarray of int
+        """
+        self.xy[:, places] = 0.0
+        self.lm[:, places] = 0.0
+        self.n[places] = np.copysign(self.index, self.n[places])
+        self.cosine[places] = self.n[places]
+        self.square[places] = self.index * self.index
+        self.slant[places] = 1.0
+
     def approach(self):
         """Move every ray to the point of its line that is nearest to the vertex.
 

@@ -192,7 +192,7 @@ def first_order(configuration, wavelength_nm=REFERENCE_WAVELENGTH_NM, meridian="
     # A stop that refracts may be taken as lying in front of or behind its own surface: a surface
     # neither moves nor enlarges what stands in its vertex plane.
     rear = ray_matrix(configuration, wavelength_nm, meridian, first=configuration.stop)
-    exit_pupil = _image_of_stop(rear[1, 1], -behind * rear[0, 1], configuration)
+    exit_pupil = _image_of_stop(rear[1, 1], -behind * float(rear[0, 1]), configuration)
     exp_z, exp_diameter = exit_pupil or (None, None)
     efl = -behind / c
     values = FirstOrder(
@@ -293,7 +293,8 @@ def _image_of_stop(scale, shift, configuration):
     scale, shift = float(scale), float(shift)
     if not (abs(scale) * LARGEST_PUPIL > 1.0 and math.isfinite(scale) and math.isfinite(shift)):
         return None
-    return shift / scale, 2.0 * radius / abs(scale)
+    pupil = shift / scale, 2.0 * radius / abs(scale)
+    return pupil if all(map(math.isfinite, pupil)) else None
 
 
 def _focusing_matrix(configuration, wavelength_nm, meridian):

@@ -198,6 +198,8 @@ def pupil_outline(configuration, source, directions=256, wavelength_nm=REFERENCE
         return PupilOutline(np.zeros(2), np.zeros((0, 2)), 0.0)
     coordinates, _ = grid_of(box, SEARCH_GRID)
     open_ = coordinates[passing(configuration, beam, coordinates, wavelength_nm)]
+    if not len(open_):
+        return PupilOutline(np.zeros(2), np.zeros((0, 2)), 0.0)
     # The open cell nearest to the centre of gravity: the centre itself may be blocked.
     centre = open_[np.argmin(np.sum((open_ - open_.mean(axis=0)) ** 2, axis=1))]
     reach = float(np.hypot(box[1] - box[0], box[3] - box[2]))

@@ -134,7 +134,7 @@ class Shape:
 
     def _slant_of_rim(self):
         """Return z of the normal at the rim with a margin for rounding; None on other shapes."""
-        sine = abs(self.curvature) * self._surface.semi_diameter
+        sine = abs(float(self.curvature)) * float(self._surface.semi_diameter)
         if not self.is_spherical or not 0.0 < sine < 1.0:
             return None
         return math.sqrt(1.0 - sine * sine) + 1.0e-13

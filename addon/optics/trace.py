@@ -21,6 +21,9 @@ from .surfaces import FAR, Shape, within_reach
 
 # Rays at a time: the working arrays stay in a core's second-level cache.
 CHUNK = 8192
+# While more than this share of a chunk is on its way, ended rays are carried along: that costs less
+# than to take the others out.
+WORTH_KEEPING = 0.7
 
 
 class RayStatus(IntEnum):
@@ -249,24 +252,24 @@ class _Chunk:
         self.hits = None if result.hits is None else result.hits[:, part]
         self.transmission = None if result.transmission is None else result.transmission[part]
         self.vertex = 0.0
+        self.alive = None
 
     def run(self, steps):
         bundle = self.bundle
         for order, step in enumerate(steps):
             bundle.z -= step.z - self.vertex
             self.vertex = step.z
-            self.meet(step)
+            if bundle.count:
+                self.meet(step)
             if self.hits is not None:
                 self.record(order)
             if bundle.count:
                 self.refract(step)
-        self.leave(slice(None))
+        self.leave()
 
     def meet(self, step):
         """Move rays to a surface; end those that do not find it or are outside its rim."""
         bundle = self.bundle
-        if not bundle.count:
-            return
         missed = step.shape.meet(bundle)
         if missed is None and step.shape.clears_rim(bundle):
             return
@@ -274,57 +277,83 @@ class _Chunk:
         limit = step.semi_diameter * step.semi_diameter
         if missed is None and squared.max() <= limit:
             return
+        outside = ~(squared <= limit)
         lost = ~(squared <= FAR * FAR)
         if missed is not None:
             lost |= missed
-        outside = ~(squared <= limit) & ~lost
+        outside &= ~lost
         if self.clip:
-            self.end(outside, step, RayStatus.BLOCKED, lost)
+            self.end(step, (RayStatus.MISSED, lost), (RayStatus.BLOCKED, outside))
             return
-        rows = self.rows(outside)
+        rows = self.rows(self.places(outside))
         rows = rows[self.surface[rows] == 0]
         self.surface[rows] = step.number
         self.status[rows] = RayStatus.BLOCKED
-        self.end(None, step, None, lost)
+        self.end(step, (RayStatus.MISSED, lost))
 
-    def end(self, ended, step, status, missed=None):
-        """Write down rays that go no further, and keep the others."""
-        gone = np.zeros(self.bundle.count, dtype=bool)
-        for chosen, why in ((ended, status), (missed, RayStatus.MISSED)):
-            if chosen is None or not chosen.any():
-                continue
-            rows = self.rows(chosen)
-            self.status[rows] = why
-            self.surface[rows] = step.number
-            self.reached[rows] = False
-            self.leave(chosen)
-            gone |= chosen
-        if gone.any():
-            self.bundle.keep(~gone)
+    def end(self, step, *fates):
+        """Write down rays that go no further, each fate with its mask, and go on without them."""
+        gone = []
+        for status, chosen in fates:
+            places = self.places(chosen)
+            if len(places):
+                rows = self.rows(places)
+                self.status[rows] = status
+                self.surface[rows] = step.number
+                self.reached[rows] = False
+                self.leave_ended(places, rows)
+                gone.append(places)
+        if gone:
+            self.retire(np.concatenate(gone))
 
-    def rows(self, chosen):
-        """Places in the chunk of some of the rays that are on their way."""
-        rows = self.bundle.rows
-        return np.flatnonzero(chosen) if rows is None else rows[chosen]
+    def retire(self, places):
+        """Leave rays where they do no harm, or all that have ended behind if they are many."""
+        alive = np.ones(self.bundle.count, dtype=bool) if self.alive is None else self.alive
+        alive[places] = False
+        if np.count_nonzero(alive) < WORTH_KEEPING * len(alive):
+            self.bundle.keep(alive)
+            self.alive = None
+        else:
+            self.bundle.park(places)
+            self.alive = alive
 
-    def leave(self, chosen):
-        """Write positions and directions of rays to the result."""
-        bundle = self.bundle
-        rows = slice(None) if bundle.rows is None and isinstance(chosen, slice) else None
-        if rows is None:
-            rows = bundle.rows if isinstance(chosen, slice) else self.rows(chosen)
-        for axis, name in enumerate(DIRECTION):
-            self.directions[rows, axis] = getattr(bundle, name)[chosen] / bundle.index
-        for axis, name in enumerate(POSITION):
-            self.points[rows, axis] = getattr(bundle, name)[chosen]
-        self.points[rows, 2] += self.vertex
-        if not isinstance(chosen, slice):
-            self.points[rows] = within_reach(self.points[rows])
+    def places(self, chosen):
+        """Places in the bundle of chosen rays that are on their way."""
+        return np.flatnonzero(chosen if self.alive is None else chosen & self.alive)
+
+    def rows(self, places):
+        """Places in the chunk of rays of the bundle."""
+        return places if self.bundle.rows is None else self.bundle.rows[places]
+
+    def leave(self):
+        """Write positions and directions of the rays on their way to the result."""
+        bundle, alive = self.bundle, self.alive
+        pairs = [(self.points, POSITION), (self.directions, DIRECTION)]
+        for result, names in pairs:
+            for axis, name in enumerate(names):
+                values, column = getattr(bundle, name), result[:, axis]
+                if names is DIRECTION and bundle.index != 1.0:
+                    values = values / bundle.index
+                elif name == "z":
+                    values = values + self.vertex
+                if bundle.rows is None:
+                    np.copyto(column, values, where=True if alive is None else alive)
+                elif alive is None:
+                    column[bundle.rows] = values
+                else:
+                    column[bundle.rows[alive]] = values[alive]
+
+    def leave_ended(self, places, rows):
+        """Write positions and directions of rays that have ended to the result."""
+        positions, directions = self.bundle.state(places)
+        positions[:, 2] += self.vertex
+        self.points[rows] = within_reach(positions)
+        self.directions[rows] = directions
 
     def record(self, order):
         """Keep the hit points; rays that have ended stay where they are."""
         ended = ~self.reached
-        self.leave(slice(None))
+        self.leave()
         self.hits[order] = self.points
         if order:
             missed = ended & (self.status != RayStatus.BLOCKED)
@@ -338,7 +367,7 @@ class _Chunk:
         # Of the cosine times index: below this there is no refracted ray.
         gain = step.behind * step.behind - step.before * step.before
         if gain < 0.0 and not bundle.square.min() > -gain:
-            self.end(~(bundle.square > -gain), step, RayStatus.TOTAL_REFLECTION)
+            self.end(step, (RayStatus.TOTAL_REFLECTION, ~(bundle.square > -gain)))
             if not bundle.count:
                 return
         if self.transmission is not None:

@@ -9,7 +9,7 @@ from ..optics.paraxial import first_order, image_distance
 from ..optics.pupil import pupil_rays
 from ..optics.trace import trace
 from ..sampling.spectrum import rgb_weights, spectrum_wavelengths
-from .style import QUIET, SMALL_SIZE, frame_diagram, frame_picture
+from .style import QUIET, SMALL_SIZE, frame_diagram, frame_picture, length
 
 _ROWS, _RADII = 200, 256
 _DISK_PIXELS = 256
@@ -18,6 +18,8 @@ _TRACED_PIXELS, _TRACED_GRID, _TRACED_WAVELENGTHS = 72, 301, 7
 _FOCUS_IN_FOCAL_LENGTHS = 40.0
 # Where the disks' lights are, in focus distances, and what they are called.
 DISK_LIGHTS = ((0.6, "in front of the focus"), (1.0, "in focus"), (4.0, "behind the focus"))
+# Share of the energy that a picture of a disk holds, and its margin: halos may reach far.
+_HELD, _MARGIN = 0.98, 1.15
 # Of an even disk's brightness, so that bright rims have room above.
 _EVEN_GRAY = 0.35
 
@@ -72,10 +74,9 @@ def draw_disks(axes_of_lights, configuration, profile):
             continue
         row = pattern_row(profile, share * focus, focus, configuration.f_number, _RADII)
         frame_picture(axes, f"{name}\n{_metres(share * focus)}")
-        # Nearly all of the energy: in focus a faint halo reaches far.
-        shown = 1.1 * _held_radius(row, 0.995)
-        axes.imshow(_disk(row, shown), extent=(-shown, shown, -shown, shown))
-        axes.set_xlabel(f"⌀ {_length(2.0 * shown / 1.1)}", fontsize=SMALL_SIZE, color=QUIET)
+        shown = _MARGIN * held_radius(row, _HELD)
+        axes.imshow(disk_picture(row, shown), extent=(-shown, shown, -shown, shown))
+        axes.set_xlabel(f"⌀ {length(2.0 * shown / _MARGIN)}", fontsize=SMALL_SIZE, color=QUIET)
 
 
 def draw_field_disks(axes_of_fields, configuration, fields_deg):
@@ -120,14 +121,31 @@ def displayed(density):
 def _show_traced(axes, configuration, source):
     """Draw the light of an object, told as for `pupil_rays`, on the sensor."""
     axes.set_facecolor("black")
-    picture = _traced_disk(configuration, source)
+    picture = traced_disk(configuration, source)
     if picture is not None:
         axes.imshow(picture, origin="lower", interpolation="bilinear")
 
 
-def _traced_disk(configuration, source):
-    """Colours of the light on the sensor; None if nothing gets there."""
+def traced_disk(configuration, source, wavelengths_nm=None):
+    """Colours of the light of an object on the sensor.
+
+    Parameters
+    ----------
+    configuration : Configuration
+        Focused.
+    source : float or tuple of 3 float
+        As for `pupil_rays`.
+    wavelengths_nm : sequence of float or None
+        None: a few over the spectrum.
+
+    Returns
+    -------
+    ndarray of shape (P, P, 3) or None
+        sRGB; None if nothing gets there.
+    """
     wavelengths = spectrum_wavelengths(_TRACED_WAVELENGTHS)
+    if wavelengths_nm is not None:
+        wavelengths = np.array(wavelengths_nm, dtype=float)
     # Rims cut all colours alike, so far as one sees.
     bundle = pupil_rays(configuration, source, _TRACED_GRID)
     landed = []
@@ -138,9 +156,8 @@ def _traced_disk(configuration, source):
             return None
         landed.append((places, bundle.weights[traced.passed]))
     every = np.concatenate([places for places, _ in landed])
-    # Stray rays would make the disk small.
-    low, high = np.quantile(every, 0.002, axis=0), np.quantile(every, 0.998, axis=0)
-    half = max(0.575 * float((high - low).max()), 1e-6)
+    low, high = np.quantile(every, [1.0 - _HELD, _HELD], axis=0)
+    half = max(0.5 * _MARGIN * float((high - low).max()), 1e-6)
     scale = 0.5 * _TRACED_PIXELS / half
     layers = np.stack(
         [_laid_down((places - 0.5 * (low + high) + half) * scale, w) for places, w in landed],
@@ -165,13 +182,37 @@ def _laid_down(places, weights):
     return picture.reshape(_TRACED_PIXELS, _TRACED_PIXELS)
 
 
-def _held_radius(row, share):
-    """Return the radius that holds a share of the energy, mm."""
+def held_radius(row, share):
+    """Return the radius that holds a share of the energy.
+
+    Parameters
+    ----------
+    row : PatternRow
+    share : float
+
+    Returns
+    -------
+    float
+        mm.
+    """
     inside = np.cumsum((ring_areas(len(row.density))[:, None] * row.density).mean(axis=1))
     return row.edges[1 + int(np.searchsorted(inside, share * inside[-1]))]
 
 
-def _disk(row, shown):
+def disk_picture(row, shown):
+    """Draw the pattern of an axial point.
+
+    Parameters
+    ----------
+    row : PatternRow
+    shown : float
+        Half the width of the picture, mm.
+
+    Returns
+    -------
+    ndarray of shape (P, P, 3)
+        sRGB.
+    """
     place = (np.arange(_DISK_PIXELS) + 0.5) / _DISK_PIXELS * 2.0 - 1.0
     radius = np.hypot(*np.meshgrid(place, place)) * shown
     centres = 0.5 * (row.edges[1:] + row.edges[:-1])
@@ -183,7 +224,3 @@ def _disk(row, shown):
 
 def _metres(mm):
     return f"{mm / 1000.0:.3g} m" if mm >= 1000.0 else f"{mm / 10.0:.3g} cm"
-
-
-def _length(mm):
-    return f"{mm:.3g} mm" if mm >= 0.1 else f"{1000.0 * mm:.3g} µm"

@@ -8,7 +8,7 @@ from .aberration_plots import draw_axial_focus, draw_field_curves, draw_vignetti
 from .bokeh_plots import DISK_LIGHTS, draw_bokeh_table, draw_disks, draw_field_disks
 from .cross_section import draw_cross_section
 from .spot_plots import draw_pupils, draw_spots
-from .style import INK, QUIET, RULE, TEXT_SIZE, TITLE_SIZE, Panel
+from .style import INK, QUIET, RULE, TEXT_SIZE, TITLE_SIZE, Panel, length
 
 # Inches; 100 pixels each make the usual 1600 x 1200.
 SHEET_INCHES = (16.0, 12.0)
@@ -70,7 +70,7 @@ def draw_sheet(figure, prescription, configuration, profile, step=lambda: None):
     columns = range(len(fields))
     spots = [_SPOTS.column(i, len(fields), 0.01).axes(figure) for i in columns]
     side = draw_spots(spots, configuration, fields)
-    _heading(figure, _SPOTS.x, f"Spots in best focus, box {1000.0 * side:.3g} µm; pupils below")
+    _heading(figure, _SPOTS.x, f"Spots in best focus, box {length(side)}; pupils below")
     step()
     draw_pupils(
         [_PUPILS.column(i, len(fields), 0.01).axes(figure) for i in columns], configuration, fields

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..optics.aberrations import best_focus, spot
 from ..optics.pupil import pupil_outline
-from .style import INK, QUIET, RULE, SMALL_SIZE, SPECTRUM, TEXT_SIZE, frame_picture
+from .style import INK, QUIET, RULE, SMALL_SIZE, SPECTRUM, TEXT_SIZE, frame_picture, length
 
 _GRID = 41
 _OUTLINE = 128
@@ -112,5 +112,4 @@ def _round_up(value):
 def _size(points, centre):
     if not len(points):
         return "no light"
-    radius = np.sqrt(np.mean(np.sum((points - centre) ** 2, axis=1)))
-    return f"rms {1000.0 * radius:.3g} µm"
+    return f"half in ⌀ {length(2.0 * np.median(np.hypot(*(points - centre).T)))}"

@@ -70,3 +70,8 @@ def symmetric_limits(values, least):
     """Return limits around 0 that hold all values, at least `least` on each side."""
     reach = max([least, *(abs(float(value)) for value in values)])
     return -1.08 * reach, 1.08 * reach
+
+
+def length(mm):
+    """Return a length in the unit that suits it, as text."""
+    return f"{mm:.3g} mm" if mm >= 0.1 else f"{1000.0 * mm:.3g} µm"

@@ -51,7 +51,7 @@ def bench_profile(
         ``seconds``: of the achromatic and the chromatic profile, each with its 1024 x 1024 table,
         of one row, and of a frame's table; ``row_energy_error``: the largest;
         ``psnr``: median and minimum over the grid, and every value as
-        [object, focus, f-number, dB].
+        [object, focus, f-number, dB], None for infinity.
     """
     seconds = {}
     started = time.perf_counter()
@@ -88,7 +88,7 @@ def bench_profile(
         "psnr": {
             "median": float(np.median(decibels)),
             "minimum": min(decibels),
-            "values": values,
+            "values": [[None if np.isinf(x) else x for x in value] for value in values],
         },
     }
 
@@ -111,7 +111,7 @@ def grid(configuration, nearest_focus=0.0, objects=8, focuses=6):
     nearest = order.h - nearest_object(configuration, order)
 
     def chosen(distances, count, least):
-        stretch = max(1.0, 1.05 * least / distances[0])
+        stretch = float(max(1.0, 1.05 * least / distances[0]))
         picked = np.linspace(0, len(distances) - 1, count).round().astype(int)
         return [float(distances[i]) * stretch for i in picked]
 

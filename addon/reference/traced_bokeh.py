@@ -256,7 +256,7 @@ def _through(configuration, rays, wavelength_nm):
 
 
 @functools.lru_cache(maxsize=4)
-def _pixel_rings(pixels, rings, fine=24):
+def _pixel_rings(pixels, rings, fine=12):
     """Ring and pixel of each sub-pixel of a quarter picture."""
     places = (np.arange(pixels // 2 * fine) + 0.5) / fine
     radius = np.hypot(places[:, None], places) / (pixels / 2) * rings

@@ -14,13 +14,12 @@ _INTERVAL = 0.15
 _PATIENCE = 10.0
 
 _queue = JobQueue()
-_receivers = {}
 _errors = {}
 # Set by the user; nothing is begun until it is cleared.
 _stopped = threading.Event()
 
 
-def submit(key, label, work, receive, urgent=False):
+def submit(key, label, work, receive, urgent=False, group=None):
     """Have work done in the background, unless it was asked for already.
 
     Nothing is done in a Blender without windows.
@@ -36,11 +35,16 @@ def submit(key, label, work, receive, urgent=False):
         ``receive(result)``, in the main thread.
     urgent : bool
         Before all that wait.
+    group : hashable
+        Takes the place of the jobs of its group that wait.
     """
     if bpy.app.background or _stopped.is_set() or key in _errors:
         return
-    _receivers[key] = receive
-    _queue.submit(key, label, work, urgent)
+
+    def work_and_address(progress, cancelled):
+        return receive, work(progress, cancelled)
+
+    _queue.submit(key, label, work_and_address, urgent, group)
     if not bpy.app.timers.is_registered(_collect):
         bpy.app.timers.register(_collect, first_interval=_INTERVAL, persistent=True)
 
@@ -77,7 +81,6 @@ def is_stopped():
 def cancel():
     """Stop everything; what is still needed is asked for again when it is drawn."""
     _queue.cancel()
-    _receivers.clear()
 
 
 def _collect():
@@ -85,11 +88,11 @@ def _collect():
     busy = _queue.progress() is not None
     outcomes = _queue.fetch()
     for outcome in outcomes:
-        receive = _receivers.pop(outcome.key, None)
         if outcome.error is not None:
             _note(outcome)
-        elif receive is not None:
-            receive(outcome.result)
+        else:
+            receive, result = outcome.result
+            receive(result)
     if busy or outcomes:
         _redraw()
     return _INTERVAL if busy or _queue.progress() is not None else None
@@ -109,6 +112,10 @@ def _redraw():
         for area in window.screen.areas:
             if area.type == "PROPERTIES":
                 area.tag_redraw()
+        if not window.modal_operators:
+            # Nothing else redraws the status bar; a tool that is at work may have its text in it.
+            with bpy.context.temp_override(window=window):
+                window.workspace.status_text_set_internal(None)
 
 
 @persistent

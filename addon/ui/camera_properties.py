@@ -31,13 +31,13 @@ def _item(identifier, name, description, icon=0):
 
 def _lens_items(camera, _context):
     library = shelf()
-    items = [_item(_THIN, "Thin Lens", "An ideal lens without a prescription")]
+    items = [_item(_THIN, "Thin Lens", "An ideal lens without a prescription", "CAMERA_DATA")]
     ids = library.ids()
     for lens_id in ids:
         found = library.find(lens_id)
         if found is None:
             continue
-        icon = lens_thumbnails.icon_id(found)
+        icon = lens_thumbnails.icon_id(found) if found.lens else "ERROR"
         items.append(_item(_LENS + lens_id, found.name, _describe(found), icon))
     if camera.lens and camera.lens not in ids:
         items.append(_item(_LENS + camera.lens, camera.lens, "Not in the library", "ERROR"))
@@ -61,9 +61,10 @@ def _choose_lens(camera, number):
     camera.lens = identifier.removeprefix(_LENS) if identifier != _THIN else ""
 
 
-def _found_lenses(_camera, _context, typed):
+def _found_lenses(camera, _context, typed):
     library = shelf()
-    typed = typed.casefold()
+    # Before anything is typed the field holds the lens that is there: then all are wanted.
+    typed = "" if typed == camera.lens else typed.casefold()
     for lens_id in library.ids():
         found = library.find(lens_id)
         if found and (typed in lens_id.casefold() or typed in found.name.casefold()):
@@ -96,10 +97,16 @@ def _choose_zoom(camera, number):
     camera.zoom_label = next((key for key, value in _numbers.items() if value == number), "")
 
 
-def _forget_zoom(camera, _context):
+def _lens_changed(camera, _context):
     labels = _labels(camera)
     if camera.zoom_label and labels and camera.zoom_label not in labels:
         camera.zoom_label = ""
+    camera.id_data.update_tag()
+
+
+def _zoom_changed(camera, _context):
+    # Without this Blender evaluates the camera again only if the change came from its windows.
+    camera.id_data.update_tag()
 
 
 class AplanatCameraSettings(bpy.types.PropertyGroup):
@@ -113,7 +120,7 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
         options=set(),
         override={"LIBRARY_OVERRIDABLE"},
         search=_found_lenses,
-        update=_forget_zoom,
+        update=_lens_changed,
     )
     zoom_label: StringProperty(
         name="Zoom Position",
@@ -121,6 +128,7 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
         maxlen=_LONGEST_TEXT,
         options=set(),
         override={"LIBRARY_OVERRIDABLE"},
+        update=_zoom_changed,
     )
     lens_choice: EnumProperty(
         name="Lens",

@@ -23,11 +23,14 @@ class Job:
     work : callable
         ``work(progress, cancelled)``: tells its share done by ``progress(0..1)``, ends soon, with
         any result or error, when ``cancelled()`` is true.
+    group : hashable
+        Of the jobs of a group that wait only the last one is wanted; None: each for itself.
     """
 
     key: Hashable
     label: str
     work: Callable
+    group: Hashable = None
     share: float = 0.0
     cancelled: threading.Event = field(default_factory=threading.Event)
 
@@ -82,7 +85,7 @@ class JobQueue:
         self._done = 0
         self._thread = None
 
-    def submit(self, key, label, work, urgent=False):
+    def submit(self, key, label, work, urgent=False, group=None):
         """Ask for a job, unless it is waiting or at work.
 
         Parameters
@@ -93,6 +96,8 @@ class JobQueue:
             See `Job`.
         urgent : bool
             Before all that wait; one that waits already goes to the front.
+        group : hashable
+            Takes the place of those of its group that wait.
         """
         with self._lock:
             current = self._current
@@ -100,7 +105,9 @@ class JobQueue:
                 return
             waiting = next((job for job in self._waiting if job.key == key), None)
             if waiting is None:
-                waiting = Job(key, label, work)
+                waiting = Job(key, label, work, group)
+                if group is not None:
+                    self._waiting = deque(job for job in self._waiting if job.group != group)
             elif urgent:
                 self._waiting.remove(waiting)
             else:

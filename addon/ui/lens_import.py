@@ -8,7 +8,6 @@ from bpy_extras.io_utils import ImportHelper
 
 from ..errors import AplanatError
 from ..lens_io import user_lenses
-from ..lens_io.importers.options import ImportOptions, glass_option
 from ..scene.lenses import shelf, user_folder
 from .lens_operators import camera_of
 
@@ -139,6 +138,8 @@ class APLANAT_OT_import_lens(bpy.types.Operator, ImportHelper):
         return {"FINISHED"}
 
     def _options(self):
+        from ..lens_io.importers.options import ImportOptions, glass_option
+
         return ImportOptions(
             thickness=None if self.thickness == "FILE" else self.thickness.lower(),
             stop=self.stop or None,

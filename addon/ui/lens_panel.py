@@ -8,7 +8,7 @@ import bpy
 from ..optics.lens_facts import lens_facts
 from ..scene.camera import sensor_diagonal
 from ..scene.lenses import read_real_lens, shelf
-from . import background
+from . import background, lens_thumbnails
 from .lens_import import APLANAT_OT_import_lens
 from .lens_operators import (
     APLANAT_OT_background_work,
@@ -23,13 +23,13 @@ from .lens_operators import (
 from .panels import EnginePanel
 
 # In units of Blender's buttons.
-_CHOSEN_SCALE, _POPUP_SCALE, _BOKEH_SCALE = 9.0, 7.0, 11.0
+_CHOSEN_SCALE, _POPUP_SCALE, _BOKEH_SCALE = 9.0, 6.0, 10.0
 # What is said about focal lengths is rounded to this, mm; less than it is no difference.
 _SAME_LENGTH = 0.05
 # Part of an f-number that a photographer calls the same.
 _SAME_F_NUMBER = 0.005
 _MOST_FINDINGS = 8
-_PIXELS_PER_LETTER = 7.0
+_PIXELS_PER_LETTER = 6.5
 
 
 class APLANAT_MT_lens(bpy.types.Menu):
@@ -162,6 +162,38 @@ def _draw_work(column):
         row.operator(APLANAT_OT_background_work.bl_idname, text="Go On", icon="PLAY").stop = False
 
 
+class APLANAT_CAMERA_PT_lens_bokeh(_LensPanel, bpy.types.Panel):
+    """What points of light look like through the lens."""
+
+    bl_label = "Bokeh"
+    bl_parent_id = "APLANAT_CAMERA_PT_lens"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Whether the camera has a lens that can be used."""
+        return super().poll(context) and read_real_lens(context.camera)[0] is not None
+
+    def draw(self, context):
+        """Draw the picture, which is made in the background."""
+        camera = context.camera
+        lens, _ = read_real_lens(camera)
+        column = self.layout.column(align=True)
+        letters = _letters(context)
+        icon = lens_thumbnails.bokeh_icon_id(camera, lens)
+        error = lens_thumbnails.bokeh_error(camera, lens)
+        if error:
+            _alert(column, error, letters)
+            return
+        column.template_icon(icon_value=icon, scale=_BOKEH_SCALE)
+        text = (
+            f"f/{lens.f_number:.3g}, focused at 40 focal lengths. From left to right: a light in"
+            " front of the focus, behind it and far away; from top to bottom: in the middle of the"
+            " picture, at 60 % of the way to its corner and in the corner."
+        )
+        _sentences(column, text, letters)
+
+
 class APLANAT_CAMERA_PT_lens_facts(_LensPanel, bpy.types.Panel):
     """What the lens is."""
 
@@ -245,7 +277,7 @@ def _draw_fact(column, name, value, letters):
 def _letters(context):
     """Return how many letters fit into a line of the editor."""
     scale = _PIXELS_PER_LETTER * context.preferences.system.ui_scale
-    return max(24, int(context.region.width / scale) - 8)
+    return max(24, int(context.region.width / scale) - 7)
 
 
 def _sentences(column, text, letters):
@@ -271,7 +303,12 @@ def _draw_clamp(panel, context):
         panel.layout.label(text=f"The lens opens to f/{lens.f_number:.3g}", icon="INFO")
 
 
-CLASSES = (APLANAT_MT_lens, APLANAT_CAMERA_PT_lens, APLANAT_CAMERA_PT_lens_facts)
+CLASSES = (
+    APLANAT_MT_lens,
+    APLANAT_CAMERA_PT_lens,
+    APLANAT_CAMERA_PT_lens_bokeh,
+    APLANAT_CAMERA_PT_lens_facts,
+)
 
 _register, _unregister = bpy.utils.register_classes_factory(CLASSES)
 

@@ -39,7 +39,7 @@ def _text_space(context):
         for area in window.screen.areas:
             if area.type == "TEXT_EDITOR":
                 return area.spaces.active
-    if not current:
+    if not bpy.ops.wm.window_new.poll():
         return None
     before = {window.as_pointer() for window in windows}
     bpy.ops.wm.window_new()

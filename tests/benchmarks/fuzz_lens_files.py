@@ -37,6 +37,7 @@ from addon.optics.lens_facts import lens_facts  # noqa: E402
 from addon.optics.paraxial import first_order, image_distance  # noqa: E402
 from addon.optics.trace import Rays, trace  # noqa: E402
 
+# Processor time of one file: what else the machine does is not counted.
 SLOWEST_ALLOWED_S = 2.0
 # Number texts at the edges of what readers and arithmetic can do.
 NUMBERS = (
@@ -58,9 +59,16 @@ def _toml_document(content):
 
 def _foreign(name):
     def read(content):
-        from addon.lens_io.importers import import_bytes
+        from addon.lens_io.importers import ImportOptions, import_bytes
 
-        return import_bytes(content, name).prescription
+        try:
+            return import_bytes(content, name).prescription
+        except LensFileError as error:
+            if "I06" not in {finding.code for finding in error.findings}:
+                raise
+        # What the file leaves open is answered, so that the mutation is read to its end.
+        answers = ImportOptions("after", 3, "radius", f_number=4.0, half_field_deg=10.0)
+        return import_bytes(content, name, answers).prescription
 
     return read
 
@@ -121,6 +129,8 @@ FORMATS = {
             "0 1.0 0 17.1",
             "-14.5 1.2 1.603 17.0",
             "# focal length 50",
+            "0 1 1 12",
+            "1e300 1e300 1.5 1e300",
             "1 2 3",
             "1 2 3 4 5",
         ),
@@ -145,7 +155,17 @@ FORMATS = {
             "UNIT IN X W X CM MR CPMM",
             "MODE NSC",
             "MNUM 3 1",
+            "MNUM 999999999 1",
             "THIC 4 2 1.0 0 0 1",
+            "THIC 0 2 1000",
+            "YFIE 2 2 12.0",
+            "APER 0 2 4.0",
+            "FLOA",
+            "OBNA 0.1",
+            "FTYP 3 0 3",
+            "YFLN 0 1e308 -1",
+            "GCAT HOYA",
+            "  DISZ 400.0",
         ),
     ),
     "codev": Format(
@@ -165,6 +185,17 @@ FORMATS = {
             "ZOO 3",
             "S &",
             "SI 0 0",
+            "S1 20 3 517642",
+            "S 20 3 1.6:",
+            "S 20 3 TAF3_HOYA",
+            "TITLE 'not closed",
+            "''",
+            "PRV; PWL 587.6; 'X' 1.5; END",
+            "NAO 0.1",
+            "YRI 0 5 1e6",
+            "; ;" * 500,
+            "& \n" * 500,
+            "'\"" * 500,
         ),
     ),
     "optical-bench": Format(
@@ -179,6 +210,11 @@ FORMATS = {
             "5\t29.5\t3.8\t1.67\t25\t47.1",
             "Focal Length\t50.0",
             "d5\t1.0\t2.0",
+            "d8\t" + "1\t" * 60,
+            "d0\tInfinity\t400\t300",
+            "AsphericalOddCount\t1",
+            "AsphericalA2",
+            "4\tFS\t3.2\t\t12.0",
         ),
     ),
 }
@@ -326,7 +362,7 @@ def check(name, content, outcome, label=""):
         How messages name the case.
     """
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    start = time.perf_counter()
+    start = time.process_time()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -341,7 +377,7 @@ def check(name, content, outcome, label=""):
                 outcome.failures.append(f"{label}: a message is not printable")
     except Exception:
         outcome.failures.append(f"{label}:\n{traceback.format_exc()}")
-    seconds = time.perf_counter() - start
+    seconds = time.process_time() - start
     if seconds > outcome.slowest_s:
         outcome.slowest_s, outcome.slowest = seconds, label
     if seconds > SLOWEST_ALLOWED_S:

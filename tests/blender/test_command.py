@@ -21,10 +21,11 @@ def cube(blender, tmp_path_factory):
     return path
 
 
-def run(blender, *words):
+def run(blender, *words, folder=None):
     return subprocess.run(
         [blender.path, "--command", "aplanat", *map(str, words)],
         env=blender.env,
+        cwd=folder,
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
@@ -50,3 +51,29 @@ def test_refuses_with_exit_code_2_and_one_line(blender, tmp_path):
     assert (done.returncode, done.stdout) == (2, ""), done
     assert done.stderr.count("\n") == 1 and "does not exist" in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_lens_is_told_and_drawn_with_the_bundled_libraries(blender, tmp_path):
+    done = run(blender, "lens", "info", "double-gauss-50mm-f2", "--json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["efl_mm"] == pytest.approx(50.3582, abs=1e-3)
+    for name in ("sheet.png", "sheet.pdf"):
+        words = ("lens", "plot", "double-gauss-50mm-f2", "-o", name, "--json")
+        done = run(blender, *words, folder=tmp_path)
+        assert done.returncode == 0, done.stderr
+        # A relative name starts where the caller is.
+        assert (tmp_path / name).stat().st_size > 10_000
+        assert json.loads(done.stdout)["files"] == [name]
+        assert all(line.startswith("aplanat: ") for line in done.stderr.splitlines()), done.stderr
+
+
+def test_tables_are_baked_in_colour(blender, tmp_path):
+    done = run(
+        *(blender, "lens", "bake", "singlet-planoconvex-100mm", "-o", tmp_path / "lut.exr"),
+        "--json",
+    )
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["channels"] == 3
+    assert (tmp_path / "lut.exr").stat().st_size > 100_000
+    # Nothing of colour-science's word about scipy.
+    assert all(line.startswith("aplanat: ") for line in done.stderr.splitlines()), done.stderr

@@ -35,8 +35,23 @@ def test_enabled_extension_registers_engine(blender):
 
 
 def test_wheels_are_importable(blender):
-    done = blender.run_code("import OpenEXR; result = OpenEXR.__version__")
-    assert done.result
+    done = blender.run_code(
+        """
+        import warnings
+        import OpenEXR
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            import colour
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        result = [OpenEXR.__version__, colour.__version__]
+        """
+    )
+    assert all(done.result)
+
+
+def test_zip_leaves_numpy_to_blender(extension_zip):
+    wheels = [n for n in zipfile.ZipFile(extension_zip).namelist() if n.endswith(".whl")]
+    assert not [name for name in wheels if "/numpy-" in name or "/scipy-" in name]
 
 
 def test_disable_and_enable_again(blender):

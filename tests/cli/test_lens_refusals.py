@@ -63,6 +63,7 @@ def broken(tmp_path):
     [
         ("info", "LENS"),
         ("trace", "LENS", "--field-deg", "0"),
+        ("bake", "LENS", "-o", "OUT.exr"),
         ("plot", "LENS", "-o", "OUT.png"),
     ],
     ids=lambda words: words[0],
@@ -109,11 +110,19 @@ def test_wavelength_that_a_glass_does_not_pass_is_told(refused, tmp_path):
     assert len(lines) == 1 and "2500 nm" in lines[0] and "surface 1" in lines[0]
 
 
-@pytest.mark.parametrize("words", [("plot", "out.png")])
+@pytest.mark.parametrize("words", [("bake", "out.exr"), ("plot", "out.png")])
 def test_folder_that_is_not_there_is_told_before_work(refused, tmp_path, words):
     word, name = words
     lines, _ = refused("lens", word, "tessar-50mm-f2.8", "-o", tmp_path / "none" / name)
     assert len(lines) == 1 and "does not exist" in lines[0]
+
+
+def test_lens_with_cylinders_has_no_table(refused, tmp_path):
+    lines, answer = refused(
+        "lens", "bake", "anamorphic-60mm-f2", "-o", tmp_path / "out.exr", "--json"
+    )
+    assert len(lines) == 1 and "cylinders" in lines[0]
+    assert set(answer["errors"][0]) == {"code", "path", "message"}
 
 
 def test_ambiguous_foreign_file_names_the_option(refused, tmp_path):
@@ -170,3 +179,24 @@ def test_a_lens_is_told_without_blender_or_heavy_libraries(tmp_path):
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout.splitlines()[0])["name"]
     assert done.stderr == ""
+
+
+def test_names_that_are_no_text_are_told_as_json(refused):
+    # As Python hands over bytes of a command line that are not UTF-8.
+    lines, answer = refused("lens", "info", "tessar-50mm-f2.8", "--zoom", "\udcff", "--json")
+    assert len(lines) == 1
+    assert "\udcff" in answer["errors"][0]["message"]
+
+
+def test_a_reader_that_leaves_early_is_no_failure():
+    words = [sys.executable, "-P", "-m", "addon.cli", "lens", "list"]
+    process = subprocess.Popen(
+        words,
+        env=os.environ | {"PYTHONPATH": str(REPOSITORY), "PYTHONDONTWRITEBYTECODE": "1"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    process.stdout.close()
+    with process.stderr:
+        told = process.stderr.read()
+    assert (process.wait(60), told) == (0, b"")

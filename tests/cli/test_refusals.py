@@ -127,3 +127,16 @@ def test_refusal_with_json_is_one_object(aplanat, tmp_path):
     assert done.answer["warnings"] == []
     done = aplanat("render", "--samples", "0", "--json")
     assert done.code == 2 and done.answer["errors"][0]["code"] == "input"
+
+
+def test_lens_that_is_not_there_or_broken(refused, small_blend, make_blend, tmp_path):
+    words = ("render", small_blend, "-o", tmp_path / "a.png", "--lens")
+    assert "tessar-50mm-f2.8" in refused(*words, "tesar-50mm")
+    assert "none.toml" in refused(*words, tmp_path / "none.toml")
+
+    def orthographic(_bpy, scene):
+        scene.camera.data.type = "ORTHO"
+
+    flat = make_blend(orthographic)
+    line = refused("render", flat, "-o", tmp_path / "a.png", "--lens", "tessar-50mm-f2.8")
+    assert "perspective" in line

@@ -305,3 +305,28 @@ def test_missing_image_is_magenta_and_reported(aplanat, make_blend, tmp_path):
     assert any("Lost" in line or "not-there" in line for line in done.answer["warnings"])
     assert "warning" in done.err
     np.testing.assert_allclose(combined(tmp_path / "a.exr")[16, 24, :3], (1.0, 0.0, 1.0), atol=1e-3)
+
+
+def test_lens_of_the_library_is_used_and_told(aplanat, small_blend, tmp_path):
+    words = ("render", small_blend, "-o", tmp_path / "a.png", "--samples", "2", "--json")
+    assert aplanat(*words).answer["settings"]["lens"] is None
+    done = aplanat(*words, "--lens", "tessar-50mm-f2.8", "--fstop", "0.5")
+    assert done.code == 0, done.err
+    settings = done.answer["settings"]
+    assert settings["lens"] == "tessar-50mm-f2.8"
+    # A lens opens no wider than it can, and leaves the framing alone.
+    assert settings["fstop"] == 2.8
+    assert settings["focal_length_mm"] == 50.0
+
+
+def test_lens_may_be_a_file(aplanat, small_blend, tmp_path):
+    shipped = Path(__file__).resolve().parents[2] / "lens_profiles/zoom-36-69mm-f3.5.toml"
+    own = tmp_path / "mine.toml"
+    own.write_bytes(shipped.read_bytes())
+    done = aplanat(
+        *("render", small_blend, "-o", tmp_path / "a.png", "--samples", "2", "--json"),
+        *("--lens", own),
+    )
+    assert done.code == 0, done.err
+    assert done.answer["settings"]["lens"] == "mine"
+    assert done.answer["settings"]["zoom_position"] == "36 mm"

@@ -20,7 +20,7 @@ ROOMS = {
     "bokeh": {"optics", "sampling"},
     "lens_io": {"files", "optics", "bokeh", "sampling"},
     # Drawings of lenses, with a plotting library that is imported inside functions.
-    "plots": {"optics", "bokeh", "sampling", "lens_io"},
+    "plots": {"files", "optics", "bokeh", "sampling", "lens_io"},
     "scene.snapshot": {"sampling", "optics", "scene.surface_graph"},
     "scene.surface_graph": set(),
     "device": set(),

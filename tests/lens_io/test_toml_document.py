@@ -9,7 +9,8 @@ from addon.errors import LensFileError
 from addon.lens_io.toml_reader import parse_lens, read_lens
 from tests.lens_io.lens_texts import SINGLET
 
-# Small files take milliseconds; a file of the largest size may take this long on a busy machine.
+# Small files take milliseconds; a file of the largest size may take this long. Processor time is
+# measured, so that what else a machine does is not counted.
 LONGEST_S = 2.0
 
 
@@ -105,15 +106,20 @@ def test_what_is_not_toml_is_refused_with_line_and_column(text, place):
         "".join(f"{'a.' * 18}b{i} = 1\n" for i in range(20_000)),
         "".join(f"surfaca{i} = 1\n" for i in range(60_000)),
         "[[surface]]\nmaterial = {" + ",".join(f"ne{i} = 1" for i in range(80_000)) + "}",
+        "".join(f'[[surface]]\nid = "{i}"\n' for i in range(20_000))
+        + "[[zoom]]\nthickness_mm = {"
+        + ",".join(f"x{i} = 1" for i in range(40_000))
+        + "}",
+        "[[surface]]\n[surface.asphere]\n" + "".join(f"a{i}_per = 1\n" for i in range(60_000)),
         '[[surface]]\nmaterial = "' + "N-BK" * 200_000 + '"',
     ],
     ids=lambda text: text[:20].strip(),
 )
 def test_files_made_to_exhaust_a_parser_are_refused_in_time(text):
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(LensFileError):
         parse_lens(text.encode(), "test.toml")
-    assert time.perf_counter() - start < LONGEST_S
+    assert time.process_time() - start < LONGEST_S
 
 
 def test_dots_and_brackets_in_texts_and_comments_are_no_nesting():

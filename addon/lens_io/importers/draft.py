@@ -206,6 +206,9 @@ class Draft:
             return
         numbers = [surface.number for surface in stops or self.surfaces]
         chosen = next((s for s in self.surfaces if s.number == options.stop), None)
+        if self.refusals.has("I07"):
+            # A line that could not be read may be the stop.
+            return
         if options.stop is None or (stops and chosen not in stops) or chosen is None:
             what = "names more than one stop" if stops else "does not name the stop"
             asked = "" if options.stop is None else f" (asked for {options.stop})"

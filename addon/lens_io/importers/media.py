@@ -98,13 +98,13 @@ def codev_glass(word, options):
         return named_glass(name, options)
     known = _names_without_hyphens(maker).get(name.replace("-", ""))
     if known is None:
-        raise _unknown(word)
+        raise _unknown(word, name)
     return named_glass(known, options, (maker,))
 
 
-def _unknown(name):
+def _unknown(name, stem=None):
     shown = clean(name[:40])
-    near = near_names(shown)
+    near = near_names(clean((stem or name)[:40]))
     hint = f"; near names are {', '.join(near)}" if near else ""
     return UnknownGlassError(
         f"glass '{shown}' is in no catalogue here{hint}; give it with --glass NAME=ND,VD"

@@ -1,15 +1,13 @@
 """What traced rays tell of a lens whose file does not: clear radii, fields and coverage."""
 
-import math
-
 import numpy as np
 
-from ...optics.aiming import chief_ray
+from ...optics.aiming import aim
 from ...optics.beam import Beam
 from ...optics.glass import REFERENCE_WAVELENGTH_NM
-from ...optics.pupil import grid_of, passing, stop_outline
+from ...optics.pupil import grid_of, passing
 from ...optics.surfaces import sag
-from ...optics.trace import trace
+from ...optics.trace import Rays, trace
 
 # A lens covers the field where at least this share of the axial beam gets through, two stops less
 # than on the axis. At the corners that their makers give, thirty lenses of published prescriptions
@@ -17,10 +15,10 @@ from ...optics.trace import trace
 COVERED_SHARE = 0.25
 # Beyond this, in degrees, no rectilinear lens and few others see.
 WIDEST_FIELD = 89.0
-# Halvings of the search for a field: to 1e-5 degrees.
-_HALVINGS = 24
-# Directions around the stop's rim.
-_RIM_RAYS = 64
+# Chief rays between which fields are interpolated (to 1e-4 degrees), and the steepest at the stop.
+_CHIEF_RAYS, _STEEPEST = 2001, np.radians(80.0)
+# Rays through the stop's rim.
+_RIM_RAYS = 32
 # Halvings of the search for the coverage, to 0.1 degrees, and rays along the side of its two grids.
 _COVERAGE_HALVINGS = 10
 _GRIDS = (41, 31)
@@ -44,51 +42,62 @@ def beam_radii(configuration, fields_deg):
     """
     radii = np.zeros(len(configuration.surfaces))
     lost = []
+    around = np.linspace(0.0, 2.0 * np.pi, _RIM_RAYS, endpoint=False)
+    rim = configuration.surfaces[configuration.stop - 1].semi_diameter
+    edge = rim * np.stack([np.cos(around), np.sin(around)], axis=-1)
     for field in fields_deg:
         beam = Beam.from_infinity(field)
-        edge = stop_outline(configuration, beam, directions=_RIM_RAYS).points
-        if len(edge):
-            rays = beam.rays(edge)
-            traced = trace(configuration, rays, REFERENCE_WAVELENGTH_NM, clip=False, record=True)
-            hits = traced.hits[:, traced.reached]
-            if hits.size:
-                radii = np.maximum(radii, np.hypot(hits[..., 0], hits[..., 1]).max(axis=1))
-                continue
-        lost.append(field)
+        aimed = aim(configuration, beam, edge)
+        rays = beam.rays(aimed.coordinates[aimed.found])
+        traced = trace(configuration, rays, REFERENCE_WAVELENGTH_NM, clip=False, record=True)
+        hits = traced.hits[:, traced.reached]
+        if hits.size:
+            radii = np.maximum(radii, np.hypot(hits[..., 0], hits[..., 1]).max(axis=1))
+        else:
+            lost.append(field)
     return radii, lost
 
 
-def field_of_height(configuration, height):
-    """Return the field whose chief ray meets the picture at a height.
+def fields_of_heights(configuration, heights):
+    """Return the fields whose chief rays meet the picture at some heights.
+
+    Chief rays start at the centre of the stop: backwards they tell the field, forwards the height.
 
     Parameters
     ----------
     configuration : Configuration
-    height : float
+    heights : sequence of float
         mm, positive.
 
     Returns
     -------
-    float or None
-        Degrees; None if no chief ray reaches that height.
+    tuple of float or None
+        Degrees; None if a chief ray does not reach one of the heights.
     """
-
-    def reach(field):
-        beam = Beam.from_infinity(field)
-        start = chief_ray(configuration, beam)
-        if start is None:
-            return math.inf
-        rays = beam.rays(start[None])
-        traced = trace(configuration, rays, REFERENCE_WAVELENGTH_NM, clip=False)
-        if not traced.reached[0]:
-            return math.inf
-        return float(np.hypot(*traced.at_plane(configuration.sensor)[0]))
-
-    low, high = 0.0, WIDEST_FIELD
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if reach(middle) < height else (low, middle)
-    return low if math.isfinite(reach(high)) else None
+    stop = configuration.stop
+    slopes = np.linspace(0.0, _STEEPEST, _CHIEF_RAYS)
+    directions = np.stack([np.zeros_like(slopes), np.sin(slopes), np.cos(slopes)], axis=-1)
+    origins = np.zeros_like(directions)
+    origins[:, 2] = configuration.vertices[stop - 1]
+    wavelength = REFERENCE_WAVELENGTH_NM
+    seen = trace(
+        configuration,
+        Rays(origins, -directions),
+        wavelength,
+        clip=False,
+        last=stop - 1,
+        backwards=True,
+    )
+    shown = trace(configuration, Rays(origins, directions), wavelength, clip=False, first=stop)
+    angles = np.degrees(np.arctan2(np.abs(seen.directions[:, 1]), -seen.directions[:, 2]))
+    reach = np.abs(shown.at_plane(configuration.sensor)[:, 1])
+    # From the axis outwards, as far as the picture grows with the field.
+    fits = seen.reached & shown.reached
+    fits[1:] &= (np.diff(reach) > 0.0) & (np.diff(angles) > 0.0) & (angles[1:] < 90.0)
+    count = len(fits) if fits.all() else int(np.argmin(fits))
+    if count == 0 or max(heights) > reach[count - 1]:
+        return None
+    return tuple(float(angle) for angle in np.interp(heights, reach[:count], angles[:count]))
 
 
 def coverage(configuration):

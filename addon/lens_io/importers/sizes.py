@@ -6,7 +6,7 @@ from ...errors import PrescriptionError
 from ...optics.glass import CHECKED_RANGE_NM, REFERENCE_WAVELENGTH_NM
 from ...optics.paraxial import first_order
 from ...optics.surfaces import sag
-from .rims import COVERED_SHARE, beam_radii, coverage, field_of_height
+from .rims import COVERED_SHARE, beam_radii, coverage, fields_of_heights
 
 # Stands for a rim that is not known yet, mm: so small that every ray through it is paraxial.
 UNKNOWN_RIM = 1.0e-6
@@ -14,6 +14,9 @@ UNKNOWN_RIM = 1.0e-6
 _RIM_TOLERANCE = 0.03
 # Clear radii are given to this many digits, rounded up.
 _DIGITS = 4
+# Positions of a zoom lens and fields of each whose beams are traced for rims, and how many
+# surfaces these beams may meet (an asphere counts as three): about a second's work.
+_MOST_POSITIONS, _MOST_FIELDS, _SEARCH_COST = 5, 3, 400
 # Halvings of the search for the radius at which two surfaces meet.
 _HALVINGS = 40
 
@@ -132,8 +135,8 @@ def fields_of(lens, field, object_distance):
         angles = tuple(math.degrees(math.atan(height / distance)) for height in field.values)
         return angles, ["Half field: from the object height of the file."]
     if field.kind == "real image height":
-        angles = tuple(field_of_height(lens, height) for height in field.values)
-        if None not in angles:
+        angles = fields_of_heights(lens, field.values)
+        if angles is not None:
             return angles, ["Half field: where the chief ray meets the picture's edge, traced."]
     efl = first_order(lens).efl
     angles = tuple(math.degrees(math.atan(height / efl)) for height in field.values)
@@ -174,18 +177,22 @@ def rims(stands, draft):
         " traced."
     ]
     found, axial = [0.0] * len(radii), [0.0] * len(radii)
-    for lens, fields in stands:
+    positions, angles = _search_size(stands)
+    for lens, fields in _spread(stands, positions):
         if not fields:
             raise FileValueError(
                 "I06",
                 "the file tells neither all semi-diameters nor fields to compute them from;"
                 " choose with --half-field DEG",
             )
-        met, lost = beam_radii(lens, (0.0, *fields))
+        met, lost = beam_radii(lens, _spread(sorted(fields), angles))
         found = [max(pair) for pair in zip(found, met, strict=True)]
-        met, _ = beam_radii(lens, (0.0,))
+        met, lost_on_axis = beam_radii(lens, (0.0,))
         axial = [max(pair) for pair in zip(axial, met, strict=True)]
-        notes.extend(f"No ray gets through at {field:.4g} degrees." for field in lost)
+        notes.extend(
+            f"No ray gets through at {field:.4g} degrees." for field in (*lost_on_axis, *lost)
+        )
+    found = [max(pair) for pair in zip(found, axial, strict=True)]
     for index in missing:
         if found[index] <= 0.0:
             raise FileValueError(
@@ -196,6 +203,26 @@ def rims(stands, draft):
         radii[index] = _rounded_up(found[index], draft.surfaces[index])
     notes.extend(_keep_apart(radii, missing, axial, stands[0][0].surfaces))
     return radii, notes
+
+
+def _search_size(stands):
+    # How many positions, and fields of each besides the axis: fewer for lenses of many surfaces.
+    lens, _ = stands[0]
+    cost = sum(3 if surface.asphere or surface.conic else 1 for surface in lens.surfaces)
+    beams = max(2, _SEARCH_COST // cost)
+    positions = min(_MOST_POSITIONS, max(1, beams // 2))
+    return positions, min(_MOST_FIELDS, beams // min(positions, len(stands)) - 1)
+
+
+def _spread(values, most):
+    # Both ends and what lies evenly between: beams change little from one to the next. The last
+    # field is the widest, the last zoom position has the largest stop.
+    if len(values) <= most:
+        return values
+    if most == 1:
+        return values[-1:]
+    step = (len(values) - 1) / (most - 1)
+    return [values[round(index * step)] for index in range(most)]
 
 
 def _keep_apart(radii, missing, axial, surfaces):

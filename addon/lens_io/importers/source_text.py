@@ -211,6 +211,10 @@ class Refusals:
         """Tell whether there is any."""
         return bool(self._findings)
 
+    def has(self, code):
+        """Tell whether a code is among them."""
+        return any(finding.code == code for finding in self._findings)
+
     def findings(self):
         """Return what was found.
 

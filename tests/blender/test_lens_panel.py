@@ -1,0 +1,156 @@
+"""The Real Lens panel in Blender's window: chosen with the mouse, made in the background."""
+
+import imageio.v3 as iio
+import numpy as np
+import pytest
+
+# Runs inside Blender: a wide properties editor that shows the camera.
+STAGE = """
+import importlib
+import bpy
+
+ADDON = "bl_ext.user_default.aplanat"
+
+def module(name):
+    return importlib.import_module(f"{ADDON}.addon.{name}")
+
+background = module("ui.background")
+thumbnails = module("ui.lens_thumbnails")
+library = module("scene.lenses").shelf()
+
+def window():
+    return bpy.context.window_manager.windows[0]
+
+def editor():
+    return max(window().screen.areas, key=lambda area: area.width * area.height)
+
+def camera():
+    return bpy.data.objects["Camera"].data
+
+def drawn(lens_id):
+    return thumbnails._icons().get(f"lens:{lens_id}") is not None
+
+bpy.context.scene.render.engine = "APLANAT"
+bpy.context.view_layer.objects.active = bpy.data.objects["Camera"]
+for thing in bpy.context.selected_objects:
+    thing.select_set(thing.name == "Camera")
+editor().type = "PROPERTIES"
+editor().spaces.active.context = "DATA"
+"""
+
+
+@pytest.fixture
+def panel(blender, display, tmp_path):
+    # A cache of its own: every picture is made.
+    env = {"APLANAT_CACHE": str(tmp_path / "cache")}
+    with blender.window(display, folder=tmp_path / "panel", env=env) as window:
+        assert window.run("result = 'matplotlib' not in __import__('sys').modules")
+        window.run(STAGE)
+        yield window
+        log = window.log.read_text()
+        assert "Traceback" not in log, log
+
+
+def below_blenders_lens_panel(window):
+    """Where on the screen the chooser is, found by looking for it: the place of a thumbnail."""
+    x, top, width = window.run(
+        "area = editor(); result = [area.x, window().height - area.y - area.height, area.width]"
+    )
+    return x + width // 2, top + 460
+
+
+def test_lenses_are_drawn_while_the_window_answers(panel, tmp_path):
+    panel.run("camera().aplanat.lens = 'sonnar-50mm-f1.5'")
+    panel.wait_for("background.progress() is not None", timeout=30)
+    # It answers at once although the work takes seconds.
+    for _ in range(5):
+        assert panel.run("result = 1", timeout=5) == 1
+    panel.wait_for("drawn('sonnar-50mm-f1.5')", timeout=120)
+    panel.wait_for("all(drawn(i) for i in library.ids())", timeout=240)
+    panel.wait_for("background.progress() is None", timeout=30)
+    assert not panel.run("result = background._errors")
+    picture = iio.imread(panel.screenshot(tmp_path / "panel.png"))[..., :3]
+    x, y = below_blenders_lens_panel(panel)
+    chooser = picture[y - 90 : y + 90, x - 90 : x + 90].astype(int)
+    # Rays of the axis are orange: nothing of Blender's is, in that place.
+    orange = (chooser[..., 0] > 150) & (chooser[..., 0] - chooser[..., 2] > 60)
+    assert orange.sum() > 50
+
+
+def test_a_lens_is_chosen_with_the_mouse_and_undone(panel, tmp_path):
+    panel.run("camera().aplanat.lens = 'tessar-50mm-f2.8'; camera().lens = 35")
+    panel.run(
+        "with bpy.context.temp_override(window=window()): bpy.ops.ed.undo_push(message='before')"
+    )
+    panel.wait_for("background.progress() is None and drawn('tessar-50mm-f2.8')", timeout=240)
+    x, y = below_blenders_lens_panel(panel)
+    panel.xdotool("mousemove", x, y, "click", 1)
+    panel.run("result = 1")
+    popup = iio.imread(panel.screenshot(tmp_path / "popup.png"))[..., :3].astype(int)
+    # The name of the chosen lens stands in a blue bar; the one to its left is taken.
+    blue = (popup[..., 2] > 150) & (popup[..., 2] - popup[..., 0] > 80)
+    row = int(blue[: y - 110].sum(axis=1).argmax())
+    columns = np.flatnonzero(blue[row])
+    assert len(columns) > 60, "no popup"
+    panel.xdotool("mousemove", columns.min() - 60, row - 40)
+    panel.run("result = 1")
+    panel.xdotool("click", 1)
+    panel.wait_for("camera().aplanat.lens != 'tessar-50mm-f2.8'", timeout=20)
+    assert panel.run("result = camera().aplanat.lens") in panel.run("result = library.ids()")
+    # Framing is the artist's.
+    assert panel.run("result = camera().lens") == 35
+    panel.run("with bpy.context.temp_override(window=window()): bpy.ops.ed.undo()")
+    assert panel.run("result = camera().aplanat.lens") == "tessar-50mm-f2.8"
+
+
+def test_lenses_that_cannot_be_used_are_drawn_as_such(panel, tmp_path):
+    panel.run(
+        "folder = module('scene.lenses').user_folder(); folder.mkdir(parents=True, exist_ok=True)\n"
+        "(folder / 'broken.toml').write_text('format = 1')\n"
+        "bpy.ops.wm.aplanat_reload_lenses()"
+    )
+    assert "/.user/" in panel.run("result = str(folder)")
+    for lens in ("broken", "no-such-lens", "anamorphic-60mm-f2", "zoom-36-69mm-f3.5"):
+        panel.run(f"camera().aplanat.lens = {lens!r}; editor().tag_redraw()")
+        panel.run("result = 1")
+    panel.run("camera().type = 'ORTHO'; editor().tag_redraw()")
+    panel.run("result = 1")
+    panel.run("(folder / 'broken.toml').unlink(); bpy.ops.wm.aplanat_reload_lenses()")
+
+
+def test_a_lens_file_is_opened_in_a_text_editor(panel):
+    panel.run(
+        "camera().aplanat.lens = 'tessar-50mm-f2.8'\n"
+        "with bpy.context.temp_override(window=window(), area=editor()):\n"
+        "    bpy.ops.camera.aplanat_edit_lens()"
+    )
+    assert panel.run("result = camera().aplanat.lens") == "tessar-50mm-f2.8-copy"
+    assert panel.run(
+        "result = [area.spaces.active.text.name for w in bpy.context.window_manager.windows"
+        " for area in w.screen.areas if area.type == 'TEXT_EDITOR']"
+    ) == ["tessar-50mm-f2.8-copy.toml"]
+    panel.run(
+        "with bpy.context.temp_override(window=window(), area=editor()):\n"
+        "    bpy.ops.camera.aplanat_remove_lens()"
+    )
+
+
+def test_work_ends_with_the_file_the_extension_and_blender(panel):
+    panel.wait_for("background.progress() is not None", timeout=30)
+    panel.run("bpy.ops.wm.read_homefile(use_factory_startup=True, load_ui=False)")
+    panel.run(STAGE)
+    panel.wait_for("background.progress() is not None", timeout=30)
+    panel.run(
+        "import addon_utils, threading\n"
+        "addon_utils.disable(ADDON)\n"
+        "result = [t.name for t in threading.enumerate()]",
+        timeout=60,
+    )
+    assert panel.run(
+        "result = not any(t.name == 'aplanat-background' for t in threading.enumerate())"
+    )
+    panel.run("addon_utils.enable(ADDON)")
+    panel.run(STAGE)
+    panel.wait_for("background.progress() is not None", timeout=30)
+    panel.run("bpy.app.timers.register(lambda: bpy.ops.wm.quit_blender(), first_interval=0.2)")
+    assert panel.process.wait(60) == 0
