@@ -120,7 +120,7 @@ def _run(case, arguments, console):
             "subsamples": SUBSAMPLES,
             "truth": {"samples": case.samples, "file": _text(arguments.reference)},
             "compared": compared,
-            **drawn.work,
+            "work": drawn.work,
             "triangles_share": drawn.work["triangles_submitted"]
             / max(drawn.work["triangles_full_detail"], 1),
             "seconds": {
@@ -203,13 +203,14 @@ def _middle(values):
 
 def _line(run):
     compared, seconds = run["compared"], run["seconds"]
+    work = run["work"]
     plain, single = (run["accumulation"][k] for k in ("reference", "one_place_a_pixel"))
     return (
         f"{run['scene']}: adaptive ({run['samples']}, {run['subsamples']}) SSIM"
         f" {compared['ssim_srgb']:.4f}, worst tile {compared['ssim_tile']:.4f}, energy"
         f" {compared['energy']:.4f}; triangles {run['triangles_share']:.1%};"
-        f" {run['draw_calls']} draw calls, {run['sprites_drawn']} sprites drawn and"
-        f" {run['sprites_copied']} copied; levels {seconds['levels_make']:.1f} s once; frame"
+        f" {work['draw_calls']} draw calls, {work['sprites_drawn']} sprites drawn and"
+        f" {work['sprites_copied']} copied; levels {seconds['levels_make']:.1f} s once; frame"
         f" {plain['adaptive_seconds']:.2f} s; accumulation is as good with"
         f" {_number(plain)} samples, {plain['seconds_to_equal']:.1f} s: {plain['speedup']:.2f}"
         f" times as long; with one place a pixel {_number(single)} samples,"

@@ -106,9 +106,12 @@ class BenchScene:
         seconds = {}
         for stage in ("make", "from_memory"):
             with timed(seconds, stage):
-                uids = meshes_with_levels(snapshot.content, plan_frame(snapshot), least)
+                uids = meshes_with_levels(snapshot.content, plan_frame(snapshot))
                 self._store.request([snapshot.content.meshes[uid] for uid in uids], least)
                 self._store.finish()
+        # As in a render of this frame alone.
+        for uid in self._buffers.levels.keys() - set(uids):
+            del self._buffers.levels[uid]
         with timed(seconds, "upload"):
             for uid in uids:
                 if uid not in self._buffers.levels:
@@ -225,7 +228,6 @@ def _work(renderer):
     counts = renderer.counts
     return {
         "lens_samples": renderer.samples_done,
-        "subsamples": float(renderer.plan.subsample_counts.mean()),
         "subpixels": renderer.plan.subpixels,
         "triangles_submitted": counts.triangles,
         "triangles_full_detail": counts.triangles_full_detail,
