@@ -9,15 +9,14 @@ only costs time. The oldest files go when the folder grows too large.
 import contextlib
 import hashlib
 import os
-import sys
 import time
 from pathlib import Path
 
 from ..bokeh.profile import make_profile
 from ..errors import InputError, OutputError
+from ..files.cache_folder import cache_folder
 from .profile_file import FORMAT_VERSION, StoredProfile, load_profile, save_profile
 
-CACHE_VARIABLE = "APLANAT_CACHE"
 LARGEST_SIZE = 512 * 1024 * 1024
 # Counted whenever the tracer or the tables change what a lens gives.
 CONTENT_VERSION = 1
@@ -27,25 +26,9 @@ _OWN_FILES = ("*.exr", "thumb-*.npy")
 _ABANDONED_SECONDS = 24 * 3600.0
 
 
-def cache_folder():
-    """Return the folder of cached profiles: ``APLANAT_CACHE``, or the system's place for caches.
-
-    Returns
-    -------
-    Path
-        It may not exist yet.
-    """
-    chosen = os.environ.get(CACHE_VARIABLE)
-    if chosen:
-        return Path(chosen)
-    home = Path.home()
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = home / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
-    return base / "aplanat" / "profiles"
+def profile_folder():
+    """Return the folder of cached profiles; it may not exist yet."""
+    return cache_folder("profiles")
 
 
 def content_hash(prescription, label=None):
@@ -87,7 +70,7 @@ def profile(
         Zoom position; None: the first.
     chromatic : bool
     folder : Path or None
-        None: `cache_folder`.
+        None: `profile_folder`.
     lens_id : str
         Written into the file.
     progress : callable or None
@@ -202,7 +185,7 @@ def prune(folder, largest=LARGEST_SIZE):
 
 def _kept(prescription, label, kind, folder, lens_id, make):
     """Read a stored profile, or make and keep it."""
-    folder = cache_folder() if folder is None else Path(folder)
+    folder = profile_folder() if folder is None else Path(folder)
     key = content_hash(prescription, label)
     path = folder / f"{key[:32]}-{kind}.exr"
     with contextlib.suppress(InputError):

@@ -11,7 +11,7 @@ from ..bokeh.profile import make_profile
 from ..bokeh.pupil_beam import beam_from_infinity, beam_from_point
 from ..errors import OutputError, RenderCancelledError
 from ..files.whole_file import whole_file
-from ..lens_io.profile_cache import cache_folder, content_hash, pupil_tables
+from ..lens_io.profile_cache import content_hash, profile_folder, pupil_tables
 from ..optics.focus import focused
 from ..optics.glass import REFERENCE_WAVELENGTH_NM
 from ..optics.paraxial import first_order, image_distance
@@ -49,7 +49,7 @@ def thumbnail(prescription, progress=None, cancelled=None, folder=None):
     cancelled : callable or None
         Asked between steps; true ends the work.
     folder : Path or None
-        Where pictures are kept; None: `cache_folder`.
+        Where pictures are kept; None: `profile_folder`.
 
     Returns
     -------
@@ -63,7 +63,7 @@ def thumbnail(prescription, progress=None, cancelled=None, folder=None):
     PrescriptionError
         If the lens forms no image.
     """
-    folder = cache_folder() if folder is None else folder
+    folder = profile_folder() if folder is None else folder
     path = folder / f"thumb-{content_hash(prescription)[:32]}-{_DRAWING_VERSION}.npy"
     with contextlib.suppress(OSError, ValueError):
         kept = np.load(path, allow_pickle=False)

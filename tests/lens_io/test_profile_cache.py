@@ -12,7 +12,7 @@ import pytest
 
 from addon.errors import RenderCancelledError
 from addon.lens_io import profile_cache as module
-from addon.lens_io.profile_cache import cache_folder, content_hash, profile, prune, pupil_tables
+from addon.lens_io.profile_cache import content_hash, profile, profile_folder, prune, pupil_tables
 from addon.lens_io.toml_reader import read_lens
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -152,18 +152,9 @@ def test_many_writers_at_once_leave_one_good_file(shared, tmp_path):
     assert len(os.listdir(tmp_path)) == 1
 
 
-def test_folder_is_the_users_choice_or_the_systems(monkeypatch, tmp_path):
-    monkeypatch.setenv("APLANAT_CACHE", str(tmp_path / "x"))
-    assert cache_folder() == tmp_path / "x"
-    monkeypatch.delenv("APLANAT_CACHE")
-    monkeypatch.setattr(sys, "platform", "linux")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert cache_folder() == tmp_path / "aplanat" / "profiles"
-    monkeypatch.setattr(sys, "platform", "darwin")
-    assert cache_folder().parts[-4:] == ("Library", "Caches", "aplanat", "profiles")
-    monkeypatch.setattr(sys, "platform", "win32")
-    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "local"))
-    assert cache_folder() == tmp_path / "local" / "aplanat" / "profiles"
+def test_profiles_have_a_folder_of_their_own(monkeypatch, tmp_path):
+    monkeypatch.setenv("APLANAT_CACHE", str(tmp_path))
+    assert profile_folder() == tmp_path / "profiles"
 
 
 def test_off_axis_pupil_is_kept_too(lens, tmp_path, monkeypatch):
