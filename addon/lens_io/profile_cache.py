@@ -151,7 +151,9 @@ def pupil_tables(
         return StoredProfile(None, None, words, pictures)
 
     colors = hashlib.sha256(repr(options).encode()).hexdigest()[:8]
-    stored = _kept(prescription, configuration.label, f"pupil{LAYOUT}-{colors}", folder, lens_id, make)
+    stored = _kept(
+        prescription, configuration.label, f"pupil{LAYOUT}-{colors}", folder, lens_id, make
+    )
     if progress:
         progress(1.0)
     return unpack(stored.words, stored.pictures)
