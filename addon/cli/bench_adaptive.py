@@ -99,15 +99,18 @@ def _run(case, arguments, console):
         levels = bench.make_levels(adaptive)
         # The first time also compiles.
         drawn = [bench.draw(adaptive) for _ in range(2)][1]
-        truth = case.references.get("lens") if arguments.reference else None
-        truth = read_picture(truth)[::-1] if truth else None
         marks = [mark for mark in _MARKS if mark < case.samples]
-        pictures, truth = _accumulate(bench, reference, marks, truth, progress("reference"))
+        pictures = bench.draw_to_marks(reference, [*marks, case.samples], progress("reference"))
+        if arguments.reference:
+            truth = read_picture(arguments.reference)[::-1]
+        else:
+            pictures = list(pictures)
+            truth = pictures.pop()[2].astype(np.float64)
         compared = compare(drawn.picture, truth)
         wanted = compared["ssim_srgb"]
-        curves = {"reference": _curve(pictures, truth)}
+        curves = {"reference": _curve(pictures, truth, wanted)}
         pictures = bench.draw_to_marks(single, marks, progress("one place a pixel"))
-        curves["one_place_a_pixel"] = _curve(pictures, truth, stop=wanted)
+        curves["one_place_a_pixel"] = _curve(pictures, truth, wanted)
         plain = {
             name: _against(bench, adaptive, snapshot, curves[name], wanted)
             for name, snapshot in (("reference", reference), ("one_place_a_pixel", single))
@@ -147,16 +150,8 @@ def _text(path):
     return str(path) if path else None
 
 
-def _accumulate(bench, snapshot, marks, truth, progress):
-    """Draw the reference; return the pictures at the marks, and the truth if it was None."""
-    wanted = [*marks, snapshot.sampling.lens_samples] if truth is None else marks
-    pictures = list(bench.draw_to_marks(snapshot, wanted, progress))
-    if truth is None:
-        truth = pictures.pop()[2].astype(np.float64)
-    return pictures, truth
-
-
-def _curve(pictures, truth, stop=1.0):
+def _curve(pictures, truth, stop):
+    """Compare pictures on the way until one reaches the structural similarity of interest."""
     samples, seconds, ssim = [], [], []
     for mark, spent, picture in pictures:
         samples.append(mark)

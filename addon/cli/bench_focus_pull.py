@@ -23,7 +23,7 @@ _FRAMES = 24
 _FROM, _TO = 3.0 / 4.0, 4.0 / 3.0
 
 
-def focus_pull(scene, case, numbers, arguments, console, frames=_FRAMES):
+def focus_pull(scene, case, numbers, arguments, console):
     """Measure a focus pull.
 
     Parameters
@@ -34,7 +34,6 @@ def focus_pull(scene, case, numbers, arguments, console, frames=_FRAMES):
         Samples and subsamples of the adaptive method.
     arguments : argparse.Namespace
     console : Console
-    frames : int
 
     Returns
     -------
@@ -43,6 +42,7 @@ def focus_pull(scene, case, numbers, arguments, console, frames=_FRAMES):
         pixel and time, of a range of 1.
     """
     samples, subsamples = numbers
+    frames = _FRAMES
     places = samples * (1 + subsamples)
     ensure_context()
     dof = scene.camera.data.dof

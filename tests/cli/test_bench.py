@@ -4,6 +4,9 @@ import numpy as np
 import OpenEXR
 import pytest
 
+from addon.cli import bench_focus_pull
+from addon.cli.bench_curve import Curve, samples_to_reach
+from addon.cli.bench_focus_pull import mean_of_nine
 from addon.cli.picture_metrics import compare, read_picture
 from addon.errors import InputError
 
@@ -78,3 +81,79 @@ def test_bench_refuses_what_it_cannot_find(refused, tmp_path, small_blend):
     assert "one scene" in refused(
         *("bench", "--scene", small_blend, "--scene", small_blend, "--reference", "a.exr")
     )
+
+
+def test_samples_to_reach_a_likeness_are_found_between_two_marks():
+    # An error of 0.8 over the number of samples.
+    curve = Curve((8, 32, 128), (1.0, 4.0, 16.0), (0.9, 0.975, 0.99375))
+    samples, reached = samples_to_reach(curve, 0.95)
+    assert (samples, reached) == (pytest.approx(16.0), True)
+    assert samples_to_reach(curve, 0.8) == (8.0, True)
+    assert samples_to_reach(curve, 0.999) == (128.0, False)
+
+
+def test_a_mean_of_nine_is_that_of_the_pixel_and_its_neighbours(noise):
+    found = mean_of_nine(noise.astype(float))
+    assert found.shape == (46, 62, 3)
+    assert found[4, 9] == pytest.approx(noise[4:7, 9:12].mean(axis=(0, 1)), abs=1e-6)
+
+
+def test_bench_compares_the_adaptive_method_with_accumulation(aplanat, small_blend, tmp_path):
+    done = aplanat(
+        *("bench", "--method", "adaptive", "--scene", small_blend, "--samples", "64"),
+        *("--resolution", "48x32", "--json", "--pictures", tmp_path, "-o", tmp_path / "a.json"),
+    )
+    assert done.code == 0, done
+    run = done.answer["runs"][0]
+    assert (run["samples"], run["subsamples"]) == (32, 4)
+    assert run["work"]["lens_samples"] == 32
+    # Two planes against 64 samples of the same places.
+    assert run["compared"]["ssim_srgb"] > 0.97
+    assert run["compared"]["energy"] == pytest.approx(1.0, abs=0.01)
+    for plain in run["accumulation"].values():
+        ssim = [mark["ssim_srgb"] for mark in plain["curve"]]
+        assert ssim == sorted(ssim)
+        assert plain["speedup"] > 0.0
+        assert len(plain["ratios"]) == 5
+    assert {"plan", "prepare", "bounds", "surfaces", "sum"} == set(run["seconds_by_stage"])
+    for name in ("adaptive", "truth"):
+        path = tmp_path / f"{small_blend.stem}_{name}.exr"
+        assert read_picture(path).shape == (32, 48, 3)
+    assert (tmp_path / "a.json").stat().st_size > 100
+
+
+def test_a_truth_from_a_file_takes_the_place_of_one_that_is_rendered(
+    aplanat, small_blend, tmp_path
+):
+    words = ("bench", "--method", "adaptive", "--scene", small_blend, "--samples", "32")
+    words += ("--resolution", "48x32", "--json")
+    first = aplanat(*words, "--pictures", tmp_path)
+    again = aplanat(*words, "--reference", tmp_path / f"{small_blend.stem}_truth.exr")
+    found = [run.answer["runs"][0]["compared"] for run in (first, again)]
+    assert found[0] == pytest.approx(found[1], abs=1e-6)
+
+
+def test_bench_measures_a_focus_pull(aplanat, small_blend, monkeypatch):
+    monkeypatch.setattr(bench_focus_pull, "_FRAMES", 3)
+    done = aplanat(
+        *("bench", "--method", "adaptive", "--focus-pull", "--scene", small_blend),
+        *("--resolution", "48x32", "--json"),
+    )
+    assert done.code == 0, done
+    pull = done.answer["runs"][0]["focus_pull"]
+    assert pull["frames"] == 3
+    assert pull["reference_samples"] == 32 * 5
+    assert pull["focus_distance_m"] == pytest.approx([3.0, 16.0 / 3.0])
+    assert len(pull["excess_by_frame"]) == 2
+    # What the adaptive method changes more than the reference is part of what it changes.
+    assert pull["excess"] <= pull["largest_change"]["adaptive"]
+    assert pull["largest_change"]["reference"] > 0.001
+
+
+def test_bench_refuses_peers_without_a_reference_and_options_of_another_method(
+    refused, small_blend
+):
+    words = ("bench", "--scene", small_blend)
+    assert "no reference" in refused(*words, "--method", "adaptive", "--peers")
+    assert "--method adaptive" in refused(*words, "--peers")
+    assert "--method adaptive" in refused(*words, "--focus-pull")
