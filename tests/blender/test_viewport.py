@@ -91,6 +91,40 @@ def test_converged_viewport_equals_final_render(stage, tmp_path):
     assert np.abs(shown.astype(float) - rendered)[inside, inside].max() <= 3
 
 
+def test_adaptive_viewport_gets_its_levels_and_shows_the_reference(stage, tmp_path):
+    bare_camera_view(stage)
+    stage.run(
+        "settings = bpy.context.scene.aplanat\n"
+        "settings.method, settings.use_target_error = 'ADAPTIVE', True\n"
+        "settings.preview_error, settings.least_triangles = 0.005, 64\n"
+        "for name in ('thing0', 'thing4'):\n"
+        "    modifier = bpy.data.objects[name].modifiers.new('smooth', 'SUBSURF')\n"
+        "    modifier.levels = modifier.render_levels = 5\n"
+        "viewports.clear(); area().tag_redraw()"
+    )
+    wait_until_converged(stage)
+    stage.wait_for("not module('engine.level_store').level_store().busy", timeout=60)
+    # Levels that came later are drawn by the next frame.
+    stage.run("bpy.context.scene.camera.location.x += 1e-4; area().tag_redraw()")
+    stage.run("redraw(2)")
+    wait_until_converged(stage)
+    levels, samples = stage.run(
+        "renderer = next(iter(viewports))._renderer\n"
+        "result = [renderer._drawing.levels.max(), renderer.plan.samples]"
+    )
+    assert levels > 1.0
+    shown = screen(stage, tmp_path / "viewport.png")
+    final = tmp_path / "final.png"
+    stage.run(
+        "settings.method = 'REFERENCE'; settings.render_samples = 128\n"
+        f"bpy.context.scene.render.filepath = {str(final)!r}\n"
+        "bpy.ops.render.render(write_still=True)",
+        timeout=200,
+    )
+    # What was asked for, and as much again for levels and for the screen's own differences.
+    assert similarity(shown, iio.imread(final)[..., :3]) >= 1.0 - 2 * 0.005, samples
+
+
 def test_border_confines_the_picture(stage, tmp_path):
     bare_camera_view(stage)
     stage.run(
