@@ -115,7 +115,7 @@ def test_shared_drawings_hide_each_other_by_depth():
 
 
 def test_nothing_is_shared_far_from_the_focus():
-    snapshot = sheets_snapshot([1.0], 32, size=0.2)
+    snapshot = sheets_snapshot([0.4], 32, size=0.08)
     _, counts, found = picture(snapshot, plan_frame(snapshot))
     assert not found
     assert counts.sprites_copied == 0
