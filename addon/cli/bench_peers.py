@@ -128,10 +128,13 @@ class _Study:
             number *= 2
         curve = Curve(tuple(numbers), (0.0,) * len(numbers), tuple(ssim))
         samples, reached = samples_to_reach(curve, _SSIM)
+        # Cycles' pattern is best at powers of two: what lies between may be worse than both ends.
+        between = self._render("cycles", round(samples))["compared"]["ssim_srgb"]
+        samples = round(samples) if between >= _SSIM else numbers[-1]
         return {
             "tried": [{"samples": n, "ssim_srgb": q} for n, q in zip(numbers, ssim, strict=True)],
             "reached": reached,
-            **self._beside("cycles", round(samples), _TIMES),
+            **self._beside("cycles", samples, _TIMES),
         }
 
     def denoised(self, samples):
