@@ -20,7 +20,7 @@ from ..engine.plan import plan_frame
 from ..engine.scene_buffers import SceneBuffers
 from ..scene.extract import SceneExtractor
 
-# A frame that was not refined in the middle shows nothing: what is drawn between two looks.
+# Samples between two tellings of progress.
 _SLICE = 16
 
 
@@ -64,15 +64,18 @@ class BenchScene:
         self._folder = tempfile.TemporaryDirectory()
         self._store = LevelStore(folder=Path(self._folder.name))
         with timed(self.seconds, "extract"):
-            self.look()
+            self._read()
         with timed(self.seconds, "upload"):
             self._buffers.update(self.snapshot.content)
 
     def look(self):
         """Read the camera, and what else has changed."""
+        self._read()
+        self._buffers.update(self.snapshot.content)
+
+    def _read(self):
         depsgraph = bpy.context.evaluated_depsgraph_get()
         self.snapshot = self._extractor.extract(depsgraph, self._set_frame)
-        self._buffers.update(self.snapshot.content)
 
     def _set_frame(self, frame, subframe=0.0):
         self._scene.frame_set(frame, subframe=subframe)
