@@ -3,7 +3,7 @@
 All three render the scene through Blender's render operator, and all of that call is timed. The
 adaptive method is measured at the least of a ladder of settings that is as similar to the reference
 picture as is asked for. Cycles takes a number of samples that reaches the same: doubled until it
-does, then the interpolated one if that does, too. EEVEE has one best setting. The adaptive method is
+does, then the interpolated one if that does, too. EEVEE has one best setting. Our method is
 timed again beside each of them, because the machine may have other work.
 """
 
