@@ -109,13 +109,16 @@ def _cast(center, depth, bounds, move, sweep, tolerance):
     """Return the texel that a ray hits, or what lies farthest on its way; and the margin."""
     near, far = (sweep_px(move, sweep, d) for d in bounds)
     way = near - far
+    first, last = _part_inside(center - near, way, np.array(depth.shape[::-1]))
+    start = center - near + way * first
+    way = way * max(last - first, 0.0)
     length = np.abs(way).max()
     steps = int(np.ceil(length))
     # One step, whatever the rounding, if nothing lies before or behind.
     sure = abs(length - np.round(length)) if length > 0.0 else np.inf
     hit, closest, farthest, behind = None, tolerance, -1.0, None
     for k in range(steps + 1):
-        place = center - near + way * (k / max(steps, 1))
+        place = start + way * (k / max(steps, 1))
         sure = min(sure, np.abs(place - np.round(place)).min())
         x, y = np.clip(np.floor(place).astype(int), 0, (depth.shape[1] - 1, depth.shape[0] - 1))
         miss = np.array([x, y]) + 0.5 + sweep_px(move, sweep, depth[y, x]) - center
@@ -128,3 +131,14 @@ def _cast(center, depth, bounds, move, sweep, tolerance):
         if depth[y, x] > farthest:
             farthest, behind = depth[y, x], (y, x)
     return (behind if hit is None else hit), sure
+
+
+def _part_inside(start, way, size):
+    """From where to where a way, from 0 to 1, lies in the picture or within a texel of it."""
+    first, last = 0.0, 1.0
+    for axis in range(2):
+        if abs(way[axis]) > 1.0:
+            ends = np.array([-1.0, size[axis] + 1.0])
+            a, b = sorted((ends - start[axis]) / way[axis])
+            first, last = max(first, a), min(last, b)
+    return np.clip([first, last], 0.0, 1.0)

@@ -10,18 +10,34 @@
 // A hit is a texel whose surface comes to lie within so many texels of the pixel.
 #define TOLERANCE 1.0
 
+// From where to where a way, from 0 to 1, lies in the picture or within a texel of it.
+vec2 part_inside(vec2 start, vec2 way, vec2 size)
+{
+  vec2 part = vec2(0.0, 1.0);
+  for (int axis = 0; axis < 2; axis++) {
+    if (abs(way[axis]) > 1.0) {
+      float a = (-1.0 - start[axis]) / way[axis], b = (size[axis] + 1.0 - start[axis]) / way[axis];
+      part = vec2(max(part.x, min(a, b)), min(part.y, max(a, b)));
+    }
+  }
+  return clamp(part, 0.0, 1.0);
+}
+
 vec4 cast_ray(ivec2 pixel, ivec2 size, vec2 move, vec2 bounds)
 {
   vec2 near = sweep_px(move, sweep, bounds.x);
   vec2 far = sweep_px(move, sweep, bounds.y);
   vec2 way = near - far;
-  int steps = int(ceil(max(abs(way.x), abs(way.y))));
   vec2 center = vec2(pixel) + 0.5;
+  vec2 inside = part_inside(center - near, way, vec2(size));
+  vec2 start = center - near + way * inside.x;
+  way *= max(inside.y - inside.x, 0.0);
+  int steps = int(ceil(max(abs(way.x), abs(way.y))));
   ivec2 hit = pixel, behind = pixel;
   float closest = TOLERANCE, farthest = -1.0;
   bool found = false;
   for (int k = 0; k <= steps; k++) {
-    vec2 place = center - near + way * (float(k) / float(max(steps, 1)));
+    vec2 place = start + way * (float(k) / float(max(steps, 1)));
     ivec2 texel = clamp(ivec2(floor(place)), ivec2(0), size - 1);
     float depth = texelFetch(depth_tx, texel, 0).x;
     vec2 miss = abs(vec2(texel) + 0.5 + sweep_px(move, sweep, depth) - center);
