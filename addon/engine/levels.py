@@ -14,9 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 
 # Subtracted from every level. The mapping makes a triangle as large as the circle of confusion, so
-# that a blurred silhouette keeps its shape; but colours and normals that vary from vertex to vertex
-# are blurred by the triangles, too, and that blur should be small beside the lens'.
-COLOR_ALLOWANCE = 3.0
+# that a blurred silhouette keeps its shape; but what varies from vertex to vertex is blurred by the
+# triangles, too, and that blur should be small beside the lens'.
+LEAST_ALLOWANCE = 0.5
+# Colours take more the more they vary: an allowance of 1.5 at this standard deviation (that of
+# matte colours with soft highlights), 2 more for twice as much.
+_ALLOWANCE, _CONTRAST = 1.5, 0.25
+_MOST_ALLOWANCE = 4.5
 
 # Triangles are counted once a side: half of them face away.
 _FACING_SHARE = 0.5
@@ -95,6 +99,24 @@ def coc_radius(depth, plan):
     return defocus if plan.orthographic else defocus / np.maximum(depth, 1e-9)
 
 
+def color_allowance(contrast):
+    """Return by how many levels a mesh is drawn finer because its vertex colours vary.
+
+    Parameters
+    ----------
+    contrast : float
+        `MeshSnapshot.color_contrast`.
+
+    Returns
+    -------
+    float
+    """
+    if contrast <= 0.0:
+        return LEAST_ALLOWANCE
+    wanted = _ALLOWANCE + 2.0 * float(np.log2(contrast / _CONTRAST))
+    return min(max(wanted, LEAST_ALLOWANCE), _MOST_ALLOWANCE)
+
+
 def choose_levels(seen, triangles, plan, bias=0.0):
     """Choose the level of detail of every instance.
 
@@ -104,8 +126,8 @@ def choose_levels(seen, triangles, plan, bias=0.0):
     triangles : ndarray of shape (I,)
         Of the mesh at full detail.
     plan : FramePlan
-    bias : float
-        Subtracted from the level, besides `COLOR_ALLOWANCE`.
+    bias : float or ndarray of shape (I,)
+        Subtracted from the level.
 
     Returns
     -------
@@ -124,7 +146,7 @@ def choose_levels(seen, triangles, plan, bias=0.0):
         size = size / np.maximum(seen.center_depth, 1e-9)
     triangle_area = np.pi * size**2 / np.maximum(_FACING_SHARE * triangles, 1e-9)
     ratio = blur_area / np.maximum(triangle_area, 1e-30)
-    level = np.log2(np.maximum(ratio, 1e-30)) - COLOR_ALLOWANCE - bias
+    level = np.log2(np.maximum(ratio, 1e-30)) - bias
     return np.where(front & (smallest > 0.0), np.maximum(level, 0.0), 0.0)
 
 
@@ -145,6 +167,15 @@ def level_for_sample(levels, sample, samples):
     lower = np.floor(levels)
     coarser = sample >= np.round((1.0 - (levels - lower)) * samples)
     return (lower + coarser).astype(np.int64)
+
+
+def allowances(content):
+    """Return the `color_allowance` of every instance, shape (I,)."""
+    found = np.zeros(len(content.instances.world))
+    for group in content.groups:
+        contrast = content.meshes[group.mesh].color_contrast
+        found[group.first : group.first + group.count] = color_allowance(contrast)
+    return found
 
 
 def meshes_with_levels(content, plan):
@@ -168,7 +199,7 @@ def meshes_with_levels(content, plan):
     full = np.zeros(len(seen.radius))
     for group, mesh in zip(content.groups, meshes, strict=True):
         full[group.first : group.first + group.count] = len(mesh.triangles)
-    chosen = choose_levels(seen, full, plan, plan.level_bias)
+    chosen = choose_levels(seen, full, plan, plan.level_bias + allowances(content))
     wanted = {
         mesh.uid
         for group, mesh in zip(content.groups, meshes, strict=True)

@@ -12,7 +12,7 @@ from ..device import state
 from ..device.textures import texture_2d
 from ..passes import surface
 from . import culling
-from .levels import choose_levels, extents, level_for_sample, world_corners
+from .levels import allowances, choose_levels, extents, level_for_sample, world_corners
 from .scene_buffers import instance_texels
 from .shared_drawings import SharedDrawings
 
@@ -75,6 +75,7 @@ class SceneDrawing:
             [level.triangles for level in buffers.mesh_levels(group.mesh)]
             for group in content.groups
         ]
+        self._allowances = allowances(content)
         self._by_level = {}
         for draw in self._draws:
             self._by_level.setdefault((draw.group, draw.level), []).append(draw)
@@ -117,7 +118,8 @@ class SceneDrawing:
         if plan.level_bias is None or not deepest.any():
             return np.zeros(len(self._corners))
         full = np.array([counts[0] for counts in self._triangles], float)[self._group_of]
-        return np.minimum(choose_levels(seen, full, plan, plan.level_bias), deepest)
+        bias = plan.level_bias + self._allowances
+        return np.minimum(choose_levels(seen, full, plan, bias), deepest)
 
     def _order_rows(self):
         """Put rows in an order in which those of one level are neighbours, where levels differ."""

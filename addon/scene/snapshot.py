@@ -9,6 +9,7 @@ snapshots.
 
 import itertools
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -54,7 +55,13 @@ class MeshSnapshot:
     attributes: dict[str, np.ndarray] = field(default_factory=dict)
     motion: tuple[np.ndarray, np.ndarray] | None = None
 
-    @property
+    @cached_property
+    def color_contrast(self):
+        """Standard deviation of the vertex colours, of the channel that varies most; 0 without."""
+        colors = [v[:, :3] for k, v in self.attributes.items() if k.startswith("color:")]
+        return max((float(c.std(axis=0).max()) for c in colors if len(c)), default=0.0)
+
+    @cached_property
     def bounds(self):
         """Lower and upper corner of the triangles, shape (2, 3)."""
         if len(self.triangles) == 0:

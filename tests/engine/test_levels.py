@@ -33,7 +33,7 @@ def test_a_triangle_as_large_as_the_blur_is_level_zero_and_each_quarter_two_more
     area = np.pi * (scale * 0.2 / depth) ** 2
     # As many triangles, seen from both sides, as circles of confusion fit into the object.
     triangles = np.array([area / blur / 0.5])
-    bias = -levels.COLOR_ALLOWANCE
+    bias = 0.0
     box = seen_box(depth)
     assert levels.choose_levels(box, triangles, plan, bias)[0] == pytest.approx(0.0, abs=1e-9)
     assert levels.choose_levels(box, 4 * triangles, plan, bias)[0] == pytest.approx(2.0)
@@ -83,3 +83,11 @@ def test_both_levels_share_the_lens_evenly():
         center = plan.lens_positions[chosen == level].mean(axis=0)
         # The centre of 16 points of the sequence lies within a tenth of the radius.
         assert np.linalg.norm(center) < 0.1 * 0.1
+
+
+def test_colours_that_vary_more_are_drawn_finer():
+    allowed = [levels.color_allowance(contrast) for contrast in (0.0, 0.1, 0.25, 0.5, 1.0, 9.0)]
+    assert allowed == sorted(allowed)
+    assert allowed[0] == levels.LEAST_ALLOWANCE
+    assert allowed[3] - allowed[2] == pytest.approx(2.0)
+    assert allowed[-1] == allowed[-2]
