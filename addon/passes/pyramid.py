@@ -1,4 +1,4 @@
-"""Pyramid of a lens sample: means of its colour, extremes of its depth, over ever larger squares."""
+"""Pyramid of a lens sample: means of its colour and extremes of its depth over larger squares."""
 
 from ..device import shader_source
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
