@@ -11,16 +11,36 @@ Garland and Heckbert, *Surface simplification using quadric error metrics*, SIGG
 collapses are those of fast-simplification.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from .level_attributes import carry
 from .level_collapses import Halving, connected, decimate, merged_places, weld
 from .snapshot import MeshSnapshot, next_uid
 
-__all__ = ["Halving", "available", "replay", "simplify"]
+__all__ = ["Halving", "MeshLevel", "available", "replay", "simplify", "slots_of", "surviving"]
 
 # A level that keeps more than this share of its predecessor's triangles is not worth its memory.
 _LEAST_REDUCTION = 0.75
+
+
+@dataclass(frozen=True, eq=False)
+class MeshLevel(MeshSnapshot):
+    """A level of detail, and how the one before merged into it.
+
+    Parameters
+    ----------
+    places : ndarray of shape (V,)
+        int32; the place of each vertex of the level before: those of one place are the sides of a
+        seam.
+    merged : ndarray of shape (V,)
+        int32; the vertex of this level that each of those became; -1 where nothing is left at its
+        place.
+    """
+
+    places: np.ndarray | None = None
+    merged: np.ndarray | None = None
 
 
 def available():
@@ -46,7 +66,7 @@ def simplify(mesh, least_triangles, check=None):
 
     Returns
     -------
-    levels : tuple of MeshSnapshot
+    levels : tuple of MeshLevel
         From level 1 up; empty if the mesh cannot be simplified, or none can (see `available`).
     halvings : tuple of Halving
         One a level.
@@ -81,7 +101,7 @@ def replay(mesh, halvings):
 
     Returns
     -------
-    tuple of MeshSnapshot
+    tuple of MeshLevel
     """
     levels = []
     for halving in halvings:
@@ -94,23 +114,43 @@ def _merge(mesh, halving):
     """Return the next level, and the place of each of its vertices."""
     place = halving.groups[halving.places]
     corners = place[mesh.triangles]
-    kept = _kept(halving.places[mesh.triangles], corners)
+    kept = surviving(halving.places[mesh.triangles], corners)
     points = merged_places(mesh, halving)
     vertex_of, vertex_places = _vertices(mesh, halving, place, kept)
     triangles = np.ascontiguousarray(vertex_of[mesh.triangles[kept]], np.int32)
     positions = np.ascontiguousarray(points[vertex_places], np.float32)
     attributes = carry(mesh, vertex_of, positions, triangles)
-    level = MeshSnapshot(
-        next_uid(), mesh.name, positions, triangles, _slots(mesh.slots, kept), attributes
+    # A side of a seam that has shrunk to nothing continues as another of its place.
+    vertex_at = np.full(len(points), -1, np.int32)
+    vertex_at[vertex_places] = np.arange(len(vertex_places), dtype=np.int32)
+    level = MeshLevel(
+        next_uid(),
+        mesh.name,
+        positions,
+        triangles,
+        slots_of(mesh.slots, kept),
+        attributes,
+        places=halving.places,
+        merged=np.where(vertex_of >= 0, vertex_of, vertex_at[place]).astype(np.int32),
     )
     return level, _without_gaps(vertex_places)
 
 
-def _kept(before, corners):
+def surviving(before, corners):
     """Return the triangles that stay: with three corners, and not twice.
 
     Where two that face each other have come to lie on one another, there is no inside left between
     them, and both go, unless they lay so already.
+
+    Parameters
+    ----------
+    before, corners : ndarray of shape (T, 3)
+        Places of their corners, before and after merging.
+
+    Returns
+    -------
+    ndarray of shape (K,)
+        Ascending numbers of triangles.
     """
     proper = _proper(corners) & _proper(before)
     kept = np.flatnonzero(proper)
@@ -146,8 +186,20 @@ def _runs(rows):
     return order, starts
 
 
-def _slots(slots, kept):
-    """Count the kept triangles of each material slot; they are still sorted by it."""
+def slots_of(slots, kept):
+    """Count the kept triangles of each material slot; they are still sorted by it.
+
+    Parameters
+    ----------
+    slots : tuple of (int, int, int)
+        As in `MeshSnapshot`.
+    kept : ndarray of shape (K,)
+        Ascending numbers of triangles.
+
+    Returns
+    -------
+    tuple of (int, int, int)
+    """
     counts = []
     for slot, first, count in slots:
         low, high = np.searchsorted(kept, (first, first + count))
