@@ -54,7 +54,7 @@ class Diffraction:
             raise InputError("diffraction needs wavelengths above 0 nm")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Appearance:
     """Everything that shapes a sprite besides the lens.
 

@@ -7,6 +7,7 @@ import numpy as np
 from ..sampling.pixel_filter import subpixel_weights
 from ..sampling.sequence import lens_samples, pixel_offsets
 from ..sampling.subsamples import subsample_offsets
+from .bokeh_plan import BokehPlan, plan_bokeh
 from .quality import settle
 
 # Diagonals of the picture over the diameter of the largest circle of confusion that counts as
@@ -68,6 +69,8 @@ class FramePlan:
         Opacity below which a surface is left out of the data passes.
     previous, next : ndarray of shape (4, 4)
         World to clip space of the region in the neighbouring frames.
+    bokeh : BokehPlan or None
+        None draws highlights as everything else.
     """
 
     width: int
@@ -94,6 +97,7 @@ class FramePlan:
     alpha_threshold: float
     previous: np.ndarray
     next: np.ndarray
+    bokeh: BokehPlan | None = None
 
     @property
     def samples(self):
@@ -240,7 +244,8 @@ def plan_frame(snapshot):
     if sampling.method == "ADAPTIVE" and sampling.target_error is not None:
         first = _plan(snapshot, replace(sampling, lens_samples=1, subsamples=0))
         sampling = settle(sampling, snapshot, first)
-    return _plan(snapshot, sampling)
+    plan = _plan(snapshot, sampling)
+    return replace(plan, bokeh=plan_bokeh(snapshot, plan))
 
 
 def _plan(snapshot, sampling):

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ..bokeh.appearance import Appearance
 from ..optics.prescription import Prescription
 from ..sampling.thin_lens import ThinLens
 from .surface_graph import SurfaceGraph
@@ -240,6 +241,63 @@ class LensSettings:
     prescription: Prescription
 
 
+@dataclass(frozen=True)
+class BokehSettings:
+    """How highlights are drawn apart from the rest of the picture (methods 9 to 13).
+
+    Parameters
+    ----------
+    threshold : float
+        Radiance above which light counts as a highlight, of the largest channel.
+    gain : float
+        Multiplies the highlights; 1 keeps the picture's energy.
+    model : {'POINT', 'CLUSTERED'}
+        A highlight for every pixel, or similar ones merged.
+    cluster_levels : int
+        How often neighbours are merged at most; each level halves the resolution.
+    similarity : float
+        How different merged highlights may be; 1 is what the scene's size suggests.
+    global_merge : bool
+        Similar clusters are merged wherever they lie.
+    visibility : {'AUTO', 'RASTER', 'WARP', 'SPLAT'}
+        How what hides a highlight from parts of the lens is found: by drawing the scene from it,
+        by casting rays through the peeled layers, or by doing so pixel by pixel.
+    layers : int
+        Surfaces behind one another that are searched for highlights.
+    overscan : float
+        How far outside the frame highlights are searched at most, as a share of its longer side.
+    lens_views : int
+        Places on the lens that highlights are looked for from; more than one keeps apart what
+        mirroring surfaces show to different parts of the lens.
+    amplification : float
+        How much brighter white is taken to be in worlds whose pictures hold nothing brighter.
+    appearance : Appearance
+        Masks over the opening.
+    distortion : float
+        K of the division model; negative is a barrel.
+    vignetting : {'NONE', 'ANALYTIC', 'LENS'}
+        Cat's eyes: none, by the appearance's rims, or by the real lens' own pupil.
+    profile_strength : float
+        0: even discs; 1: the intensity of the traced lens.
+    """
+
+    threshold: float = 1.0
+    gain: float = 1.0
+    model: str = "POINT"
+    cluster_levels: int = 4
+    similarity: float = 1.0
+    global_merge: bool = False
+    visibility: str = "AUTO"
+    layers: int = 4
+    overscan: float = 0.25
+    lens_views: int = 1
+    amplification: float = 0.0
+    appearance: Appearance = field(default_factory=Appearance)
+    distortion: float = 0.0
+    vignetting: str = "NONE"
+    profile_strength: float = 1.0
+
+
 @dataclass(frozen=True, eq=False)
 class Camera:
     """Where the picture is taken from.
@@ -257,6 +315,8 @@ class Camera:
         View and projection in the neighbouring frames, when motion was asked for.
     real_lens : LensSettings or None
         None: the camera names no lens that can be used.
+    bokeh : BokehSettings or None
+        None: highlights are drawn as everything else.
     report : tuple of str
         What the camera asks for and does not get, one line each.
     """
@@ -268,6 +328,7 @@ class Camera:
     previous: tuple[np.ndarray, np.ndarray] | None = None
     next: tuple[np.ndarray, np.ndarray] | None = None
     real_lens: LensSettings | None = None
+    bokeh: BokehSettings | None = None
     report: tuple[str, ...] = ()
 
 
@@ -320,6 +381,8 @@ class Sampling:
         No level of detail has fewer.
     progressive : bool
         The picture may be looked at before all samples are drawn.
+    reference_bokeh : bool
+        The reference method, too, draws highlights apart, instead of sampling them as the rest.
     """
 
     method: str = "REFERENCE"
@@ -332,6 +395,7 @@ class Sampling:
     level_bias: float = 0.0
     least_triangles: int = 256
     progressive: bool = False
+    reference_bokeh: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,15 +21,18 @@ ROOMS = {
     "lens_io": {"files", "optics", "bokeh", "sampling"},
     # Drawings of lenses, with a plotting library that is imported inside functions.
     "plots": {"files", "optics", "bokeh", "sampling", "lens_io"},
-    "scene.snapshot": {"sampling", "optics", "scene.surface_graph"},
+    "scene.snapshot": {"sampling", "optics", "bokeh", "scene.surface_graph"},
     "scene.surface_graph": set(),
     "device": set(),
-    "passes": {"device", "sampling", "scene.surface_graph", "scene.snapshot"},
+    "passes": {"device", "sampling", "bokeh", "scene.surface_graph", "scene.snapshot"},
     "reference": {"sampling", "scene.snapshot", "optics", "bokeh"},
-    "scene": {"sampling", "optics", "lens_io", "scene.snapshot", "scene.surface_graph"},
+    "scene": {
+        *("sampling", "optics", "bokeh", "lens_io"),
+        *("scene.snapshot", "scene.surface_graph"),
+    },
     "layers": {"sampling", "scene.snapshot"},
     "engine": {
-        *("files", "device", "passes", "sampling"),
+        *("files", "device", "passes", "sampling", "optics", "bokeh"),
         *("scene", "scene.snapshot", "scene.surface_graph"),
     },
     "compositor": {"engine", "scene.snapshot"},

@@ -1,0 +1,152 @@
+"""The part of a frame plan that concerns highlights: what is peeled, split and splatted.
+
+Highlights are searched from the lens' centre in a raster that reaches beyond the frame, as far as
+the blur of what lies out there reaches in. A pixel of it is a pixel of the picture, divided into
+sub-pixels so that small emitters are met.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..sampling.highlights import highlight_share, least_coc
+from ..sampling.iris import Iris
+from ..sampling.pixel_filter import filter_density
+from ..scene.snapshot import BokehSettings
+from .levels import coc_radius, extents, world_corners
+
+# Depth that stands for infinity, in focus distances: the circle of confusion differs by 1e-6.
+_INFINITY = 1e6
+# Around the frame, px, for the edges of discs that end just outside.
+_RIM = 2
+# Of the peeled raster, in sub-pixels (20 bytes each a layer), and its longer side.
+_LARGEST_RASTER = 1 << 22
+_LONGEST_RASTER = 16384
+_MOST_SUBPIXELS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class BokehPlan:
+    """How the highlights of a frame are found and drawn.
+
+    Parameters
+    ----------
+    settings : BokehSettings
+    least_coc : float
+        Radius of the circle of confusion from which on light is splatted, px.
+    width, height : int
+        Of the peeled raster in pixels of the picture.
+    margin : tuple of 2 int
+        How far it reaches beyond the frame on the left and below, px; the same on the other sides.
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the peeled raster.
+    subpixels : int
+        Along each side of a pixel of the peeled raster.
+    world : bool
+        The world's image may give highlights.
+    world_share : float
+        Share of its light above the threshold that is splatted.
+    world_depth : float
+        That stands for infinity, m.
+    iris : Iris
+        The lens' opening.
+    filter_width : float
+        Side of the square that blurs as the pixel filter does, px.
+    """
+
+    settings: BokehSettings
+    least_coc: float
+    width: int
+    height: int
+    margin: tuple[int, int]
+    projection: np.ndarray
+    subpixels: int
+    world: bool
+    world_share: float
+    world_depth: float
+    iris: Iris
+    filter_width: float
+
+    @property
+    def layers(self):
+        """Number of surfaces behind one another that are peeled, the world not counted."""
+        return self.settings.layers
+
+
+def plan_bokeh(snapshot, plan):
+    """Plan the highlights of a frame.
+
+    Parameters
+    ----------
+    snapshot : SceneSnapshot
+    plan : FramePlan
+        Without them.
+
+    Returns
+    -------
+    BokehPlan or None
+        None where nothing is splatted: the settings ask for nothing, or everything is sharp.
+    """
+    settings, lens = snapshot.camera.bokeh, snapshot.camera.lens
+    sampling = snapshot.sampling
+    wanted = sampling.method != "REFERENCE" or sampling.reference_bokeh
+    if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
+        return None
+    places = plan.samples + int(plan.subsample_counts.sum())
+    least = least_coc(places)
+    largest = _largest_coc(snapshot.content, plan)
+    if largest <= least:
+        return None
+    margin = _margin(plan, settings, largest)
+    width, height = plan.width + 2 * margin[0], plan.height + 2 * margin[1]
+    # Of a parallel camera, all pixels show the same point at infinity: it is no highlight.
+    world = bool(snapshot.content.world.image) and not snapshot.film.transparent
+    world = world and not plan.orthographic
+    film = snapshot.film
+    return BokehPlan(
+        settings=settings,
+        least_coc=least,
+        width=width,
+        height=height,
+        margin=margin,
+        projection=np.diag([plan.width / width, plan.height / height, 1.0, 1.0]) @ plan.projection,
+        subpixels=_subpixels(width, height),
+        world=world,
+        world_share=float(highlight_share(plan.empty_coc, least)) if world else 0.0,
+        world_depth=_INFINITY * max(plan.focus_distance, 1.0),
+        iris=lens.iris,
+        filter_width=_filter_width(film.filter_kind, film.filter_size_px),
+    )
+
+
+def _largest_coc(content, plan):
+    largest = abs(plan.empty_coc) if content.world.image else 0.0
+    if content.groups:
+        bounds = {group.mesh: content.meshes[group.mesh].bounds for group in content.groups}
+        seen = extents(world_corners(content, bounds), plan.view)
+        front = seen.farthest > 0.0
+        near = np.maximum(seen.nearest[front], 1e-3 * plan.focus_distance)
+        for depth in (near, seen.farthest[front]):
+            largest = max(largest, float(np.abs(coc_radius(depth, plan)).max(initial=0.0)))
+    return largest
+
+
+def _margin(plan, settings, largest):
+    narrowing = plan.lens_extent / plan.lens_extent[1]
+    limit = settings.overscan * max(plan.width, plan.height)
+    return tuple(int(np.ceil(min(largest * n, limit))) + _RIM for n in narrowing)
+
+
+def _subpixels(width, height):
+    affordable = min(
+        int(np.sqrt(_LARGEST_RASTER / (width * height))), _LONGEST_RASTER // max(width, height)
+    )
+    return max(1, min(affordable, _MOST_SUBPIXELS))
+
+
+def _filter_width(kind, size_px):
+    """Return the width of the box with the variance of a pixel filter along an axis."""
+    reach = 2.0 * size_px
+    places = (np.arange(1024) + 0.5) / 1024 * 2.0 * reach - reach
+    density = filter_density(places, kind, size_px)
+    return float(np.sqrt(12.0 * (density * places**2).sum() / density.sum()))

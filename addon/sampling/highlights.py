@@ -1,0 +1,121 @@
+"""Which light is blurred by lens samples, and which is splatted as bokeh (methods 9 and 10).
+
+A picture averaged over n places on the lens shows the disc of a bright point as n dots. Where the
+disc has more pixels than there are places, the light above a threshold is therefore taken out of
+the samples and splatted as a disc of its own. Nothing is lost: at every surface the radiance `I`
+with the signed circle of confusion `C` (px) is divided into
+
+``highlight = share(C) I max(0, 1 - threshold / max(I))`` and ``base = I - highlight``,
+
+``share(C) = smoothstep(c0, 1.5 c0, |C|)``, ``c0 = max(2, sqrt(places / pi))``.
+
+The same functions for the graphics device are in ``lib/highlight_lib.glsl``.
+"""
+
+import numpy as np
+
+# Smaller discs are hardly larger than the pixel filter, px.
+_LEAST_COC = 2.0
+# The share grows from 0 to 1 while the circle grows by this factor, so that nothing pops.
+_TRANSITION = 1.5
+
+
+def least_coc(places):
+    """Return the radius of the circle of confusion from which on light is splatted.
+
+    Parameters
+    ----------
+    places : float
+        On the lens, over which the samples are averaged.
+
+    Returns
+    -------
+    float
+        In pixels: its disc has as many pixels as there are places.
+    """
+    return max(_LEAST_COC, float(np.sqrt(places / np.pi)))
+
+
+def highlight_share(coc_px, least):
+    """Return which share of the light above the threshold is splatted.
+
+    Parameters
+    ----------
+    coc_px : ndarray of shape (...)
+        Signed radius of the circle of confusion, px.
+    least : float
+        See `least_coc`.
+
+    Returns
+    -------
+    ndarray of shape (...)
+        0 to 1.
+    """
+    t = np.clip((np.abs(coc_px) / least - 1.0) / (_TRANSITION - 1.0), 0.0, 1.0)
+    return t * t * (3.0 - 2.0 * t)
+
+
+def highlight_excess(radiance, threshold):
+    """Return the light above the threshold, in the colour of the whole.
+
+    Parameters
+    ----------
+    radiance : ndarray of shape (..., 3)
+    threshold : float
+        Of the largest channel; greater than 0.
+
+    Returns
+    -------
+    ndarray of shape (..., 3)
+    """
+    radiance = np.asarray(radiance)
+    return radiance * (1.0 - _kept(radiance, threshold))
+
+
+def highlight_base(radiance, share, threshold):
+    """Return what the lens samples keep: the radiance without the splatted part.
+
+    Parameters
+    ----------
+    radiance : ndarray of shape (..., 3)
+    share : ndarray of shape (...)
+        See `highlight_share`.
+    threshold : float
+
+    Returns
+    -------
+    ndarray of shape (..., 3)
+        ``radiance - share * highlight_excess(radiance, threshold)``, without the loss of digits
+        that this difference has for radiances far above the threshold.
+    """
+    radiance, share = np.asarray(radiance), np.asarray(share)[..., None]
+    return radiance * ((1.0 - share) + share * _kept(radiance, threshold))
+
+
+def amplify(radiance, amplification):
+    """Return what an encoded picture may have shown before its whites were cut off.
+
+    Parameters
+    ----------
+    radiance : ndarray of shape (..., 3)
+        Scene linear, 1 where the picture is white.
+    amplification : float
+        Of white; 0 changes nothing.
+
+    Returns
+    -------
+    ndarray of shape (..., 3)
+        ``radiance (1 + amplification L^10)`` with the luminance L.
+
+    References
+    ----------
+    Jeong et al., TVCG 2020, section 4.1.
+    """
+    radiance = np.asarray(radiance)
+    luminance = np.maximum(radiance @ np.array([0.2126, 0.7152, 0.0722]), 0.0)
+    return radiance * (1.0 + amplification * luminance[..., None] ** 10)
+
+
+def _kept(radiance, threshold):
+    peak = np.maximum(radiance.max(axis=-1, keepdims=True), 1e-30)
+    return np.minimum(threshold / peak, 1.0)

@@ -1,0 +1,42 @@
+// Which light is blurred by lens samples and which is splatted as bokeh (methods 9, 10); the same
+// as addon/sampling/highlights.py.
+#ifndef HIGHLIGHT_LIB_GLSL
+#define HIGHLIGHT_LIB_GLSL
+
+// The share grows from 0 to 1 while the circle of confusion grows by this factor.
+#define HIGHLIGHT_TRANSITION 1.5
+
+// Share of the light above the threshold that is splatted; the radius of the circle of confusion
+// and the least one that is splatted, px.
+float highlight_share(float coc_px, float least_px)
+{
+  return smoothstep(least_px, HIGHLIGHT_TRANSITION * least_px, abs(coc_px));
+}
+
+// Share of the radiance that lies below the threshold.
+float highlight_kept(vec3 radiance, float threshold)
+{
+  float peak = max(max(radiance.r, max(radiance.g, radiance.b)), 1e-30);
+  return min(threshold / peak, 1.0);
+}
+
+// Light above the threshold, in the colour of the whole.
+vec3 highlight_excess(vec3 radiance, float threshold)
+{
+  return radiance * (1.0 - highlight_kept(radiance, threshold));
+}
+
+// Radiance without the splatted part, to full precision however bright it is.
+vec3 highlight_base(vec3 radiance, float share, float threshold)
+{
+  return radiance * mix(1.0, highlight_kept(radiance, threshold), share);
+}
+
+// What an encoded picture may have shown before its whites were cut off.
+vec3 highlight_amplify(vec3 radiance, float amplification)
+{
+  float luminance = max(dot(radiance, vec3(0.2126, 0.7152, 0.0722)), 0.0);
+  return radiance * (1.0 + amplification * pow(luminance, 10.0));
+}
+
+#endif
