@@ -18,6 +18,8 @@ TEXEL_BYTES = {
     "RGBA8": 4,
     "RG32F": 8,
     "R32F": 4,
+    "R16F": 2,
+    "R8": 1,
     "R32UI": 4,
     "DEPTH_COMPONENT32F": 4,
 }

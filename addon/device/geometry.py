@@ -77,3 +77,16 @@ def fullscreen_batch():
     vertices.attr_fill("pos", np.array([[-1, -1], [3, -1], [-1, 3]], np.float32))
     census.record("vertex_buffer", vertices, 24)
     return census.record("batch", gpu.types.GPUBatch(type="TRIS", buf=vertices))
+
+
+def square_batch():
+    """Return two triangles over the unit square; attribute ``pos``."""
+    import gpu
+
+    vertex_format = gpu.types.GPUVertFormat()
+    vertex_format.attr_add(id="pos", comp_type="F32", len=2, fetch_mode="FLOAT")
+    corners = np.array([[0, 0], [1, 0], [0, 1], [0, 1], [1, 0], [1, 1]], np.float32)
+    vertices = gpu.types.GPUVertBuf(vertex_format, len(corners))
+    vertices.attr_fill("pos", corners)
+    census.record("vertex_buffer", vertices, corners.nbytes)
+    return census.record("batch", gpu.types.GPUBatch(type="TRIS", buf=vertices))

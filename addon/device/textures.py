@@ -27,6 +27,32 @@ def texture_2d(array, texel_format="RGBA32F"):
     return census.record("texture", texture, census.texture_bytes(width, height, texel_format))
 
 
+def texture_array(array, texel_format="RGBA32F"):
+    """Upload an array as the layers of a 2D array texture.
+
+    Parameters
+    ----------
+    array : ndarray of shape (layers, height, width, channels)
+        float32; converted by the device to `texel_format`.
+    texel_format : str
+
+    Returns
+    -------
+    GPUTexture
+        Linear filtering, ending at its edges.
+    """
+    import gpu
+
+    data = np.ascontiguousarray(array, np.float32)
+    layers, height, width = data.shape[:3]
+    buffer = gpu.types.Buffer("FLOAT", data.size, data.reshape(-1))
+    texture = gpu.types.GPUTexture((width, height), layers=layers, format=texel_format, data=buffer)
+    texture.filter_mode(True)
+    texture.extend_mode("EXTEND")
+    size = census.texture_bytes(width, height, texel_format, layers)
+    return census.record("texture", texture, size)
+
+
 def image_texture(image):
     """Upload an `ImageSnapshot`; 8-bit pixels stay encoded.
 

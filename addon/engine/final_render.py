@@ -74,6 +74,9 @@ def render_view_layer(engine, depsgraph, heard):
             statistics.triangles_full_detail += counts.triangles_full_detail
             statistics.sprites_drawn += counts.sprites_drawn
             statistics.sprites_copied += counts.sprites_copied
+            if renderer.highlights:
+                for name, number in vars(renderer.highlights).items():
+                    statistics.highlights[name] += number
             statistics.shaders_compiled += compiled_count() - compiled_before
             statistics.texture_bytes = max(statistics.texture_bytes, renderer.texture_bytes())
             statistics.geometry_bytes = max(statistics.geometry_bytes, renderer.geometry_bytes())

@@ -13,6 +13,7 @@ from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
 from ..passes import accumulate, background, cryptomatte, data, resolve, surface
 from . import render_passes
+from .bokeh_stage import BokehStage, highlight_buffer
 from .scene_drawing import SceneDrawing
 from .subsampling import SubsampleBlur
 
@@ -38,8 +39,8 @@ class FrameRenderer:
     def __init__(self, plan, snapshot, buffers):
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
-        self._content = self._levels = self._drawing = self._blur = None
-        self._mattes = False
+        self._content = self._levels = self._drawing = self._blur = self._bokeh = None
+        self._target = None
         self._targets = None
         self.restart(plan, snapshot)
 
@@ -55,24 +56,36 @@ class FrameRenderer:
         self.plan = plan
         self.samples_done = 0
         self._cryptomattes = render_passes.cryptomatte_kinds(plan.passes)
-        mattes = bool(render_passes.made_by(plan.passes, "MATTE", "CRYPTOMATTE"))
+        self._mattes = bool(render_passes.made_by(plan.passes, "MATTE", "CRYPTOMATTE"))
+        target = surface.COLOR_AND_MATTES if self._mattes else surface.COLOR
+        self._highlights = None
+        if plan.bokeh:
+            target = surface.without_highlights(target)
+            self._highlights = highlight_buffer(plan.bokeh)
         levels = self._buffers.levels_version
-        if (snapshot.content, mattes, levels) != (self._content, self._mattes, self._levels):
-            self._content, self._mattes, self._levels = snapshot.content, mattes, levels
-            target = surface.COLOR_AND_MATTES if mattes else surface.COLOR
+        if (snapshot.content, target, levels) != (self._content, self._target, self._levels):
+            self._content, self._target, self._levels = snapshot.content, target, levels
             self._drawing = SceneDrawing(snapshot.content, self._buffers, target)
-        self._drawing.aim(plan)
+        self._drawing.aim(plan, self._highlights)
         self._view = uniform_buffer(_view_params(plan))
         world = snapshot.content.world
         self._background = (0.0,) * 4 if snapshot.film.transparent else (*world.color, 1.0)
         self._shows_image = bool(world.image) and not snapshot.film.transparent
         self._blur = SubsampleBlur(plan, self._drawing.nearest) if plan.blurs else None
+        self._bokeh = None
+        if plan.bokeh:
+            self._bokeh = BokehStage(plan, self._drawing, self._buffers, self._highlights)
         self._prepare_targets()
 
     @property
     def counts(self):
         """Work done since the frame began, as `DrawingCounts`."""
         return self._drawing.counts
+
+    @property
+    def highlights(self):
+        """What became of the frame's highlights, as `HighlightCounts`; None without bokeh."""
+        return self._bokeh.counts if self._bokeh else None
 
     def _prepare_targets(self):
         size = (self.plan.width, self.plan.height)
@@ -98,6 +111,8 @@ class FrameRenderer:
             TargetSpec("sum", "RGBA32F"),
             TargetSpec("image", "RGBA32F"),
         ]
+        if self.plan.bokeh:
+            specs.append(TargetSpec("bokeh", "RGBA32F"))
         if self._mattes:
             specs.append(TargetSpec("mattes", "RGBA32F", scale=fine))
         if "Focus Matte" in self.plan.passes:
@@ -117,8 +132,8 @@ class FrameRenderer:
         ----------
         samples : int
         stage : callable, optional
-            For measuring: called with the name of each part of a sample's work (``bounds``,
-            ``surfaces``, ``sum``), it returns a context manager in which that is given to the
+            For measuring: called with the name of each part of a sample's work (``bokeh``,
+            ``bounds``, ``surfaces``, ``sum``), it returns a context manager in which that is given to the
             device.
         """
         self._targets.forget_framebuffers()
@@ -134,6 +149,10 @@ class FrameRenderer:
         readback.wait(self._targets.framebuffer("sum"))
 
     def _render_sample(self, index, stage):
+        if self._bokeh and index == 0:
+            with stage("bokeh"):
+                framebuffer = self._targets.framebuffer("bokeh")
+                self._bokeh.run(self._fullscreen, framebuffer, self._view)
         if self._blur and index == 0:
             with stage("bounds"):
                 self._find_bounds()
@@ -173,6 +192,7 @@ class FrameRenderer:
             self._buffers.environment_buffer,
             self._buffers.environment_image,
             lens_sample,
+            self._highlights,
         )
         self.counts.draw_calls += 1
 
@@ -213,12 +233,14 @@ class FrameRenderer:
         pixel_size : int
             Side of the square that shows one pixel.
         """
-        self._resolve("sum", origin, pixel_size)
+        self._resolve("sum", origin, pixel_size, with_bokeh=True)
 
-    def _resolve(self, total, origin=(0, 0), pixel_size=1):
+    def _resolve(self, total, origin=(0, 0), pixel_size=1, with_bokeh=False):
         state.overwrite()
-        weight = self._weight()
-        resolve.resolve(self._fullscreen, self._targets[total], weight, origin, pixel_size)
+        bokeh = self._targets["bokeh"] if self._bokeh and with_bokeh else None
+        resolve.resolve(
+            self._fullscreen, self._targets[total], self._weight(), origin, pixel_size, bokeh
+        )
 
     def _weight(self):
         # A first sample whose places all lie outside a narrow box filter weighs nothing.
@@ -227,7 +249,18 @@ class FrameRenderer:
     def read_image(self):
         """Return the picture so far, shape (height, width, 4), bottom row first."""
         self._targets.forget_framebuffers()
-        return self._read_sum("sum", "image")
+        return self._read_combined()
+
+    def _read_combined(self):
+        picture = self._read_sum("sum", "image")
+        # Added here and not on the device, so that it is the sum of the two passes to the last bit.
+        return picture + self._read_bokeh() if self._bokeh else picture
+
+    def _read_bokeh(self):
+        if not self._bokeh:
+            return np.zeros((self.plan.height, self.plan.width, 4), np.float32)
+        framebuffer = self._targets.framebuffer("bokeh")
+        return readback.read_color(framebuffer, self.plan.width, self.plan.height)
 
     def pass_groups(self):
         """Return the plan's passes in groups that are best read together.
@@ -258,7 +291,11 @@ class FrameRenderer:
         pictures = self._read_data(render_passes.made_by(names, "DATA"))
         for name in names:
             if name == "Combined":
+                pictures[name] = self._read_combined()
+            elif name == "Defocus":
                 pictures[name] = self._read_sum("sum", "image")
+            elif name == "Bokeh":
+                pictures[name] = self._read_bokeh()
             elif name == "Focus Matte":
                 focus = self._read_sum("focus_sum", "image")
                 pictures[name] = np.ascontiguousarray(focus[..., :1])
@@ -331,7 +368,7 @@ class FrameRenderer:
     def release(self):
         """Give back to the device what nobody else holds; the renderer is of no use after it."""
         self._release_targets()
-        self._buffers = self._drawing = self._blur = None
+        self._buffers = self._drawing = self._blur = self._bokeh = None
 
     def _release_targets(self):
         if self._targets is not None:

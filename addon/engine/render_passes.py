@@ -3,7 +3,8 @@
 Blender names the sockets of the compositor, the render result and the parts of a multilayer EXR
 after this table, and asks for the passes of a view layer through `register`.
 
-- **Combined** is the picture through the lens.
+- **Combined** is the picture through the lens: the sum of **Defocus**, what the lens samples show,
+  and **Bokeh**, the highlights that were splatted, to the last bit.
 - **Depth, Normal, Position, Vector, CoC** describe what a pinhole at the lens' centre sees in the
   middle of each pixel: unblurred, without pixel filter. Depth runs along the optical axis and is
   1e10 where nothing is; Position and Normal are in world space, the normal turned towards the
@@ -53,6 +54,8 @@ _TABLE = {
     render_pass.name: render_pass
     for render_pass in (
         RenderPass("Combined", "RGBA", "COLOR", "COLOR"),
+        RenderPass("Defocus", "RGBA", "COLOR", "COLOR"),
+        RenderPass("Bokeh", "RGBA", "COLOR", "COLOR"),
         RenderPass("Depth", "Z", "VALUE", "DATA"),
         RenderPass("Normal", "XYZ", "VECTOR", "DATA"),
         RenderPass("Position", "XYZ", "VECTOR", "DATA"),

@@ -84,14 +84,17 @@ class SceneDrawing:
         self._unshared |= {d.group for d in self._glows}
         self._shared = SharedDrawings("MATTES" in target.defines)
 
-    def aim(self, plan):
+    def aim(self, plan, highlights=None):
         """Prepare a frame: levels, shared drawings, order of the instances.
 
         Parameters
         ----------
         plan : FramePlan
+        highlights : GPUUniformBuf or None
+            `HighlightParams`, for a target that splits light.
         """
         self._plan = plan
+        self._highlights = highlights
         self.counts = DrawingCounts()
         self._visible = culling.seen(self._spheres, plan)
         seen = extents(self._corners, plan.view)
@@ -179,7 +182,9 @@ class SceneDrawing:
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         state.opaque()
-        surface.draw_sample(listed, view, self._table, lens_sample, index)
+        surface.draw_sample(
+            listed, view, self._table, lens_sample, index, highlights=self._highlights
+        )
 
     def draw(self, index, framebuffer, view, targets):
         """Draw the opaque surfaces for a lens sample.
@@ -218,7 +223,8 @@ class SceneDrawing:
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         with framebuffer.bind():
-            surface.draw_glows(listed, view, self._table, self._plan.lens_sample(index))
+            sample = self._plan.lens_sample(index)
+            surface.draw_glows(listed, view, self._table, sample, self._highlights)
 
     def draw_coarsest(self, framebuffer, view):
         """Draw everything at its coarsest level, from the lens' centre, for its depth alone."""

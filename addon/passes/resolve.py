@@ -3,18 +3,21 @@
 from ..device import shader_source
 from ..device.shaders import ShaderInfo, compile_shader
 
-_INFO = ShaderInfo(
-    name="aplanat_resolve",
-    vertex=shader_source.load("passes/fullscreen_vert.glsl"),
-    fragment=shader_source.load("passes/resolve_frag.glsl"),
-    attributes=(("VEC2", "pos"),),
-    outputs=(("VEC4", "out_color"),),
-    samplers=(("FLOAT_2D", "sum_tx"),),
-    push_constants=(("FLOAT", "scale"), ("IVEC2", "origin"), ("INT", "pixel_size")),
-)
+
+def _info(with_bokeh):
+    return ShaderInfo(
+        name="aplanat_resolve",
+        vertex=shader_source.load("passes/fullscreen_vert.glsl"),
+        fragment=shader_source.load("passes/resolve_frag.glsl"),
+        attributes=(("VEC2", "pos"),),
+        outputs=(("VEC4", "out_color"),),
+        samplers=(("FLOAT_2D", "sum_tx"),) + (("FLOAT_2D", "bokeh_tx"),) * with_bokeh,
+        push_constants=(("FLOAT", "scale"), ("IVEC2", "origin"), ("INT", "pixel_size")),
+        defines=(("BOKEH", "1"),) * with_bokeh,
+    )
 
 
-def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1):
+def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1, bokeh=None):
     """Draw the mean of the samples into the bound frame buffer.
 
     Parameters
@@ -28,10 +31,14 @@ def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1):
         Where the picture's lower left pixel goes, in pixels of the frame buffer.
     pixel_size : int
         Side of the square of the frame buffer that shows one pixel of the picture.
+    bokeh : GPUTexture or None
+        Added to the mean.
     """
-    shader = compile_shader(_INFO)
+    shader = compile_shader(_info(bokeh is not None))
     shader.bind()
     shader.uniform_sampler("sum_tx", total)
+    if bokeh is not None:
+        shader.uniform_sampler("bokeh_tx", bokeh)
     shader.uniform_float("scale", 1.0 / weight)
     shader.uniform_int("origin", origin)
     shader.uniform_int("pixel_size", pixel_size)

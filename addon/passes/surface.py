@@ -4,7 +4,7 @@ One shader a shape of node tree and set of mesh attributes; draws are sorted by 
 material, so that a frame changes state as rarely as it can.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..device import shader_source, state
 from ..device.geometry import attribute_identifier, attribute_type
@@ -18,6 +18,7 @@ from . import environment, surface_code
 LIGHTING_TEXTURES = ("lights_tx", "environment_tx", "environment_levels_tx", "ggx_tx")
 
 VIEW_PARAMS = UniformStruct("shared/view_params.glsl", "ViewParams")
+HIGHLIGHT_PARAMS = UniformStruct("shared/highlight_params.glsl", "HighlightParams")
 
 _LIBRARIES = (
     "lib/hash_lib.glsl",
@@ -51,6 +52,8 @@ class SurfaceTarget:
         Its fragment shader reads the push constant `material_id`.
     shades : bool
         It calls ``surface_closure()`` for every surface, not only for transparent ones.
+    splits : bool
+        It divides light into highlights and the rest; reads ``highlight_buf``.
     """
 
     fragment: str
@@ -63,6 +66,7 @@ class SurfaceTarget:
     samplers: tuple[tuple[str, str], ...] = ()
     names_material: bool = False
     shades: bool = True
+    splits: bool = False
 
 
 COLOR = SurfaceTarget("passes/surface_frag.glsl", (("VEC4", "out_color"),))
@@ -74,6 +78,11 @@ COLOR_AND_MATTES = SurfaceTarget(
     defines=("MATTES",),
     names_material=True,
 )
+
+
+def without_highlights(target):
+    """Return a target of the colour picture from which the splatted light is left out."""
+    return replace(target, splits=True, defines=(*target.defines, "HIGHLIGHTS"))
 
 
 @dataclass(frozen=True)
@@ -100,6 +109,8 @@ class Draw:
         Which of the content's groups is drawn.
     level : int
         Its level of detail.
+    splits : bool
+        The shader reads ``highlight_buf``.
     """
 
     shader: object
@@ -114,6 +125,7 @@ class Draw:
     material_id: float | None = None
     group: int = 0
     level: int = 0
+    splits: bool = False
 
 
 def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, glow=False):
@@ -170,6 +182,9 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
         structs += f"struct MaterialParams {{ vec4 constants[{len(code.constants)}]; }};\n"
         uniforms.append(("MaterialParams", "material_buf"))
         samplers += [("FLOAT_2D", f"image_{i}_tx") for i in range(len(code.images))]
+    if target.splits and shades:
+        structs += HIGHLIGHT_PARAMS.source
+        uniforms.append(("HighlightParams", "highlight_buf"))
     if "LIT" in defines:
         structs += environment.ENVIRONMENT_PARAMS.source
         uniforms.append(("EnvironmentParams", "environment_buf"))
@@ -255,6 +270,7 @@ def _list_draws(content, buffers, target, glow):
                 ),
                 group=number,
                 level=level,
+                splits=target.splits and shaded,
             )
             draws.append(((order, material.uid, group.mesh, slot, level), draw))
     draws.sort(key=lambda item: item[0])
@@ -267,7 +283,7 @@ def _levels_of_groups(content, buffers):
             yield number, level, group, buffer
 
 
-def draw_glows(draws, view_buffer, instances, lens_sample):
+def draw_glows(draws, view_buffer, instances, lens_sample, highlights=None):
     """Add the light of surfaces that glow to what the frame buffer shows behind them.
 
     Unlike opacity, which is decided by chance, their light is added wherever no surface of this
@@ -277,15 +293,17 @@ def draw_glows(draws, view_buffer, instances, lens_sample):
     ----------
     draws : list of Draw
         Of `build_glow_draws`; the same depth buffer as `draw_sample`'s must be bound.
-    view_buffer, instances, lens_sample
+    view_buffer, instances, lens_sample, highlights
         As for `draw_sample`.
     """
     if draws:
         state.glow()
-        draw_sample(draws, view_buffer, instances, lens_sample, 0)
+        draw_sample(draws, view_buffer, instances, lens_sample, 0, highlights=highlights)
 
 
-def draw_sample(draws, view_buffer, instances, lens_sample, sample_index, bindings=()):
+def draw_sample(
+    draws, view_buffer, instances, lens_sample, sample_index, bindings=(), highlights=None
+):
     """Draw one lens sample into the bound frame buffer.
 
     Parameters
@@ -300,6 +318,8 @@ def draw_sample(draws, view_buffer, instances, lens_sample, sample_index, bindin
     sample_index : int
     bindings : iterable of (str, GPUUniformBuf or GPUTexture)
         Of the target's own uniform blocks and samplers.
+    highlights : GPUUniformBuf or None
+        `HighlightParams`, for a target that splits light.
     """
     current = None
     for draw in draws:
@@ -314,6 +334,8 @@ def draw_sample(draws, view_buffer, instances, lens_sample, sample_index, bindin
                 shader.uniform_int("sample_index", sample_index)
             for name, resource in (*draw.lighting, *bindings):
                 bind_resource(shader, name, resource)
+            if draw.splits:
+                shader.uniform_block("highlight_buf", highlights)
         if draw.material_id is not None:
             shader.uniform_float("material_id", draw.material_id)
         if draw.constants is not None:

@@ -1,10 +1,14 @@
 // The world at infinity as one place on the lens sees it, where no surface is.
 // Inputs: view_buf; lens_sample (xy: place on the lens, m; zw: sub-pixel jitter in clip units);
-// environment_buf; environment_tx (equirectangular, scene linear).
-// Outputs: opaque scene-linear colour.
+// environment_buf; environment_tx (equirectangular, scene linear); with HIGHLIGHTS, where the light
+// that is splatted is left out, and with EXCESS, the light that may be, highlight_buf.
+// Outputs: opaque scene-linear colour; with EXCESS the light above the threshold.
 // Source: methods 1: the ray from the lens' place through the pixel's point of the focus plane.
 #include "lib/environment_lib.glsl"
 #include "lib/texture_lib.glsl"
+#if defined(HIGHLIGHTS) || defined(EXCESS)
+#include "lib/highlight_lib.glsl"
+#endif
 
 void main()
 {
@@ -21,5 +25,15 @@ void main()
                     dot(environment_buf.rotation_y.xyz, direction),
                     dot(environment_buf.rotation_z.xyz, direction));
   vec3 radiance = image_linear(environment_tx, direction_to_equirect(local), EXTENSION_REPEAT).rgb;
-  out_color = vec4(radiance * environment_buf.color.rgb, 1.0);
+  radiance *= environment_buf.color.rgb;
+#if defined(HIGHLIGHTS) || defined(EXCESS)
+  radiance = highlight_amplify(radiance, highlight_buf.split.w);
+#endif
+#ifdef HIGHLIGHTS
+  radiance = highlight_base(radiance, highlight_buf.world.z, highlight_buf.split.x);
+#endif
+#ifdef EXCESS
+  radiance = highlight_excess(radiance, highlight_buf.split.x);
+#endif
+  out_color = vec4(radiance, 1.0);
 }

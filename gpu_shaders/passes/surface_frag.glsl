@@ -2,14 +2,27 @@
 // the samples is exact whatever the order of the surfaces. A surface that adds light to what it lets
 // through is drawn twice: its opacity by chance without its light (GLOW_APART), then its light onto
 // what was left (GLOW), wherever nothing is in front of it.
-// Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads.
+// Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads; with
+// HIGHLIGHTS, where the light that is splatted is left out, highlight_buf.
 // Outputs: premultiplied scene-linear colour; with MATTES also Cryptomatte ids of object (x) and
 // material (y), and the share of sharpness (w).
 // Source: methods 1; stochastic transparency after Enderton et al., I3D 2010.
 
 #ifdef MATTES
 #include "lib/instance_lib.glsl"
+#endif
+#if defined(MATTES) || defined(HIGHLIGHTS)
 #include "lib/lens_lib.glsl"
+#endif
+#ifdef HIGHLIGHTS
+#include "lib/highlight_lib.glsl"
+
+vec3 without_highlights(vec3 radiance)
+{
+  float depth = -(view_buf.view * vec4(world_position, 1.0)).z;
+  float share = highlight_share(coc_radius_px(depth, view_buf.lens), highlight_buf.split.y);
+  return highlight_base(radiance, share, highlight_buf.split.x);
+}
 #endif
 
 void main()
@@ -22,6 +35,9 @@ void main()
 #else
   Closure closure = surface_closure();
 #ifdef GLOW
+#ifdef HIGHLIGHTS
+  closure.radiance = without_highlights(closure.radiance);
+#endif
   out_color = vec4(closure.radiance, 0.0);
 #ifdef MATTES
   out_mattes = vec4(0.0);
@@ -47,6 +63,9 @@ void main()
     closure.radiance *= scale;
     hole = min(hole * scale, 1.0);
   }
+#endif
+#ifdef HIGHLIGHTS
+  closure.radiance = without_highlights(closure.radiance);
 #endif
   out_color = vec4(closure.radiance, 1.0 - hole);
 #ifdef MATTES

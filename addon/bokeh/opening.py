@@ -1,0 +1,72 @@
+"""The opening as splats read it: its density of light in layers of rising blur.
+
+A disc in the picture is blurred by the pixel filter and by the extent of its source. Both are small
+beside a large disc and large beside a small one, so the opening is kept at several blurs: layer l is
+blurred by a tent with the variance of a box of width ``w = 2^l / 128`` radii, and spans
+``[-e, e]``, ``e = 1 + w / sqrt(2)``. It holds the light per unit of area, so that its integral is
+the share of light that passes: 1 for an opening without vignetting.
+"""
+
+import numpy as np
+
+from .iris_mask import texel_centres
+
+# Must agree with lib/opening_lib.glsl.
+LEAST_BLUR = 1.0 / 128.0
+LAYERS = 8
+# Along the opening's diameter, of a supersampled mask.
+_MASK = 1024
+
+
+def extent(layer):
+    """Return how far a layer reaches from the centre, in units of the opening's radius."""
+    return 1.0 + LEAST_BLUR * 2.0**layer / np.sqrt(2.0)
+
+
+def opening_layers(coverage, size=512, layers=LAYERS):
+    """Make the layers of an opening.
+
+    Parameters
+    ----------
+    coverage : callable
+        From places, shape (..., 2) in units of the radius, and the side of a texel there to the
+        share of light that passes, shape (...) or (..., channels). Nothing passes beyond 1 radius.
+    size : int
+        Texels along a side of a layer.
+    layers : int
+
+    Returns
+    -------
+    ndarray of shape (layers, size, size, channels)
+        float32, row 0 at the bottom. Each channel of a layer has the integral that the opening
+        has over its largest channel's.
+    """
+    mask = np.asarray(coverage(texel_centres(_MASK), 2.0 / _MASK), dtype=float)
+    mask = mask.reshape(_MASK, _MASK, -1)
+    integral = mask.sum(axis=(0, 1)) * (2.0 / _MASK) ** 2
+    share = integral / integral.max()
+    result = np.empty((layers, size, size, mask.shape[-1]), np.float32)
+    for layer in range(layers):
+        blurred = _blurred(mask, LEAST_BLUR * 2.0**layer / np.sqrt(2.0), extent(layer), size)
+        texel = 2.0 * extent(layer) / size
+        total = blurred.sum(axis=(0, 1)) * texel**2
+        result[layer] = blurred * (share / np.maximum(total, 1e-30))
+    return result
+
+
+def _blurred(mask, width, reach, size):
+    """Return the means of a mask over tents round the texels of a layer, axis by axis.
+
+    A tent is a box twice; the layer's own texels, which are interpolated, are no part of it.
+    """
+    centers = (np.arange(size) + 0.5) * (2.0 * reach / size) - reach
+    weights = _tent_weights(centers, width)
+    return np.einsum("ya,xb,abc->yxc", weights, weights, mask, optimize=True)
+
+
+def _tent_weights(centers, width):
+    edges = np.linspace(-1.0, 1.0, _MASK + 1)
+    # The integral of a tent of half width `width`, from its left end on.
+    t = np.clip((edges[None, :] - centers[:, None]) / width, -1.0, 1.0)
+    integral = np.where(t < 0.0, 0.5 * (1.0 + t) ** 2, 1.0 - 0.5 * (1.0 - t) ** 2)
+    return np.diff(integral, axis=1)

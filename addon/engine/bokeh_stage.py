@@ -1,0 +1,214 @@
+"""Bokeh of a frame: peel, extract, splat (methods 9 to 13).
+
+Done once a frame, before its first lens sample; what the samples then leave out is what was
+splatted here, light for light.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ..bokeh.iris_mask import BladedIris
+from ..bokeh.opening import opening_layers
+from ..device import geometry, readback
+from ..device.targets import Targets, TargetSpec
+from ..device.textures import texture_array
+from ..device.uniforms import uniform_buffer
+from ..passes import background, highlights, peel, splat, surface
+
+# Texels along a side of an opening's layers.
+_OPENING = 512
+
+
+@dataclass
+class HighlightCounts:
+    """What became of a frame's highlights.
+
+    Attributes
+    ----------
+    found : int
+        Pixels of any layer above the threshold.
+    clustered : int
+        Sources that are left after merging.
+    culled_size : int
+        Found, but so sharp that the lens samples draw them.
+    culled_occlusion, culled_cone : int
+        Sources that nothing of the lens sees; sources that need no mask.
+    masked : int
+        Sources with a mask of their own.
+    splatted : int
+        Sources that were drawn.
+    """
+
+    found: int = 0
+    clustered: int = 0
+    culled_size: int = 0
+    culled_occlusion: int = 0
+    culled_cone: int = 0
+    masked: int = 0
+    splatted: int = 0
+
+
+def highlight_buffer(bokeh):
+    """Upload what divides light into highlights and the rest.
+
+    Parameters
+    ----------
+    bokeh : BokehPlan
+
+    Returns
+    -------
+    GPUUniformBuf
+        `HighlightParams`.
+    """
+    settings = bokeh.settings
+    return uniform_buffer(
+        surface.HIGHLIGHT_PARAMS.pack(
+            split=(settings.threshold, bokeh.least_coc, settings.gain, settings.amplification),
+            raster=(bokeh.width, bokeh.height, *bokeh.margin),
+            world=(bokeh.world_depth, float(bokeh.world), bokeh.world_share, 0.0),
+        )
+    )
+
+
+class BokehStage:
+    """Makes a frame's bokeh.
+
+    Parameters
+    ----------
+    plan : FramePlan
+        With a `bokeh`.
+    drawing : SceneDrawing
+        Aimed at the frame.
+    buffers : SceneBuffers
+    highlights_buffer : GPUUniformBuf
+        See `highlight_buffer`.
+
+    Attributes
+    ----------
+    counts : HighlightCounts
+    """
+
+    def __init__(self, plan, drawing, buffers, highlights_buffer):
+        self._plan = plan
+        self._drawing = drawing
+        self._buffers = buffers
+        self._highlights = highlights_buffer
+        self.counts = HighlightCounts()
+        self.bytes = 0
+
+    def run(self, fullscreen, target, frame_view):
+        """Peel, extract and splat.
+
+        Parameters
+        ----------
+        fullscreen : GPUBatch
+        target : GPUFrameBuffer
+            Gets the bokeh; is cleared.
+        frame_view : GPUUniformBuf
+            `ViewParams` of the frame.
+        """
+        bokeh = self._plan.bokeh
+        with Targets(bokeh.width, bokeh.height, self._specs()) as layers:
+            view = uniform_buffer(self._raster_params())
+            self._peel(layers, view, fullscreen)
+            sources, count = self._extract(layers, view)
+            self.bytes = max(self.bytes, layers.bytes)
+            with target.bind():
+                target.clear(color=(0.0, 0.0, 0.0, 0.0))
+                self._splat(sources, count, frame_view)
+            # The layers are given back only after the device has read them.
+            readback.wait(target)
+
+    def _specs(self):
+        bokeh, fine = self._plan.bokeh, self._plan.bokeh.subpixels
+        specs = [TargetSpec("nothing", "DEPTH_COMPONENT32F", scale=fine)]
+        for k in range(bokeh.layers):
+            specs.append(TargetSpec(f"layer_color_{k}", "RGBA32F", scale=fine))
+            specs.append(TargetSpec(f"layer_depth_{k}", "DEPTH_COMPONENT32F", scale=fine))
+        if bokeh.world:
+            specs.append(TargetSpec("world", "RGBA32F", scale=fine))
+        return specs
+
+    def _raster_params(self):
+        plan, bokeh = self._plan, self._plan.bokeh
+        fine = bokeh.subpixels
+        return surface.VIEW_PARAMS.pack(
+            view=plan.view,
+            view_inverse=np.linalg.inv(plan.view),
+            projection=bokeh.projection,
+            lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
+            film=(bokeh.width * fine, bokeh.height * fine, 0.0, 0.0),
+        )
+
+    def _peel(self, layers, view, fullscreen):
+        draws = self._drawing.full_detail_draws(peel.TARGET)
+        instances = self._buffers.instances
+        nothing = layers.framebuffer(depth="nothing")
+        with nothing.bind():
+            nothing.clear(depth=0.0)
+        front = layers["nothing"]
+        for k in range(self._plan.bokeh.layers):
+            framebuffer = layers.framebuffer(f"layer_color_{k}", depth=f"layer_depth_{k}")
+            with framebuffer.bind():
+                framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
+                peel.draw_layer(draws, view, instances, self._highlights, front)
+            front = layers[f"layer_depth_{k}"]
+        if self._plan.bokeh.world:
+            with layers.framebuffer("world").bind():
+                background.draw_excess(
+                    fullscreen,
+                    view,
+                    self._buffers.environment_buffer,
+                    self._buffers.environment_image,
+                    self._highlights,
+                )
+        drawing, passes = self._drawing.counts, self._plan.bokeh.layers
+        drawing.draw_calls += passes * len(draws)
+        drawing.triangles += passes * sum(d.triangles * d.count for d in draws)
+
+    def _extract(self, layers, view):
+        """Return the list of highlights, two textures, and how many they are."""
+        bokeh = self._plan.bokeh
+        peeled = [
+            (layers[f"layer_color_{k}"], layers[f"layer_depth_{k}"]) for k in range(bokeh.layers)
+        ]
+        if bokeh.world:
+            peeled.append((layers["world"], None))
+        raster = (view, self._highlights, (bokeh.width, bokeh.height), bokeh.subpixels)
+        layers.add(TargetSpec("counts", "R32UI", len(peeled)))
+        with (
+            Targets(bokeh.height, 2 * len(peeled), [TargetSpec("rows", "R32UI")]) as rows,
+            Targets(2, 1, [TargetSpec("total", "R32UI")]) as total,
+        ):
+            listed = (peeled, layers["counts"], rows["rows"])
+            highlights.count(*listed, total["total"], *raster)
+            count, sharp = (int(n) for n in np.asarray(total["total"].read()).ravel()[:2])
+            self.counts.found = count + sharp
+            self.counts.culled_size = sharp
+            self.counts.clustered = count
+            height = max(1, -(-count // highlights.COLUMNS))
+            specs = [TargetSpec(name, "RGBA32F") for name in ("a", "b")]
+            lists = Targets(highlights.COLUMNS, height, specs)
+            sources = (lists["a"], lists["b"])
+            highlights.emit(*listed, sources, *raster)
+            return sources, count
+
+    def _splat(self, sources, count, frame_view):
+        bokeh = self._plan.bokeh
+        reach = max(1.0, 1.0)
+        parameters = uniform_buffer(
+            splat.SPLAT_PARAMS.pack(opening=(bokeh.iris.ratio, bokeh.filter_width, reach, 0.0))
+        )
+        iris = _opening(bokeh.iris.blades, bokeh.iris.rotation)
+        opening = texture_array(iris, "R16F")
+        square = geometry.square_batch()
+        splat.splat(square, sources, count, opening, frame_view, parameters)
+        self.counts.splatted = count
+
+
+@lru_cache(maxsize=4)
+def _opening(blades, rotation):
+    iris = BladedIris(blades if blades >= 3 else 0, 0.0, rotation)
+    return opening_layers(iris.coverage, _OPENING)

@@ -1,0 +1,166 @@
+// Highlights of one peeled layer. First they are counted for each pixel; then, once it is known
+// where each row's list begins (highlights_rows), EMIT writes them.
+// The sub-pixels of a pixel are one highlight, or two where they lie so far apart in depth that
+// their circles of confusion differ.
+// Inputs: color_tx (light above the threshold), depth_tx (window depth); view_buf (of the peeled
+// raster), highlight_buf; layer; with EMIT rows_img. WORLD: the world at infinity, no depth.
+// Outputs: counts_img: highlights of a pixel, and those too sharp to be splatted times 256; EMIT
+// reads how many come before the pixel in its row, and fills a_img (x, y and depth in camera space,
+// m; side of the square it stands for, px) and b_img (energy: radiance times pixels; weight).
+// Source: methods 9 (J20 section 4.1).
+#include "lib/highlight_lib.glsl"
+#include "lib/lens_lib.glsl"
+
+// Circles of confusion that differ by more are not averaged, px.
+#define COC_TOLERANCE 1.0
+
+struct Highlight {
+  vec3 energy;
+  float weight;
+  vec2 place;           // weighted, in texels
+  float inverse_depth;  // weighted
+  float texels;
+};
+
+float eye_depth(float window_depth)
+{
+#ifdef WORLD
+  return highlight_buf.world.x;
+#else
+  float z = window_depth * 2.0 - 1.0;
+  if (view_buf.lens.y > 0.5) {
+    return (view_buf.projection[3][2] - z) / view_buf.projection[2][2];
+  }
+  return view_buf.projection[3][2] / (z + view_buf.projection[2][2]);
+#endif
+}
+
+float texel_depth(ivec2 texel)
+{
+#ifdef WORLD
+  return eye_depth(1.0);
+#else
+  return eye_depth(texelFetch(depth_tx, texel, 0).x);
+#endif
+}
+
+float share_of(float coc)
+{
+#ifdef WORLD
+  return highlight_buf.world.z;
+#else
+  return highlight_share(coc, highlight_buf.split.y);
+#endif
+}
+
+float largest(vec3 color)
+{
+  return max(color.r, max(color.g, color.b));
+}
+
+// Circles of confusion of a pixel's highlights, least and largest; the largest is the less where
+// there are none. Bright texels that are too sharp are counted.
+vec2 coc_range(ivec2 pixel, out bool sharp)
+{
+  vec2 range = vec2(1e30, -1e30);
+  sharp = false;
+  for (int y = 0; y < SUBPIXELS; y++) {
+    for (int x = 0; x < SUBPIXELS; x++) {
+      ivec2 texel = pixel * SUBPIXELS + ivec2(x, y);
+      if (largest(texelFetch(color_tx, texel, 0).rgb) <= 0.0) {
+        continue;
+      }
+      float coc = coc_radius_px(texel_depth(texel), view_buf.lens);
+      if (share_of(coc) > 0.0) {
+        range = vec2(min(range.x, coc), max(range.y, coc));
+      }
+      else {
+        sharp = true;
+      }
+    }
+  }
+  return range;
+}
+
+uint highlights_of(vec2 range)
+{
+  if (range.y < range.x) {
+    return 0u;
+  }
+  return (range.y - range.x > COC_TOLERANCE) ? 2u : 1u;
+}
+
+#ifdef EMIT
+// The texels of a pixel whose circles of confusion lie in [from, to).
+Highlight gather(ivec2 pixel, float from, float to)
+{
+  Highlight found = Highlight(vec3(0.0), 0.0, vec2(0.0), 0.0, 0.0);
+  for (int y = 0; y < SUBPIXELS; y++) {
+    for (int x = 0; x < SUBPIXELS; x++) {
+      ivec2 texel = pixel * SUBPIXELS + ivec2(x, y);
+      vec3 excess = texelFetch(color_tx, texel, 0).rgb;
+      float peak = largest(excess);
+      if (peak <= 0.0) {
+        continue;
+      }
+      float depth = texel_depth(texel);
+      float coc = coc_radius_px(depth, view_buf.lens);
+      float share = share_of(coc);
+      if (share <= 0.0 || coc < from || coc >= to) {
+        continue;
+      }
+      float weight = peak * share;
+      found.energy += excess * share;
+      found.weight += weight;
+      found.place += (vec2(texel) + 0.5) * weight;
+      found.inverse_depth += weight / depth;
+      found.texels += 1.0;
+    }
+  }
+  return found;
+}
+
+void emit(Highlight found, uint index)
+{
+  vec2 size = highlight_buf.raster.xy * float(SUBPIXELS);
+  vec2 clip = found.place / found.weight / size * 2.0 - 1.0;
+  float depth = found.weight / found.inverse_depth;
+  vec2 scale = vec2(view_buf.projection[0][0], view_buf.projection[1][1]);
+  vec2 xy;
+  if (view_buf.lens.y > 0.5) {
+    xy = (clip - view_buf.projection[3].xy) / scale;
+  }
+  else {
+    xy = (clip + view_buf.projection[2].xy) / scale * depth;
+  }
+  float area = 1.0 / float(SUBPIXELS * SUBPIXELS);
+  ivec2 place = ivec2(index % SOURCE_COLUMNS, index / SOURCE_COLUMNS);
+  imageStore(a_img, place, vec4(xy, depth, sqrt(found.texels * area)));
+  imageStore(b_img, place, vec4(found.energy * (area * highlight_buf.split.z), 1.0));
+}
+#endif
+
+void main()
+{
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(highlight_buf.raster.xy)))) {
+    return;
+  }
+  bool sharp;
+  vec2 range = coc_range(pixel, sharp);
+  uint count = highlights_of(range);
+#ifdef EMIT
+  if (count == 0u) {
+    return;
+  }
+  uint index = imageLoad(rows_img, ivec2(pixel.y, layer)).x +
+               imageLoad(counts_img, ivec3(pixel, layer)).x;
+  float middle = (count == 1u) ? 1e30 : 0.5 * (range.x + range.y);
+  emit(gather(pixel, -1e30, middle), index);
+  if (count == 2u) {
+    emit(gather(pixel, middle, 1e30), index + 1u);
+  }
+#else
+  imageStore(counts_img, ivec3(pixel, layer), uvec4(count + (sharp ? 256u : 0u)));
+#endif
+}
