@@ -1,8 +1,8 @@
 """The opening as splats read it: its density of light in layers of rising blur.
 
-A disc in the picture is blurred by the pixel filter and by the extent of its source. Both are small
-beside a large disc and large beside a small one, so the opening is kept at several blurs: layer l is
-blurred by a tent with the variance of a box of width ``w = 2^l / 128`` radii, and spans
+A disc in the picture is blurred by the pixel filter and by the extent of its source. Both are
+small beside a large disc and large beside a small one, so the opening is kept at several blurs:
+layer l is blurred by a tent with the variance of a box of width ``w = 2^l / 128`` radii, and spans
 ``[-e, e]``, ``e = 1 + w / sqrt(2)``. It holds the light per unit of area, so that its integral is
 the share of light that passes: 1 for an opening without vignetting.
 """
@@ -37,20 +37,22 @@ def opening_layers(coverage, size=512, layers=LAYERS):
 
     Returns
     -------
-    ndarray of shape (layers, size, size, channels)
-        float32, row 0 at the bottom. Each channel of a layer has the integral that the opening
-        has over its largest channel's.
+    ndarray of shape (layers, size, size, 4)
+        float32, row 0 at the bottom; red, green, blue and nothing. Each colour's integral is that
+        of the coverage over the largest of the three.
     """
     mask = np.asarray(coverage(texel_centres(_MASK), 2.0 / _MASK), dtype=float)
     mask = mask.reshape(_MASK, _MASK, -1)
+    channels = [0, 1, 2] if mask.shape[-1] >= 3 else [0, 0, 0]
     integral = mask.sum(axis=(0, 1)) * (2.0 / _MASK) ** 2
     share = integral / integral.max()
-    result = np.empty((layers, size, size, mask.shape[-1]), np.float32)
+    result = np.zeros((layers, size, size, 4), np.float32)
     for layer in range(layers):
         blurred = _blurred(mask, LEAST_BLUR * 2.0**layer / np.sqrt(2.0), extent(layer), size)
         texel = 2.0 * extent(layer) / size
         total = blurred.sum(axis=(0, 1)) * texel**2
-        result[layer] = blurred * (share / np.maximum(total, 1e-30))
+        density = blurred * (share / np.maximum(total, 1e-30))
+        result[layer, ..., :3] = density[..., channels]
     return result
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from ..sampling.highlights import highlight_share, least_coc
 from ..sampling.iris import Iris
 from ..sampling.pixel_filter import filter_density
+from ..scene.brightness import brightest
 from ..scene.snapshot import BokehSettings
 from .levels import coc_radius, extents, world_corners
 
@@ -32,6 +33,8 @@ class BokehPlan:
     Parameters
     ----------
     settings : BokehSettings
+    shining : frozenset of (int, int)
+        Group and slot of the surfaces that may be brighter than the threshold.
     least_coc : float
         Radius of the circle of confusion from which on light is splatted, px.
     width, height : int
@@ -55,6 +58,7 @@ class BokehPlan:
     """
 
     settings: BokehSettings
+    shining: frozenset[tuple[int, int]]
     least_coc: float
     width: int
     height: int
@@ -69,7 +73,7 @@ class BokehPlan:
 
     @property
     def layers(self):
-        """Number of surfaces behind one another that are peeled, the world not counted."""
+        """Number of highlights behind one another that are found, the world's not counted."""
         return self.settings.layers
 
 
@@ -92,9 +96,9 @@ def plan_bokeh(snapshot, plan):
     wanted = sampling.method != "REFERENCE" or sampling.reference_bokeh
     if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
         return None
-    places = plan.samples + int(plan.subsample_counts.sum())
-    least = least_coc(places)
-    largest = _largest_coc(snapshot.content, plan)
+    least = least_coc(plan.samples)
+    shining = _shining(snapshot.content, settings.threshold)
+    largest = _largest_coc(snapshot.content, plan, shining)
     if largest <= least:
         return None
     margin = _margin(plan, settings, largest)
@@ -105,6 +109,7 @@ def plan_bokeh(snapshot, plan):
     film = snapshot.film
     return BokehPlan(
         settings=settings,
+        shining=shining,
         least_coc=least,
         width=width,
         height=height,
@@ -119,11 +124,29 @@ def plan_bokeh(snapshot, plan):
     )
 
 
-def _largest_coc(content, plan):
+def _shining(content, threshold):
+    """Return which surfaces may be brighter than the threshold: (group, slot)."""
+    return frozenset(
+        (number, slot)
+        for number, (group, bounds) in enumerate(
+            zip(content.groups, brightest(content), strict=True)
+        )
+        for (slot, _, _), bound in zip(content.meshes[group.mesh].slots, bounds, strict=True)
+        if bound > threshold
+    )
+
+
+def _largest_coc(content, plan, shining):
     largest = abs(plan.empty_coc) if content.world.image else 0.0
-    if content.groups:
+    rows = [
+        row
+        for number in sorted({number for number, _ in shining})
+        for group in (content.groups[number],)
+        for row in range(group.first, group.first + group.count)
+    ]
+    if rows:
         bounds = {group.mesh: content.meshes[group.mesh].bounds for group in content.groups}
-        seen = extents(world_corners(content, bounds), plan.view)
+        seen = extents(world_corners(content, bounds)[rows], plan.view)
         front = seen.farthest > 0.0
         near = np.maximum(seen.nearest[front], 1e-3 * plan.focus_distance)
         for depth in (near, seen.farthest[front]):

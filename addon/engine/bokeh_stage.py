@@ -123,12 +123,11 @@ class BokehStage:
 
     def _specs(self):
         bokeh, fine = self._plan.bokeh, self._plan.bokeh.subpixels
-        specs = [TargetSpec("nothing", "DEPTH_COMPONENT32F", scale=fine)]
-        for k in range(bokeh.layers):
-            specs.append(TargetSpec(f"layer_color_{k}", "RGBA32F", scale=fine))
-            specs.append(TargetSpec(f"layer_depth_{k}", "DEPTH_COMPONENT32F", scale=fine))
-        if bokeh.world:
-            specs.append(TargetSpec("world", "RGBA32F", scale=fine))
+        names = [f"light_color_{k}" for k in range(bokeh.layers)] + ["no_color"]
+        names += ["world"] * bokeh.world
+        specs = [TargetSpec(name, "RGBA32F", scale=fine) for name in names]
+        names = [f"light_depth_{k}" for k in range(bokeh.layers)] + ["no_depth", "scene_depth"]
+        specs += [TargetSpec(name, "DEPTH_COMPONENT32F", scale=fine) for name in names]
         return specs
 
     def _raster_params(self):
@@ -143,19 +142,22 @@ class BokehStage:
         )
 
     def _peel(self, layers, view, fullscreen):
-        draws = self._drawing.full_detail_draws(peel.TARGET)
-        instances = self._buffers.instances
-        nothing = layers.framebuffer(depth="nothing")
+        """Draw what is brighter than the threshold, layer by layer."""
+        bokeh, drawing = self._plan.bokeh, self._drawing
+        nothing = layers.framebuffer("no_color", depth="no_depth")
         with nothing.bind():
-            nothing.clear(depth=0.0)
-        front = layers["nothing"]
-        for k in range(self._plan.bokeh.layers):
-            framebuffer = layers.framebuffer(f"layer_color_{k}", depth=f"layer_depth_{k}")
-            with framebuffer.bind():
-                framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
-                peel.draw_layer(draws, view, instances, self._highlights, front)
-            front = layers[f"layer_depth_{k}"]
-        if self._plan.bokeh.world:
+            nothing.clear(color=(0.0, 0.0, 0.0, 0.0), depth=0.0)
+        before = ("no_depth", "no_color")
+        opaque = drawing.full_detail_draws(peel.OPAQUE)
+        # The first layer's colour is drawn over by its highlights.
+        self._draw_layer(layers, view, opaque, before[:1], "light_color_0", "scene_depth")
+        shining = drawing.full_detail_draws(peel.HIGHLIGHTS, bokeh.shining)
+        for k in range(bokeh.layers):
+            layer = (f"light_color_{k}", f"light_depth_{k}")
+            textures = (*before, "scene_depth")
+            self._draw_layer(layers, view, shining, textures, *layer, self._highlights)
+            before = layer[::-1]
+        if bokeh.world:
             with layers.framebuffer("world").bind():
                 background.draw_excess(
                     fullscreen,
@@ -164,15 +166,22 @@ class BokehStage:
                     self._buffers.environment_image,
                     self._highlights,
                 )
-        drawing, passes = self._drawing.counts, self._plan.bokeh.layers
-        drawing.draw_calls += passes * len(draws)
-        drawing.triangles += passes * sum(d.triangles * d.count for d in draws)
+
+    def _draw_layer(self, layers, view, draws, textures, color, depth, highlights_buffer=None):
+        framebuffer = layers.framebuffer(color, depth=depth)
+        with framebuffer.bind():
+            framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
+            read = [layers[name] for name in textures]
+            instances = self._buffers.instances
+            peel.draw_layer(draws, view, instances, read, highlights_buffer)
+        self._drawing.counts.draw_calls += len(draws)
+        self._drawing.counts.triangles += sum(d.triangles * d.count for d in draws)
 
     def _extract(self, layers, view):
         """Return the list of highlights, two textures, and how many they are."""
         bokeh = self._plan.bokeh
         peeled = [
-            (layers[f"layer_color_{k}"], layers[f"layer_depth_{k}"]) for k in range(bokeh.layers)
+            (layers[f"light_color_{k}"], layers[f"light_depth_{k}"]) for k in range(bokeh.layers)
         ]
         if bokeh.world:
             peeled.append((layers["world"], None))
@@ -202,7 +211,7 @@ class BokehStage:
             splat.SPLAT_PARAMS.pack(opening=(bokeh.iris.ratio, bokeh.filter_width, reach, 0.0))
         )
         iris = _opening(bokeh.iris.blades, bokeh.iris.rotation)
-        opening = texture_array(iris, "R16F")
+        opening = texture_array(iris, "RGBA16F")
         square = geometry.square_batch()
         splat.splat(square, sources, count, opening, frame_view, parameters)
         self.counts.splatted = count

@@ -133,8 +133,8 @@ class FrameRenderer:
         samples : int
         stage : callable, optional
             For measuring: called with the name of each part of a sample's work (``bokeh``,
-            ``bounds``, ``surfaces``, ``sum``), it returns a context manager in which that is given to the
-            device.
+            ``bounds``, ``surfaces``, ``sum``), it returns a context manager in which that is given
+            to the device.
         """
         self._targets.forget_framebuffers()
         end = min(self.samples_done + samples, self.plan.samples)

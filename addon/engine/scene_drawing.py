@@ -243,19 +243,21 @@ class SceneDrawing:
         """Return the targets that drawing needs beside the sample's."""
         return self._shared.specs()
 
-    def full_detail_draws(self, target):
+    def full_detail_draws(self, target, wanted=None):
         """Return the draws, at full detail, of what can be seen, for another target.
 
         Parameters
         ----------
         target : passes.surface.SurfaceTarget
+        wanted : set of (int, int) or None
+            See `passes.surface.build_draws`.
 
         Returns
         -------
         list of Draw
             With rows of the content's own instance table.
         """
-        draws = surface.build_draws(self._content, self._buffers, target)
+        draws = surface.build_draws(self._content, self._buffers, target, wanted)
         return [
             replace(draw, first=first, count=count)
             for draw in draws

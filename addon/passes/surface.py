@@ -209,7 +209,7 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
     )
 
 
-def build_draws(content, buffers, target=COLOR):
+def build_draws(content, buffers, target=COLOR, wanted=None):
     """List the draw calls of a scene, sorted by state.
 
     Parameters
@@ -217,13 +217,15 @@ def build_draws(content, buffers, target=COLOR):
     content : SceneContent
     buffers : engine.scene_buffers.SceneBuffers
     target : SurfaceTarget
+    wanted : set of (int, int) or None
+        Group and slot of the surfaces to list; None lists all.
 
     Returns
     -------
     list of Draw
         At every level of detail that the device has of a mesh.
     """
-    return _list_draws(content, buffers, target, glow=False)
+    return _list_draws(content, buffers, target, glow=False, wanted=wanted)
 
 
 def build_glow_draws(content, buffers, target=COLOR):
@@ -231,12 +233,14 @@ def build_glow_draws(content, buffers, target=COLOR):
     return _list_draws(content, buffers, target, glow=True)
 
 
-def _list_draws(content, buffers, target, glow):
+def _list_draws(content, buffers, target, glow, wanted=None):
     draws = []
     shaders = {}
     for number, level, group, buffer in _levels_of_groups(content, buffers):
         mesh = content.meshes[group.mesh]
         for slot, (batch, count) in buffer.batches.items():
+            if wanted is not None and (number, slot) not in wanted:
+                continue
             material = content.materials[group.materials[slot]]
             code = surface_code.generate(material.graph, mesh.attributes)
             if glow and (group.holdout or not code.glows):

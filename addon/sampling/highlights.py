@@ -1,13 +1,13 @@
 """Which light is blurred by lens samples, and which is splatted as bokeh (methods 9 and 10).
 
-A picture averaged over n places on the lens shows the disc of a bright point as n dots. Where the
-disc has more pixels than there are places, the light above a threshold is therefore taken out of
-the samples and splatted as a disc of its own. Nothing is lost: at every surface the radiance `I`
+A picture averaged over n places on the lens shows the disc of a bright point as n dots. Where they
+do not fill the disc, the light above a threshold is therefore taken out of the samples and splatted
+as a disc of its own. Nothing is lost: at every surface the radiance `I`
 with the signed circle of confusion `C` (px) is divided into
 
 ``highlight = share(C) I max(0, 1 - threshold / max(I))`` and ``base = I - highlight``,
 
-``share(C) = smoothstep(c0, 1.5 c0, |C|)``, ``c0 = max(2, sqrt(places / pi))``.
+``share(C) = smoothstep(c0, 1.5 c0, |C|)``, ``c0 = max(2, sqrt(samples / (4 pi)))``.
 
 The same functions for the graphics device are in ``lib/highlight_lib.glsl``.
 """
@@ -16,24 +16,27 @@ import numpy as np
 
 # Smaller discs are hardly larger than the pixel filter, px.
 _LEAST_COC = 2.0
+# Lens samples for each pixel of a disc that show it without dots. (Subsamples do not count: they see
+# only what their sample sees, too little of a light that is smaller than a pixel.)
+_SAMPLES_A_PIXEL = 4.0
 # The share grows from 0 to 1 while the circle grows by this factor, so that nothing pops.
 _TRANSITION = 1.5
 
 
-def least_coc(places):
+def least_coc(samples):
     """Return the radius of the circle of confusion from which on light is splatted.
 
     Parameters
     ----------
-    places : float
-        On the lens, over which the samples are averaged.
+    samples : float
+        Of the lens, over which the picture is averaged.
 
     Returns
     -------
     float
-        In pixels: its disc has as many pixels as there are places.
+        In pixels.
     """
-    return max(_LEAST_COC, float(np.sqrt(places / np.pi)))
+    return max(_LEAST_COC, float(np.sqrt(samples / (_SAMPLES_A_PIXEL * np.pi))))
 
 
 def highlight_share(coc_px, least):

@@ -63,6 +63,11 @@ class MeshSnapshot:
         return max((float(c.std(axis=0).max()) for c in colors if len(c)), default=0.0)
 
     @cached_property
+    def peaks(self):
+        """Largest absolute value of each attribute, by its key."""
+        return {k: float(np.abs(v).max(initial=0.0)) for k, v in self.attributes.items()}
+
+    @cached_property
     def bounds(self):
         """Lower and upper corner of the triangles, shape (2, 3)."""
         if len(self.triangles) == 0:
@@ -92,6 +97,13 @@ class ImageSnapshot:
     name: str
     pixels: np.ndarray
     srgb: bool = False
+
+    @cached_property
+    def peak(self):
+        """Largest value of any colour channel; at least white."""
+        if self.pixels.dtype == np.uint8:
+            return 1.0
+        return max(float(np.abs(self.pixels[..., :3]).max(initial=0.0)), 1.0)
 
 
 @dataclass(frozen=True, eq=False)

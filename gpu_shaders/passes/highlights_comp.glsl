@@ -8,6 +8,7 @@
 // reads how many come before the pixel in its row, and fills a_img (x, y and depth in camera space,
 // m; side of the square it stands for, px) and b_img (energy: radiance times pixels; weight).
 // Source: methods 9 (J20 section 4.1).
+#include "lib/depth_lib.glsl"
 #include "lib/highlight_lib.glsl"
 #include "lib/lens_lib.glsl"
 
@@ -22,25 +23,13 @@ struct Highlight {
   float texels;
 };
 
-float eye_depth(float window_depth)
+float texel_depth(ivec2 texel)
 {
 #ifdef WORLD
   return highlight_buf.world.x;
 #else
-  float z = window_depth * 2.0 - 1.0;
-  if (view_buf.lens.y > 0.5) {
-    return (view_buf.projection[3][2] - z) / view_buf.projection[2][2];
-  }
-  return view_buf.projection[3][2] / (z + view_buf.projection[2][2]);
-#endif
-}
-
-float texel_depth(ivec2 texel)
-{
-#ifdef WORLD
-  return eye_depth(1.0);
-#else
-  return eye_depth(texelFetch(depth_tx, texel, 0).x);
+  float window_depth = texelFetch(depth_tx, texel, 0).x;
+  return depth_from_window(window_depth, view_buf.projection, view_buf.lens);
 #endif
 }
 

@@ -68,6 +68,7 @@ PURE_ROOMS = tuple(
 BLENDER_FREE = {
     "scene.snapshot",
     "scene.surface_graph",
+    "scene.brightness",
     "scene.changes",
     "scene.cryptomatte",
     "scene.vertex_split",

@@ -1,0 +1,79 @@
+"""How bright surfaces may be at most: bounds from their node graphs, without drawing them.
+
+Highlights are searched only on surfaces that may exceed the threshold.
+"""
+
+import numpy as np
+
+from .surface_graph import Constant
+
+
+def brightest(content):
+    """Bound the radiance of every group's surfaces.
+
+    Parameters
+    ----------
+    content : SceneContent
+
+    Returns
+    -------
+    list of tuple of float
+        For each group, one bound for each slot of its mesh that has triangles: of the largest
+        channel; inf where the surface is lit or the graph tells nothing.
+    """
+    known = {}
+    return [
+        tuple(
+            _bound(content, known, group, slot) for slot, _, _ in content.meshes[group.mesh].slots
+        )
+        for group in content.groups
+    ]
+
+
+def _bound(content, known, group, slot):
+    if group.holdout:
+        return 0.0
+    key = (group.materials[slot], group.mesh)
+    if key not in known:
+        graph = content.materials[key[0]].graph
+        known[key] = _graph_bound(graph, content.meshes[group.mesh], content.images)
+    return known[key]
+
+
+def _graph_bound(graph, mesh, images):
+    if graph.surface is None:
+        return 0.0
+    bounds = []
+
+    def of(source):
+        if isinstance(source, Constant):
+            return max(map(abs, source.value))
+        return bounds[source.node]
+
+    for node in graph.nodes:
+        inputs = dict(node.inputs)
+        if node.kind in {"none", "transparent", "holdout"}:
+            bound = 0.0
+        elif node.kind == "emission":
+            color, strength = of(inputs["Color"]), of(inputs["Strength"])
+            bound = color * strength if color and strength else 0.0
+        elif node.kind == "mix_shader":
+            bound = max(of(inputs["Shader"]), of(inputs["Shader_001"]))
+        elif node.kind == "add_shader":
+            bound = of(inputs["Shader"]) + of(inputs["Shader_001"])
+        elif node.kind in {"color_attribute", "attribute"}:
+            bound = _attribute_bound(mesh, node.setting("name"))
+        elif node.kind == "image_texture" and not node.setting("associated"):
+            # One that is missing is drawn in a colour of 1; where alpha multiplies the colour, the
+            # code may divide by it.
+            bound = images[node.image].peak if node.image in images else 1.0
+        else:
+            bound = np.inf
+        bounds.append(float(bound))
+    return bounds[graph.surface.node]
+
+
+def _attribute_bound(mesh, name):
+    peaks = [peak for key, peak in mesh.peaks.items() if key.partition(":")[2] == name]
+    # Alpha may be 1 where there is no such colour.
+    return max([1.0, *peaks])
