@@ -49,6 +49,18 @@ def scissored(x, y, width, height):
         gpu.state.scissor_test_set(False)
 
 
+@contextmanager
+def clipped(distances):
+    """Cut off what the first clip distances of the vertex shader are negative for, in a block."""
+    import gpu
+
+    gpu.state.clip_distances_set(distances)
+    try:
+        yield
+    finally:
+        gpu.state.clip_distances_set(0)
+
+
 def opaque():
     """Nearest surface wins: depth test and write, no blending."""
     import gpu
@@ -92,3 +104,11 @@ def additive():
     overwrite()
     # Blender's name for source one, destination one ("ADDITIVE" multiplies by alpha).
     gpu.state.blend_set("ADDITIVE_PREMULT")
+
+
+def multiply():
+    """Product of the colour that is there and the new one; no depth."""
+    import gpu
+
+    overwrite()
+    gpu.state.blend_set("MULTIPLY")

@@ -13,6 +13,7 @@ from ..device.geometry import MeshBuffers
 from ..device.textures import image_texture, texture_2d
 from ..device.uniforms import uniform_buffer
 from ..passes import environment, light_table
+from .occluders import ShapeCache
 
 # Must agree with lib/instance_lib.glsl.
 INSTANCES_PER_ROW = 256
@@ -29,6 +30,8 @@ class SceneBuffers:
         Levels of detail from 1 up, by the mesh's uid.
     levels_version : int
         Grows when levels are added.
+    shapes : ShapeCache
+        Meshes as the visibility of highlights needs them.
     instances : GPUTexture
     lighting : tuple of (str, GPUUniformBuf or GPUTexture)
         What lit surfaces read of the lights and the world.
@@ -44,6 +47,8 @@ class SceneBuffers:
         self.images = {}
         self.levels = {}
         self.levels_version = 0
+        self.shapes = ShapeCache()
+        self._level_meshes = {}
         self.instances = None
         self.lighting = ()
         self.environment_buffer = None
@@ -72,6 +77,9 @@ class SceneBuffers:
         for uid in self.meshes.keys() - content.meshes.keys():
             del self.meshes[uid]
             self.levels.pop(uid, None)
+            self._level_meshes.pop(uid, None)
+        levels = (level.uid for levels in self._level_meshes.values() for level in levels)
+        self.shapes.keep({*content.meshes, *levels})
         for uid in self.images.keys() - content.images.keys():
             del self.images[uid]
         for key in [k for k in self._materials if k[0] not in content.materials]:
@@ -133,6 +141,10 @@ class SceneBuffers:
         """Return the buffers of a mesh at each level of detail that is here, from 0 up."""
         return (self.meshes[uid], *self.levels.get(uid, ()))
 
+    def level_meshes(self, mesh):
+        """Return the snapshots of a mesh at each level of detail that is here, from 0 up."""
+        return (mesh, *self._level_meshes.get(mesh.uid, ()))
+
     def add_levels(self, uid, levels):
         """Upload the levels of detail of a mesh.
 
@@ -144,11 +156,13 @@ class SceneBuffers:
             From level 1 up.
         """
         self.levels[uid] = tuple(MeshBuffers(level) for level in levels)
+        self._level_meshes[uid] = tuple(levels)
         self.levels_version += 1
 
     def drop_levels(self):
         """Give the levels of detail back; full detail is drawn until new ones come."""
         self.levels.clear()
+        self._level_meshes.clear()
         self.levels_version += 1
 
     def texture_bytes(self):

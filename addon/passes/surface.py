@@ -54,6 +54,8 @@ class SurfaceTarget:
         It calls ``surface_closure()`` for every surface, not only for transparent ones.
     splits : bool
         It divides light into highlights and the rest; reads ``highlight_buf``.
+    vertex : str
+        Its vertex shader below ``gpu_shaders/``; it must call ``forward_attributes()``.
     """
 
     fragment: str
@@ -67,6 +69,7 @@ class SurfaceTarget:
     names_material: bool = False
     shades: bool = True
     splits: bool = False
+    vertex: str = "passes/surface_vert.glsl"
 
 
 COLOR = SurfaceTarget("passes/surface_frag.glsl", (("VEC4", "out_color"),))
@@ -171,7 +174,7 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
         varyings.append((kind, f"v_{name}"))
         forward.append(f"  v_{name} = {name};")
     vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
-    vertex = shader_source.join((shader_source.Text(vertex), "passes/surface_vert.glsl"))
+    vertex = shader_source.join((shader_source.Text(vertex), target.vertex))
     structs = VIEW_PARAMS.source + target.structs
     uniforms = [("ViewParams", "view_buf"), *target.uniforms]
     samplers = [("FLOAT_2D", "instances_tx"), *target.samplers]

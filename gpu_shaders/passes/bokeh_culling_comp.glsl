@@ -1,0 +1,120 @@
+// Sorts out sources that need no mask: their disc is outside the frame, nothing of the lens sees
+// them, or nothing stands before them.
+// Inputs: sources_tx (x, y, depth, extent); layers_tx, bounds_tx (see bokeh_culling_bounds_comp);
+// visibility_buf; count; cell; nearest_depth (depth buffer value of
+// the nearest surface of the scene).
+// Outputs: states_img: depth buffer value that nothing before the source falls below (x), class of
+// size (y), steps of a ray to the rim (z), state (w).
+// Source: methods 10 (J20 section 4.3.2).
+#include "lib/bounds_lib.glsl"
+#include "lib/source_lib.glsl"
+
+// The bounds hardly shrink after the third time.
+#define ITERATIONS 4
+// Up to so many texels along a side are looked at one by one.
+#define WALK 24
+
+// Whether the disc meets the frame.
+bool in_frame(Source source)
+{
+  vec2 radius = abs(source.coc) * visibility_buf.opening.w * vec2(1.0 / visibility_buf.lens.w, 1.0);
+  vec2 center = source.place / visibility_buf.raster.z - visibility_buf.frame.xy;
+  // For the pixel filter and the extent of the source.
+  vec2 reach = radius + 4.0;
+  return all(greaterThan(center + reach, vec2(0.0))) &&
+         all(lessThan(center - reach, visibility_buf.frame.zw));
+}
+
+// Whether the surface of a texel goes on in its neighbours.
+bool joined(ivec2 texel, float depth, float most)
+{
+  ivec2 last = textureSize(layers_tx, 0) - 1;
+  for (int i = 0; i < 4; i++) {
+    ivec2 step_aside = ivec2((i & 1) * 2 - 1, 0);
+    ivec2 next = clamp(texel + ((i & 2) == 0 ? step_aside : step_aside.yx), ivec2(0), last);
+    if (abs(texelFetch(layers_tx, next, 0).x - depth) > most) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Whether no surface in a rectangle of texels lies on a line from the source to the lens.
+bool free_of_texels(Source source, ivec2 low, ivec2 high)
+{
+  vec2 rate = source_reach(visibility_buf);
+  float most = 1.0 / max(rate.x, rate.y);
+  for (int y = low.y; y <= high.y; y++) {
+    for (int x = low.x; x <= high.x; x++) {
+      float depth = texelFetch(layers_tx, ivec2(x, y), 0).x;
+      if (depth >= source.limit) {
+        continue;
+      }
+      vec2 offset = abs(vec2(x, y) + 0.5 - source.place);
+      vec2 reach = rate * (source.depth - depth);
+      if (all(lessThanEqual(offset - 0.5, reach))) {
+        // Inside of a surface its middle decides; at its edge any part of the texel.
+        if (all(lessThanEqual(offset, reach)) || !joined(ivec2(x, y), depth, most)) {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+float state_of(Source source, inout float nearest)
+{
+  if (!in_frame(source)) {
+    return STATE_OUTSIDE;
+  }
+  vec2 rate = source_reach(visibility_buf);
+  ivec2 size = textureSize(layers_tx, 0);
+  bool inside = true;
+  vec3 bounds = vec3(nearest, 2.0, 2.0);
+  ivec2 low, high;
+  for (int i = 0; i < ITERATIONS; i++) {
+    vec2 reach = rate * max(source.depth - nearest, 0.0);
+    low = ivec2(floor(source.place - reach));
+    high = ivec2(floor(source.place + reach));
+    inside = inside && all(greaterThanEqual(low, ivec2(0))) && all(lessThan(high, size));
+    low = clamp(low, ivec2(0), size - 1);
+    high = clamp(high, ivec2(0), size - 1);
+    bounds = bounds_of(bounds_tx, low / cell, high / cell);
+    float next = clamp(bounds.x, nearest, source.depth);
+    if (next == nearest) {
+      break;
+    }
+    nearest = next;
+  }
+  if (!inside) {
+    return STATE_OPEN;
+  }
+  if (bounds.x >= source.limit) {
+    return STATE_VISIBLE;
+  }
+  ivec2 extent = high - low + 1;
+  if (max(extent.x, extent.y) <= WALK && free_of_texels(source, low, high)) {
+    return STATE_VISIBLE;
+  }
+  // A surface without a gap that a line to the lens could slip through hides everything.
+  if (bounds.y < source.limit && bounds.z * max(rate.x, rate.y) < 1.0) {
+    return STATE_HIDDEN;
+  }
+  return STATE_OPEN;
+}
+
+void main()
+{
+  int index = int(gl_GlobalInvocationID.x);
+  if (index >= count) {
+    return;
+  }
+  Source source = source_of(texelFetch(sources_tx, list_texel(index), 0), visibility_buf);
+  float nearest = nearest_depth;
+  float state = state_of(source, nearest);
+  vec2 rate = source_reach(visibility_buf);
+  float steps = max(rate.x, rate.y) * max(source.depth - nearest, 0.0);
+  int size = source_class(source.coc, visibility_buf);
+  imageStore(states_img, list_texel(index), vec4(nearest, float(size), steps, state));
+}

@@ -1,0 +1,212 @@
+// Which clusters of triangles, or instances of a group, meet the cone from a source to the lens.
+// Counts them for each undecided source; with FILL, writes the pairs where prefix sums place them.
+// Inputs: sources_tx; boxes_tx, parts_tx, shapes_tx (see engine/occluders.py); instances_tx;
+// visibility_buf; count; ivec4 extent (GROUP: first and last row of a group's instances, z: segment of
+// keys; else x: number of parts, z: segment); FILL: states_tx, keys_tx, totals_tx, window (places: first and
+// number).
+// GROUP: box (lower and upper corner of the mesh).
+// Outputs: keys_img (pairs of a source), counts_img; states_img (whether anything meets the cone);
+// FILL: pairs_img: source, row of the instance table, cluster.
+// Source: methods 10 (J20 section 4.3.3).
+#include "lib/instance_lib.glsl"
+#include "lib/source_lib.glsl"
+
+// Directions in which the opening is bounded: a polygon 8 % wider than a disc at its corners.
+#define SIDES 8
+#define PLANES 10
+#define LEVELS 8
+#define BRANCHES 8
+
+// Planes whose positive sides hold the rays from the source to the opening.
+struct Planes {
+  vec4 normal[PLANES];
+};
+
+Planes source_planes(Source source)
+{
+  Planes planes;
+  Cone cone = source.cone;
+  for (int i = 0; i < SIDES; i++) {
+    float angle = 6.2831853 * float(i) / float(SIDES);
+    vec2 n = vec2(cos(angle), sin(angle));
+    float reach = length(n * visibility_buf.opening.xy) * cone.rate;
+    planes.normal[i] = vec4(-n, reach - dot(n, cone.b), reach * cone.depth + dot(n, cone.a));
+  }
+  planes.normal[SIDES] = vec4(0.0, 0.0, -1.0, -visibility_buf.opening.z);
+  planes.normal[SIDES + 1] = vec4(0.0, 0.0, 1.0, source.hides);
+  return planes;
+}
+
+Planes transform_planes(Planes planes, mat4 matrix)
+{
+  for (int i = 0; i < PLANES; i++) {
+    planes.normal[i] = planes.normal[i] * matrix;
+  }
+  return planes;
+}
+
+bool meets_box(Planes planes, vec3 low, vec3 high)
+{
+  vec3 center = 0.5 * (low + high), half_size = 0.5 * (high - low);
+  for (int i = 0; i < PLANES; i++) {
+    vec3 n = planes.normal[i].xyz;
+    float reach = dot(abs(n), half_size);
+    float distance = dot(n, center) + planes.normal[i].w;
+    // A little more than exact, for rounding.
+    if (distance + reach * 1.0001 + 1e-6 * abs(planes.normal[i].w) < 0.0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+#ifndef GROUP
+bool meets(Planes planes, int box)
+{
+  return meets_box(planes,
+                   texelFetch(boxes_tx, list_texel(2 * box), 0).xyz,
+                   texelFetch(boxes_tx, list_texel(2 * box + 1), 0).xyz);
+}
+
+// A tree of boxes: `number` leaves from box `first` on, then what is round eight of them each.
+struct Tree {
+  int first[LEVELS];
+  int number[LEVELS];
+  int top;
+};
+
+Tree tree_of(int first, int number)
+{
+  Tree tree;
+  tree.top = 0;
+  tree.first[0] = first;
+  tree.number[0] = number;
+  while (number > BRANCHES && tree.top < LEVELS - 1) {
+    first += number;
+    number = (number + BRANCHES - 1) / BRANCHES;
+    tree.top++;
+    tree.first[tree.top] = first;
+    tree.number[tree.top] = number;
+  }
+  return tree;
+}
+
+// Goes on from a box to the next leaf that meets the planes; returns false at the end. `place`:
+// level and number of the next box to look at.
+bool next_leaf(Tree tree, Planes planes, inout ivec2 place, out int leaf)
+{
+  while (true) {
+    int level = place.x, index = place.y;
+    if (level == tree.top && index >= tree.number[level]) {
+      return false;
+    }
+    bool met = index < tree.number[level] && meets(planes, tree.first[level] + index);
+    if (met && level > 0) {
+      place = ivec2(level - 1, index * BRANCHES);
+      continue;
+    }
+    place.y++;
+    while (place.x < tree.top && place.y % BRANCHES == 0) {
+      place = ivec2(place.x + 1, place.y / BRANCHES);
+    }
+    if (met) {
+      leaf = index;
+      return true;
+    }
+  }
+  return false;
+}
+
+// Level of detail at which a part's triangles are about as large as a texel of the source's mask.
+int level_of(Source source, vec4 part, int tree_box)
+{
+  vec3 low = texelFetch(boxes_tx, list_texel(2 * tree_box), 0).xyz;
+  vec3 high = texelFetch(boxes_tx, list_texel(2 * tree_box + 1), 0).xyz;
+  vec4 axis = vec4(0.0, 0.0, -1.0, 0.0) * visibility_buf.view;
+  float farthest = dot(axis.xyz, 0.5 * (low + high)) + dot(abs(axis.xyz), 0.5 * (high - low)) +
+                   axis.w;
+  float side = visibility_buf.tiles.y * exp2(float(source_class(source.coc, visibility_buf)));
+  float width = 2.0 * min(visibility_buf.opening.x, visibility_buf.opening.y);
+  float texel = width * (source.cone.depth - farthest) * source.cone.rate / side;
+  if (texel <= 0.0) {
+    return 0;
+  }
+  return clamp(int(floor(log2(texel * texel / max(part.w, 1e-30)))), 0, int(part.z) - 1);
+}
+#endif
+
+#ifdef FILL
+void write_pair(inout uint place, int source, int row, int cluster)
+{
+  uint within = place - uint(window.x);
+  if (within < uint(window.y)) {
+    imageStore(pairs_img, list_texel(int(within)), vec4(source, row, cluster, 0.0));
+  }
+  place++;
+}
+#endif
+
+void main()
+{
+  int index = int(gl_GlobalInvocationID.x);
+  ivec2 texel = list_texel(index);
+  ivec2 key = texel + ivec2(0, extent.z);
+#ifdef FILL
+  if (index >= count || texelFetch(states_tx, texel, 0).w != STATE_OPEN) {
+    return;
+  }
+  uint place = texelFetch(keys_tx, key, 0).x + texelFetch(totals_tx, list_texel(key.y), 0).x;
+#else
+  float state = index < count ? imageLoad(states_img, texel).w : 0.0;
+  if (state != STATE_OPEN && state != STATE_FREE) {
+    imageStore(keys_img, key, uvec4(0u));
+    return;
+  }
+#endif
+  Source source = source_of(texelFetch(sources_tx, texel, 0), visibility_buf);
+  Planes in_eye = source_planes(source);
+  Planes planes = transform_planes(in_eye, visibility_buf.view);
+  uint found = 0u;
+#ifdef GROUP
+  for (int row = extent.x; row <= extent.y; row++) {
+    Planes own = transform_planes(planes, instance_world(instances_tx, row));
+    if (meets_box(own, box_low.xyz, box_high.xyz)) {
+      found++;
+#ifdef FILL
+      write_pair(place, index, row, 0);
+#endif
+    }
+  }
+#else
+  Tree parts = tree_of(0, extent.x);
+  ivec2 at = ivec2(parts.top, 0);
+  int number;
+  while (next_leaf(parts, planes, at, number)) {
+    vec4 part = texelFetch(parts_tx, list_texel(2 * number), 0);
+    int row = int(part.x);
+    vec4 shape = texelFetch(
+        shapes_tx, list_texel(int(part.y) + level_of(source, part, number)), 0);
+    Planes own = transform_planes(planes, instance_world(instances_tx, row));
+    Tree clusters = tree_of(int(shape.x), int(shape.y));
+    ivec2 within = ivec2(clusters.top, 0);
+    int cluster;
+    while (next_leaf(clusters, own, within, cluster)) {
+      found++;
+#ifdef FILL
+      write_pair(place, index, row, int(shape.z) + cluster);
+#endif
+    }
+  }
+#endif
+#ifndef FILL
+  imageStore(keys_img, key, uvec4(found));
+  if (found > 0u) {
+    imageAtomicAdd(counts_img, ivec2(extent.w, 0), found);
+  }
+  // Undecided until something meets the cone.
+  vec4 record = imageLoad(states_img, texel);
+  record.w = (found > 0u || (extent.w > COUNT_PAIRS && state == STATE_OPEN)) ? STATE_OPEN :
+                                                                             STATE_FREE;
+  imageStore(states_img, texel, record);
+#endif
+}
