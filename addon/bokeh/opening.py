@@ -14,8 +14,9 @@ from .iris_mask import texel_centres
 # Must agree with lib/opening_lib.glsl.
 LEAST_BLUR = 1.0 / 128.0
 LAYERS = 8
-# Along the opening's diameter, of a supersampled mask.
+# Texels of a supersampled mask along the opening's diameter, and least ones of a tent's half width.
 _MASK = 1024
+_TENT = 16
 
 
 def extent(layer):
@@ -61,14 +62,37 @@ def _blurred(mask, width, reach, size):
 
     A tent is a box twice; the layer's own texels, which are interpolated, are no part of it.
     """
+    while width * len(mask) / 2.0 > 2 * _TENT:
+        mask = 0.25 * (mask[::2, ::2] + mask[1::2, ::2] + mask[::2, 1::2] + mask[1::2, 1::2])
+    places, weights = _tent(len(mask), width, reach, size)
+    rows = sum(mask[at] * w[:, None, None] for at, w in zip(places, weights, strict=True))
+    return sum(rows[:, at] * w[:, None] for at, w in zip(places, weights, strict=True))
+
+
+def _tent(count, width, reach, size):
+    """Return which texels of a mask a tent covers, and with which weights.
+
+    Parameters
+    ----------
+    count : int
+        Texels of the mask, over [-1, 1].
+    width : float
+        Half width of the tent.
+    reach : float
+        Of the layer, from the centre.
+    size : int
+        Texels of the layer.
+
+    Returns
+    -------
+    places, weights : ndarray of shape (K, size)
+    """
     centers = (np.arange(size) + 0.5) * (2.0 * reach / size) - reach
-    weights = _tent_weights(centers, width)
-    return np.einsum("ya,xb,abc->yxc", weights, weights, mask, optimize=True)
-
-
-def _tent_weights(centers, width):
-    edges = np.linspace(-1.0, 1.0, _MASK + 1)
-    # The integral of a tent of half width `width`, from its left end on.
-    t = np.clip((edges[None, :] - centers[:, None]) / width, -1.0, 1.0)
+    first = np.floor((centers - width + 1.0) * count / 2.0).astype(int)
+    places = first + np.arange(int(np.ceil(width * count)) + 2)[:, None]
+    edges = np.stack([places, places + 1]) * (2.0 / count) - 1.0
+    # The integral of the tent from its left end on.
+    t = np.clip((edges - centers) / width, -1.0, 1.0)
     integral = np.where(t < 0.0, 0.5 * (1.0 + t) ** 2, 1.0 - 0.5 * (1.0 - t) ** 2)
-    return np.diff(integral, axis=1)
+    inside = (places >= 0) & (places < count)
+    return np.clip(places, 0, count - 1), np.where(inside, integral[1] - integral[0], 0.0)

@@ -23,7 +23,9 @@ _RIM = 2
 # Of the peeled raster, in sub-pixels (20 bytes each a layer), and its longer side.
 _LARGEST_RASTER = 1 << 22
 _LONGEST_RASTER = 16384
-_MOST_SUBPIXELS = 4
+_LEAST_SUBPIXELS, _MOST_SUBPIXELS = 2, 4
+# Sub-pixels along a side of a triangle that shines.
+_HITS_A_SIDE = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +100,9 @@ def plan_bokeh(snapshot, plan):
         return None
     least = least_coc(plan.samples)
     shining = _shining(snapshot.content, settings.threshold)
-    largest = _largest_coc(snapshot.content, plan, shining)
+    rows, of_group = _rows(snapshot.content, shining)
+    seen = extents(_corners(snapshot.content, rows), plan.view)
+    largest = _largest_coc(snapshot.content, plan, seen)
     if largest <= least:
         return None
     margin = _margin(plan, settings, largest)
@@ -115,7 +119,7 @@ def plan_bokeh(snapshot, plan):
         height=height,
         margin=margin,
         projection=np.diag([plan.width / width, plan.height / height, 1.0, 1.0]) @ plan.projection,
-        subpixels=_subpixels(width, height),
+        subpixels=_subpixels(snapshot.content, plan, rows, of_group, seen, (width, height)),
         world=world,
         world_share=float(highlight_share(plan.empty_coc, least)) if world else 0.0,
         world_depth=_INFINITY * max(plan.focus_distance, 1.0),
@@ -136,21 +140,26 @@ def _shining(content, threshold):
     )
 
 
-def _largest_coc(content, plan, shining):
+def _rows(content, shining):
+    """Return the rows of the instance table that have shining surfaces, and their groups."""
+    groups = [(number, content.groups[number]) for number in sorted({n for n, _ in shining})]
+    rows = [np.arange(g.first, g.first + g.count) for _, g in groups]
+    of_group = [np.full(g.count, number) for number, g in groups]
+    empty = [np.zeros(0, int)]
+    return np.concatenate(empty + rows), np.concatenate(empty + of_group)
+
+
+def _corners(content, rows):
+    bounds = {group.mesh: content.meshes[group.mesh].bounds for group in content.groups}
+    return world_corners(content, bounds)[rows]
+
+
+def _largest_coc(content, plan, seen):
     largest = abs(plan.empty_coc) if content.world.image else 0.0
-    rows = [
-        row
-        for number in sorted({number for number, _ in shining})
-        for group in (content.groups[number],)
-        for row in range(group.first, group.first + group.count)
-    ]
-    if rows:
-        bounds = {group.mesh: content.meshes[group.mesh].bounds for group in content.groups}
-        seen = extents(world_corners(content, bounds)[rows], plan.view)
-        front = seen.farthest > 0.0
-        near = np.maximum(seen.nearest[front], 1e-3 * plan.focus_distance)
-        for depth in (near, seen.farthest[front]):
-            largest = max(largest, float(np.abs(coc_radius(depth, plan)).max(initial=0.0)))
+    front = seen.farthest > 0.0
+    near = np.maximum(seen.nearest[front], 1e-3 * plan.focus_distance)
+    for depth in (near, seen.farthest[front]):
+        largest = max(largest, float(np.abs(coc_radius(depth, plan)).max(initial=0.0)))
     return largest
 
 
@@ -160,11 +169,36 @@ def _margin(plan, settings, largest):
     return tuple(int(np.ceil(min(largest * n, limit))) + _RIM for n in narrowing)
 
 
-def _subpixels(width, height):
+def _subpixels(content, plan, rows, of_group, seen, size):
+    """Return how finely highlights are searched: several times in small triangles that shine.
+
+    Parameters
+    ----------
+    content : SceneContent
+    plan : FramePlan
+    rows, of_group : ndarray of shape (R,)
+        Instances with shining surfaces, and their groups.
+    seen : Extents
+        Of these.
+    size : tuple of 2 int
+        Of the raster in pixels.
+
+    Returns
+    -------
+    int
+    """
+    width, height = size
     affordable = min(
         int(np.sqrt(_LARGEST_RASTER / (width * height))), _LONGEST_RASTER // max(width, height)
     )
-    return max(1, min(affordable, _MOST_SUBPIXELS))
+    area = np.array([content.meshes[g.mesh].triangle_area for g in content.groups])[of_group]
+    stretch = np.abs(np.linalg.det(content.instances.world[rows, :3, :3].astype(float)))
+    side = np.sqrt(area) * np.cbrt(stretch) * plan.projection[1, 1] * plan.height / 2.0
+    if not plan.orthographic:
+        side = side / np.maximum(seen.center_depth, 1e-3 * plan.focus_distance)
+    front = (seen.farthest > 0.0) & (side > 0.0)
+    wanted = np.ceil(_HITS_A_SIDE / side[front].min(initial=np.inf)) if front.any() else 0
+    return max(1, min(affordable, max(int(min(wanted, _MOST_SUBPIXELS)), _LEAST_SUBPIXELS)))
 
 
 def _filter_width(kind, size_px):

@@ -16,8 +16,8 @@ import numpy as np
 
 # Smaller discs are hardly larger than the pixel filter, px.
 _LEAST_COC = 2.0
-# Lens samples for each pixel of a disc that show it without dots. (Subsamples do not count: they see
-# only what their sample sees, too little of a light that is smaller than a pixel.)
+# Lens samples for each pixel of a disc that show it without dots. Subsamples do not count: they see
+# only what their sample sees, too little of a light that is smaller than a pixel.
 _SAMPLES_A_PIXEL = 4.0
 # The share grows from 0 to 1 while the circle grows by this factor, so that nothing pops.
 _TRANSITION = 1.5

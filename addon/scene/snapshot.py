@@ -63,6 +63,13 @@ class MeshSnapshot:
         return max((float(c.std(axis=0).max()) for c in colors if len(c)), default=0.0)
 
     @cached_property
+    def triangle_area(self):
+        """Mean area of the triangles, in squared units of the object."""
+        a, b, c = (self.positions[self.triangles[:, i]].astype(np.float64) for i in range(3))
+        areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        return 0.5 * float(areas.mean()) if len(areas) else 0.0
+
+    @cached_property
     def peaks(self):
         """Largest absolute value of each attribute, by its key."""
         return {k: float(np.abs(v).max(initial=0.0)) for k, v in self.attributes.items()}
