@@ -16,6 +16,7 @@ from ..device.targets import Targets, TargetSpec
 from ..device.textures import texture_array
 from ..device.uniforms import uniform_buffer
 from ..passes import background, highlights, peel, splat, surface
+from .bokeh_visibility import BokehVisibility
 
 # Texels along a side of an opening's layers.
 _OPENING = 512
@@ -82,6 +83,8 @@ class BokehStage:
     drawing : SceneDrawing
         Aimed at the frame.
     buffers : SceneBuffers
+    occluders : SceneOccluders
+        Of the drawing's content.
     highlights_buffer : GPUUniformBuf
         See `highlight_buffer`.
 
@@ -90,10 +93,11 @@ class BokehStage:
     counts : HighlightCounts
     """
 
-    def __init__(self, plan, drawing, buffers, highlights_buffer):
+    def __init__(self, plan, drawing, buffers, occluders, highlights_buffer):
         self._plan = plan
         self._drawing = drawing
         self._buffers = buffers
+        self._occluders = occluders
         self._highlights = highlights_buffer
         self.counts = HighlightCounts()
         self.bytes = 0
@@ -109,17 +113,40 @@ class BokehStage:
         frame_view : GPUUniformBuf
             `ViewParams` of the frame.
         """
+        with target.bind():
+            target.clear(color=(0.0, 0.0, 0.0, 0.0))
+        held = []
+        try:
+            sources, count = self._find(fullscreen, held)
+            if count:
+                self._splat(sources, count, self._hide(sources, count, held), target, frame_view)
+            self.bytes = max(self.bytes, sum(targets.bytes for targets in held))
+        finally:
+            for targets in held:
+                targets.release()
+
+    def _find(self, fullscreen, held):
+        """Return the list of highlights, two textures, and how many they are."""
         bokeh = self._plan.bokeh
         with Targets(bokeh.width, bokeh.height, self._specs()) as layers:
             view = uniform_buffer(self._raster_params())
             self._peel(layers, view, fullscreen)
-            sources, count = self._extract(layers, view)
+            sources, count = self._extract(layers, view, held)
             self.bytes = max(self.bytes, layers.bytes)
-            with target.bind():
-                target.clear(color=(0.0, 0.0, 0.0, 0.0))
-                self._splat(sources, count, frame_view)
             # The layers are given back only after the device has read them.
-            readback.wait(target)
+            readback.wait(layers.framebuffer("light_color_0"))
+        return sources, count
+
+    def _hide(self, sources, count, held):
+        """Find what hides the sources from the lens, as `Visibility`."""
+        visibility = BokehVisibility(self._plan, self._occluders, self._buffers)
+        found = visibility.find(sources[0], count, self._drawing, held)
+        counts = found.counts
+        self.counts.culled_occlusion = counts.outside + counts.hidden
+        self.counts.culled_cone = counts.visible + counts.free
+        self.counts.masked = counts.masked
+        self.counts.splatted = count - self.counts.culled_occlusion
+        return found
 
     def _specs(self):
         bokeh, fine = self._plan.bokeh, self._plan.bokeh.subpixels
@@ -177,7 +204,7 @@ class BokehStage:
         self._drawing.counts.draw_calls += len(draws)
         self._drawing.counts.triangles += sum(d.triangles * d.count for d in draws)
 
-    def _extract(self, layers, view):
+    def _extract(self, layers, view, held):
         """Return the list of highlights, two textures, and how many they are."""
         bokeh = self._plan.bokeh
         peeled = [
@@ -200,24 +227,38 @@ class BokehStage:
             height = max(1, -(-count // highlights.COLUMNS))
             specs = [TargetSpec(name, "RGBA32F") for name in ("a", "b")]
             lists = Targets(highlights.COLUMNS, height, specs)
+            held.append(lists)
             sources = (lists["a"], lists["b"])
             highlights.emit(*listed, sources, *raster)
             return sources, count
 
-    def _splat(self, sources, count, frame_view):
+    def _splat(self, sources, count, visibility, target, frame_view):
         bokeh = self._plan.bokeh
-        reach = max(1.0, 1.0)
         parameters = uniform_buffer(
-            splat.SPLAT_PARAMS.pack(opening=(bokeh.iris.ratio, bokeh.filter_width, reach, 0.0))
+            splat.SPLAT_PARAMS.pack(opening=(bokeh.iris.ratio, bokeh.filter_width, 1.0, 0.0))
         )
-        iris = _opening(bokeh.iris.blades, bokeh.iris.rotation)
-        opening = texture_array(iris, "RGBA16F")
-        square = geometry.square_batch()
-        splat.splat(square, sources, count, opening, frame_view, parameters)
-        self.counts.splatted = count
+        rays = None
+        if visibility.counts.method == "SPLAT":
+            rays = (visibility.layers, visibility.opacity, visibility.states, visibility.parameters)
+        with target.bind():
+            splat.splat(
+                geometry.square_batch(),
+                count,
+                (*sources, visibility.tiles, visibility.masks),
+                self._opening(),
+                frame_view,
+                parameters,
+                rays,
+            )
+        # What it reads is given back only after the device has read it.
+        readback.wait(target)
+
+    def _opening(self):
+        iris = self._plan.bokeh.iris
+        return texture_array(_opening_layers(iris.blades, iris.rotation), "RGBA16F")
 
 
 @lru_cache(maxsize=4)
-def _opening(blades, rotation):
+def _opening_layers(blades, rotation):
     iris = BladedIris(blades if blades >= 3 else 0, 0.0, rotation)
     return opening_layers(iris.coverage, _OPENING)

@@ -165,8 +165,8 @@ class Visibility:
         A texel for each source: place and side of its mask, kind (see lib/visibility_lib.glsl).
     masks : GPUTexture
         The atlas.
-    layers, opacity : GPUTexture
-        The peeled layers, for rays that the splat casts.
+    layers, opacity, states : GPUTexture
+        The peeled layers, and how far each source's rays go, for rays that the splat casts.
     parameters : GPUUniformBuf
         `VisibilityParams`.
     counts : VisibilityCounts
@@ -178,6 +178,7 @@ class Visibility:
     masks: object
     layers: object
     opacity: object
+    states: object
     parameters: object
     counts: VisibilityCounts
     bytes: int
@@ -376,6 +377,7 @@ class BokehVisibility:
             masks["masks"],
             raster["layers"],
             raster["opacity"],
+            lists["states"],
             self._parameters,
             counts,
             size,

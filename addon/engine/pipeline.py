@@ -14,6 +14,7 @@ from ..device.uniforms import uniform_buffer
 from ..passes import accumulate, background, cryptomatte, data, resolve, surface
 from . import render_passes
 from .bokeh_stage import BokehStage, highlight_buffer
+from .bokeh_visibility import SceneOccluders
 from .scene_drawing import SceneDrawing
 from .subsampling import SubsampleBlur
 
@@ -40,7 +41,7 @@ class FrameRenderer:
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
         self._content = self._levels = self._drawing = self._blur = self._bokeh = None
-        self._target = None
+        self._target = self._occluders = None
         self._targets = None
         self.restart(plan, snapshot)
 
@@ -66,6 +67,7 @@ class FrameRenderer:
         if (snapshot.content, target, levels) != (self._content, self._target, self._levels):
             self._content, self._target, self._levels = snapshot.content, target, levels
             self._drawing = SceneDrawing(snapshot.content, self._buffers, target)
+            self._occluders = SceneOccluders(snapshot.content, self._buffers)
         self._drawing.aim(plan, self._highlights)
         self._view = uniform_buffer(_view_params(plan))
         world = snapshot.content.world
@@ -74,7 +76,9 @@ class FrameRenderer:
         self._blur = SubsampleBlur(plan, self._drawing.nearest) if plan.blurs else None
         self._bokeh = None
         if plan.bokeh:
-            self._bokeh = BokehStage(plan, self._drawing, self._buffers, self._highlights)
+            self._bokeh = BokehStage(
+                plan, self._drawing, self._buffers, self._occluders, self._highlights
+            )
         self._prepare_targets()
 
     @property
@@ -368,7 +372,7 @@ class FrameRenderer:
     def release(self):
         """Give back to the device what nobody else holds; the renderer is of no use after it."""
         self._release_targets()
-        self._buffers = self._drawing = self._blur = self._bokeh = None
+        self._buffers = self._drawing = self._blur = self._bokeh = self._occluders = None
 
     def _release_targets(self):
         if self._targets is not None:
