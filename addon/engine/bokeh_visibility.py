@@ -20,7 +20,6 @@ from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
 from ..passes import bokeh_culling, peel, surface, surface_code, visibility_raster, visibility_warp
 from ..passes.highlights import COLUMNS
-from .levels import extents, world_corners
 from .occluders import CLUSTER, Occluders, Part
 
 # Steps of a ray that take as long as a triangle of a cluster; measured, see the tests' docstring.
@@ -115,16 +114,6 @@ class SceneOccluders:
             ).transparent
             for slot, _, _ in mesh.slots
         }
-
-    def nearest_boxes(self, view):
-        """Return the least and largest depth of every instance, shape (I, 2), m."""
-        seen = extents(self._corners, view)
-        return np.stack([seen.nearest, seen.farthest], axis=1)
-
-    @cached_property
-    def _corners(self):
-        bounds = {uid: mesh.bounds for uid, mesh in self._content.meshes.items()}
-        return world_corners(self._content, bounds)
 
     @cached_property
     def opaque(self):
@@ -226,9 +215,21 @@ def visibility_params(plan, fine=1, reach=1.0):
             bokeh_culling.SIZES,
             bokeh_culling.LEAST_SIDE,
             _MASK_TEXELS_PER_PIXEL,
-            0.0,
+            _reaching_depth(plan),
         ),
     }
+
+
+def _reaching_depth(plan):
+    """Return up to which depth discs are wider than what the raster has around the frame, m.
+
+    A surface outside the raster that is farther away, but nearer than a highlight whose own disc is
+    not, is seen at no pixel of the frame: it hides nothing of what the frame shows.
+    """
+    margin = min(plan.bokeh.margin)
+    if plan.orthographic:
+        return max(plan.focus_distance * (1.0 - margin / plan.coc_scale), 0.0)
+    return 1.0 / (1.0 / plan.focus_distance + margin / plan.coc_scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -445,7 +446,6 @@ class BokehVisibility:
                 layers,
                 bounds,
                 cell,
-                self._nearest(),
                 tables.states,
             )
             bokeh_culling.count_pairs(
@@ -460,18 +460,6 @@ class BokehVisibility:
             bokeh_culling.mark_sizes(count, self._parameters, tables)
             # The stack is given back only after the device has read it.
             np.asarray(tables.counts.read())
-
-    def _nearest(self):
-        """Return the depth buffer value of the nearest surface of the whole scene."""
-        boxes = self._occluders.nearest_boxes(self._plan.view)
-        start = self._values["opening"][2]
-        ahead = boxes[boxes[:, 1] > start]
-        depth = max(float(ahead[:, 0].min(initial=np.inf)), start)
-        constant, linear = self._values["sweep"][2:]
-        if not np.isfinite(depth):
-            return 1.0
-        value = constant + linear * (depth if self._plan.orthographic else 1.0 / depth)
-        return max(float(value) - 1e-6, 0.0)
 
     @staticmethod
     def _choose(counts, method):
@@ -534,8 +522,8 @@ class BokehVisibility:
 
 
 def _note(counts, found):
-    for name, place in bokeh_culling.STATES.items():
-        setattr(counts, name, int(found[place]))
+    for name, places in bokeh_culling.STATES.items():
+        setattr(counts, name, sum(int(found[place]) for place in places))
     counts.work = 64 * int(found[bokeh_culling.COUNT_WORK])
     counts.pairs = int(found[bokeh_culling.COUNT_PAIRS])
     counts.surface_pairs = int(found[bokeh_culling.COUNT_GROUPS :].sum())

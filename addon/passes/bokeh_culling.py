@@ -27,7 +27,7 @@ SIZES = 6
 
 # Places in the table of counts: sources by state (see lib/source_lib.glsl), masks by size, texels
 # times steps of casting rays, pairs of source and cluster, pairs of source and instance of a group.
-STATES = {"outside": 1, "hidden": 2, "visible": 3, "masked": 4, "free": 5}
+STATES = {"outside": (1,), "hidden": (2,), "visible": (3, 6), "masked": (4,), "free": (5,)}
 COUNT_SIZES = 8
 COUNT_WORK = 16
 COUNT_PAIRS = 17
@@ -59,7 +59,7 @@ _CULL = ShaderInfo(
     ),
     images=(("RGBA32F", "FLOAT_2D", "states_img", ("WRITE",)),),
     uniforms=(("VisibilityParams", "visibility_buf"),),
-    push_constants=(("INT", "count"), ("INT", "cell"), ("FLOAT", "nearest_depth")),
+    push_constants=(("INT", "count"), ("INT", "cell")),
     defines=_DEFINES,
     local_size=(_THREADS, 1, 1),
 )
@@ -193,7 +193,7 @@ def build_bounds(layers, opacity, bounds, levels, cell):
         dispatch(shader, -(-bounds.width // _GROUP), -(-bounds.height // _GROUP))
 
 
-def cull(sources, count, parameters, layers, bounds, cell, nearest, states):
+def cull(sources, count, parameters, layers, bounds, cell, states):
     """Decide by the peeled layers which sources need a mask.
 
     Parameters
@@ -205,8 +205,6 @@ def cull(sources, count, parameters, layers, bounds, cell, nearest, states):
         `VisibilityParams`.
     layers, bounds : GPUTexture
     cell : int
-    nearest : float
-        Depth buffer value of the nearest surface of the scene.
     states : GPUTexture
         RGBA32F, as large as the list; gets what was found.
     """
@@ -219,7 +217,6 @@ def cull(sources, count, parameters, layers, bounds, cell, nearest, states):
     shader.uniform_block("visibility_buf", parameters)
     shader.uniform_int("count", count)
     shader.uniform_int("cell", cell)
-    shader.uniform_float("nearest_depth", nearest)
     dispatch(shader, -(-count // _THREADS), 1)
 
 

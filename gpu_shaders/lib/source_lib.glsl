@@ -10,6 +10,7 @@
 #define STATE_VISIBLE 3.0  // no surface of the layers lies before it
 #define STATE_OPEN 4.0     // not decided
 #define STATE_FREE 5.0     // no triangles in the cone to the lens
+#define STATE_EDGE 6.0     // as STATE_VISIBLE, unless something outside the raster lies before it
 
 struct Source {
   Cone cone;

@@ -1,8 +1,7 @@
 // Sorts out sources that need no mask: their disc is outside the frame, nothing of the lens sees
 // them, or nothing stands before them.
 // Inputs: sources_tx (x, y, depth, extent); layers_tx, bounds_tx (see bokeh_culling_bounds_comp);
-// visibility_buf; count; cell; nearest_depth (depth buffer value of
-// the nearest surface of the scene).
+// visibility_buf; count; cell.
 // Outputs: states_img: depth buffer value that nothing before the source falls below (x), class of
 // size (y), steps of a ray to the rim (z), state (w).
 // Source: methods 10 (J20 section 4.3.2).
@@ -70,14 +69,15 @@ float state_of(Source source, inout float nearest)
   }
   vec2 rate = source_reach(visibility_buf);
   ivec2 size = textureSize(layers_tx, 0);
-  bool inside = true;
-  vec3 bounds = vec3(nearest, 2.0, 2.0);
+  bool inside, all_inside = true;
+  vec3 bounds;
   ivec2 low, high;
   for (int i = 0; i < ITERATIONS; i++) {
     vec2 reach = rate * max(source.depth - nearest, 0.0);
     low = ivec2(floor(source.place - reach));
     high = ivec2(floor(source.place + reach));
-    inside = inside && all(greaterThanEqual(low, ivec2(0))) && all(lessThan(high, size));
+    inside = all(greaterThanEqual(low, ivec2(0))) && all(lessThan(high, size));
+    all_inside = all_inside && inside;
     low = clamp(low, ivec2(0), size - 1);
     high = clamp(high, ivec2(0), size - 1);
     bounds = bounds_of(bounds_tx, low / cell, high / cell);
@@ -87,18 +87,15 @@ float state_of(Source source, inout float nearest)
     }
     nearest = next;
   }
-  if (!inside) {
-    return STATE_OPEN;
-  }
-  if (bounds.x >= source.limit) {
-    return STATE_VISIBLE;
-  }
   ivec2 extent = high - low + 1;
-  if (max(extent.x, extent.y) <= WALK && free_of_texels(source, low, high)) {
-    return STATE_VISIBLE;
+  if (bounds.x >= source.limit ||
+      (max(extent.x, extent.y) <= WALK && free_of_texels(source, low, high)))
+  {
+    // The cone may leave the raster nearer to the lens than anything that is seen in it.
+    return all_inside ? STATE_VISIBLE : STATE_EDGE;
   }
   // A surface without a gap that a line to the lens could slip through hides everything.
-  if (bounds.y < source.limit && bounds.z * max(rate.x, rate.y) < 1.0) {
+  if (inside && bounds.y < source.limit && bounds.z * max(rate.x, rate.y) < 1.0) {
     return STATE_HIDDEN;
   }
   return STATE_OPEN;
@@ -111,7 +108,7 @@ void main()
     return;
   }
   Source source = source_of(texelFetch(sources_tx, list_texel(index), 0), visibility_buf);
-  float nearest = nearest_depth;
+  float nearest = 0.0;
   float state = state_of(source, nearest);
   vec2 rate = source_reach(visibility_buf);
   float steps = max(rate.x, rate.y) * max(source.depth - nearest, 0.0);

@@ -17,43 +17,71 @@
 #define LEVELS 8
 #define BRANCHES 8
 
-// Planes whose positive sides hold the rays from the source to the opening.
-struct Planes {
-  vec4 normal[PLANES];
+#define CORNERS 8
+
+// What holds the rays from the source to the opening: planes, on whose positive sides they are, and
+// the corners of a frustum, for a box whose sides part it from them.
+struct Bundle {
+  vec4 planes[PLANES];
+  vec3 corners[CORNERS];
+  vec3 low;
+  vec3 high;
 };
 
-Planes source_planes(Source source)
+// `farthest`: depth beyond which nothing counts, m.
+Bundle source_bundle(Source source, float farthest)
 {
-  Planes planes;
+  Bundle bundle;
   Cone cone = source.cone;
   for (int i = 0; i < SIDES; i++) {
     float angle = 6.2831853 * float(i) / float(SIDES);
     vec2 n = vec2(cos(angle), sin(angle));
     float reach = length(n * visibility_buf.opening.xy) * cone.rate;
-    planes.normal[i] = vec4(-n, reach - dot(n, cone.b), reach * cone.depth + dot(n, cone.a));
+    bundle.planes[i] = vec4(-n, reach - dot(n, cone.b), reach * cone.depth + dot(n, cone.a));
   }
-  planes.normal[SIDES] = vec4(0.0, 0.0, -1.0, -visibility_buf.opening.z);
-  planes.normal[SIDES + 1] = vec4(0.0, 0.0, 1.0, source.hides);
-  return planes;
+  bundle.planes[SIDES] = vec4(0.0, 0.0, -1.0, -visibility_buf.opening.z);
+  bundle.planes[SIDES + 1] = vec4(0.0, 0.0, 1.0, farthest);
+  for (int i = 0; i < CORNERS; i++) {
+    float z = (i & 4) == 0 ? visibility_buf.opening.z : farthest;
+    vec2 side = vec2((i & 1) == 0 ? -1.0 : 1.0, (i & 2) == 0 ? -1.0 : 1.0);
+    vec2 lens = side * visibility_buf.opening.xy * ((cone.depth - z) * cone.rate);
+    bundle.corners[i] = vec3(cone.a + cone.b * z + lens, -z);
+  }
+  return bundle;
 }
 
-Planes transform_planes(Planes planes, mat4 matrix)
+// The bundle in a space from which `matrix` leads to its own.
+Bundle transform_bundle(Bundle bundle, mat4 matrix)
 {
+  mat3 back = inverse(mat3(matrix));
+  bundle.low = vec3(1e30);
+  bundle.high = vec3(-1e30);
   for (int i = 0; i < PLANES; i++) {
-    planes.normal[i] = planes.normal[i] * matrix;
+    bundle.planes[i] = bundle.planes[i] * matrix;
   }
-  return planes;
+  for (int i = 0; i < CORNERS; i++) {
+    bundle.corners[i] = back * (bundle.corners[i] - matrix[3].xyz);
+    bundle.low = min(bundle.low, bundle.corners[i]);
+    bundle.high = max(bundle.high, bundle.corners[i]);
+  }
+  vec3 slack = 1e-5 * max(abs(bundle.low), abs(bundle.high));
+  bundle.low -= slack;
+  bundle.high += slack;
+  return bundle;
 }
 
-bool meets_box(Planes planes, vec3 low, vec3 high)
+bool meets_box(Bundle bundle, vec3 low, vec3 high)
 {
+  if (any(lessThan(high, bundle.low)) || any(greaterThan(low, bundle.high))) {
+    return false;
+  }
   vec3 center = 0.5 * (low + high), half_size = 0.5 * (high - low);
   for (int i = 0; i < PLANES; i++) {
-    vec3 n = planes.normal[i].xyz;
+    vec3 n = bundle.planes[i].xyz;
     float reach = dot(abs(n), half_size);
-    float distance = dot(n, center) + planes.normal[i].w;
+    float distance = dot(n, center) + bundle.planes[i].w;
     // A little more than exact, for rounding.
-    if (distance + reach * 1.0001 + 1e-6 * abs(planes.normal[i].w) < 0.0) {
+    if (distance + reach * 1.0001 + 1e-6 * abs(bundle.planes[i].w) < 0.0) {
       return false;
     }
   }
@@ -61,9 +89,9 @@ bool meets_box(Planes planes, vec3 low, vec3 high)
 }
 
 #ifndef GROUP
-bool meets(Planes planes, int box)
+bool meets(Bundle bundle, int box)
 {
-  return meets_box(planes,
+  return meets_box(bundle,
                    texelFetch(boxes_tx, list_texel(2 * box), 0).xyz,
                    texelFetch(boxes_tx, list_texel(2 * box + 1), 0).xyz);
 }
@@ -91,16 +119,16 @@ Tree tree_of(int first, int number)
   return tree;
 }
 
-// Goes on from a box to the next leaf that meets the planes; returns false at the end. `place`:
+// Goes on from a box to the next leaf that meets the bundle; returns false at the end. `place`:
 // level and number of the next box to look at.
-bool next_leaf(Tree tree, Planes planes, inout ivec2 place, out int leaf)
+bool next_leaf(Tree tree, Bundle bundle, inout ivec2 place, out int leaf)
 {
   while (true) {
     int level = place.x, index = place.y;
     if (level == tree.top && index >= tree.number[level]) {
       return false;
     }
-    bool met = index < tree.number[level] && meets(planes, tree.first[level] + index);
+    bool met = index < tree.number[level] && meets(bundle, tree.first[level] + index);
     if (met && level > 0) {
       place = ivec2(level - 1, index * BRANCHES);
       continue;
@@ -135,6 +163,41 @@ int level_of(Source source, vec4 part, int tree_box)
 }
 #endif
 
+#ifndef FILL
+// Whether anything so near that it reaches into the frame from outside the raster meets the cone.
+bool meets_edge(Source source)
+{
+  float margin = min(visibility_buf.frame.x, visibility_buf.frame.y);
+  float farthest = abs(source.coc) < margin ? min(source.hides, visibility_buf.tiles.w) :
+                                              source.hides;
+  Bundle bundle = transform_bundle(source_bundle(source, farthest), visibility_buf.view);
+#ifdef GROUP
+  for (int row = extent.x; row <= extent.y; row++) {
+    Bundle own = transform_bundle(bundle, instance_world(instances_tx, row));
+    if (meets_box(own, box_low.xyz, box_high.xyz)) {
+      return true;
+    }
+  }
+#else
+  Tree parts = tree_of(0, extent.x);
+  ivec2 at = ivec2(parts.top, 0);
+  int number;
+  while (next_leaf(parts, bundle, at, number)) {
+    vec4 part = texelFetch(parts_tx, list_texel(2 * number), 0);
+    vec4 shape = texelFetch(shapes_tx, list_texel(int(part.y)), 0);
+    Bundle own = transform_bundle(bundle, instance_world(instances_tx, int(part.x)));
+    Tree clusters = tree_of(int(shape.x), int(shape.y));
+    ivec2 within = ivec2(clusters.top, 0);
+    int cluster;
+    if (next_leaf(clusters, own, within, cluster)) {
+      return true;
+    }
+  }
+#endif
+  return false;
+}
+#endif
+
 #ifdef FILL
 void write_pair(inout uint place, int source, int row, int cluster)
 {
@@ -158,18 +221,26 @@ void main()
   uint place = texelFetch(keys_tx, key, 0).x + texelFetch(totals_tx, list_texel(key.y), 0).x;
 #else
   float state = index < count ? imageLoad(states_img, texel).w : 0.0;
-  if (state != STATE_OPEN && state != STATE_FREE) {
+  if (state != STATE_OPEN && state != STATE_FREE && state != STATE_EDGE) {
     imageStore(keys_img, key, uvec4(0u));
     return;
   }
 #endif
   Source source = source_of(texelFetch(sources_tx, texel, 0), visibility_buf);
-  Planes in_eye = source_planes(source);
-  Planes planes = transform_planes(in_eye, visibility_buf.view);
+#ifndef FILL
+  if (state == STATE_EDGE) {
+    if (!meets_edge(source)) {
+      imageStore(keys_img, key, uvec4(0u));
+      return;
+    }
+    state = STATE_OPEN;
+  }
+#endif
+  Bundle bundle = transform_bundle(source_bundle(source, source.hides), visibility_buf.view);
   uint found = 0u;
 #ifdef GROUP
   for (int row = extent.x; row <= extent.y; row++) {
-    Planes own = transform_planes(planes, instance_world(instances_tx, row));
+    Bundle own = transform_bundle(bundle, instance_world(instances_tx, row));
     if (meets_box(own, box_low.xyz, box_high.xyz)) {
       found++;
 #ifdef FILL
@@ -181,12 +252,12 @@ void main()
   Tree parts = tree_of(0, extent.x);
   ivec2 at = ivec2(parts.top, 0);
   int number;
-  while (next_leaf(parts, planes, at, number)) {
+  while (next_leaf(parts, bundle, at, number)) {
     vec4 part = texelFetch(parts_tx, list_texel(2 * number), 0);
     int row = int(part.x);
     vec4 shape = texelFetch(
         shapes_tx, list_texel(int(part.y) + level_of(source, part, number)), 0);
-    Planes own = transform_planes(planes, instance_world(instances_tx, row));
+    Bundle own = transform_bundle(bundle, instance_world(instances_tx, row));
     Tree clusters = tree_of(int(shape.x), int(shape.y));
     ivec2 within = ivec2(clusters.top, 0);
     int cluster;

@@ -15,7 +15,7 @@ void main()
   ivec2 texel = list_texel(index);
   vec4 record = texelFetch(states_tx, texel, 0);
   if (record.w != STATE_OPEN) {
-    bool seen = record.w == STATE_VISIBLE || record.w == STATE_FREE;
+    bool seen = record.w == STATE_VISIBLE || record.w == STATE_FREE || record.w == STATE_EDGE;
     imageStore(tiles_img, texel, vec4(vec3(0.0), seen ? SOURCE_UNMASKED : SOURCE_DROP));
     return;
   }

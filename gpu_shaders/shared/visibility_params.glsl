@@ -12,5 +12,6 @@ struct VisibilityParams {
   vec4 sweep;           // xy: texels that a metre of the lens moves a unit of the depth buffer;
                         // zw: depth buffer value = z + w / depth (orthographic: z + w depth)
   vec4 tiles;           // x: number of sizes of masks; y: smallest size, texels;
-                        // z: texels a pixel of the picture; w: largest movement searched, texels
+                        // z: texels a pixel of the picture; w: depth, m, up to which a surface
+                        // outside the raster can reach into the frame
 };
