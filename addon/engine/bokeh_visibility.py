@@ -301,7 +301,7 @@ class BokehVisibility:
         self._values = visibility_params(plan, self._fine, reach)
         self._parameters = uniform_buffer(bokeh_culling.VISIBILITY_PARAMS.pack(**self._values))
 
-    def find(self, sources, count, drawing, targets, method=None):
+    def find(self, sources, count, drawing, targets, method=None, culls=True):
         """Test the sources and make the masks of those that need one.
 
         Parameters
@@ -315,6 +315,8 @@ class BokehVisibility:
             Gets the `Targets` that the result lives in, for the caller to release.
         method : {'AUTO', 'RASTER', 'WARP', 'SPLAT'}, optional
             Default: the plan's.
+        culls : bool
+            False gives every source a mask, for comparison.
 
         Returns
         -------
@@ -347,7 +349,7 @@ class BokehVisibility:
             tables = bokeh_culling.CullingTables(
                 rows, lists["states"], keys["keys"], totals["totals"], numbers["counts"]
             )
-            self._cull(sources, count, raster, tables)
+            self._cull(sources, count, raster, tables, culls)
             found = np.asarray(tables.counts.read()).ravel()
             _note(counts, found)
             counts.method = self._choose(counts, method)
@@ -428,7 +430,7 @@ class BokehVisibility:
         # Products of several surfaces must not be rounded to 8 bits each.
         return "R16F" if self._occluders.groups else "R8"
 
-    def _cull(self, sources, count, raster, tables):
+    def _cull(self, sources, count, raster, tables, culls):
         occluders = self._occluders
         layers = raster["layers"]
         cell = 1
@@ -446,6 +448,7 @@ class BokehVisibility:
                 layers,
                 bounds,
                 cell,
+                culls,
                 tables.states,
             )
             bokeh_culling.count_pairs(
@@ -455,6 +458,7 @@ class BokehVisibility:
                 occluders.opaque,
                 self._buffers.instances,
                 occluders.groups,
+                culls,
                 tables,
             )
             bokeh_culling.mark_sizes(count, self._parameters, tables)

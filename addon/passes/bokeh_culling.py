@@ -59,7 +59,7 @@ _CULL = ShaderInfo(
     ),
     images=(("RGBA32F", "FLOAT_2D", "states_img", ("WRITE",)),),
     uniforms=(("VisibilityParams", "visibility_buf"),),
-    push_constants=(("INT", "count"), ("INT", "cell")),
+    push_constants=(("INT", "count"), ("INT", "cell"), ("INT", "culls")),
     defines=_DEFINES,
     local_size=(_THREADS, 1, 1),
 )
@@ -114,7 +114,7 @@ def _cone_info(group, fill):
             ("R32UI", "UINT_2D", "counts_img", ("READ", "WRITE")),
         ]
     constants = [("INT", "count"), ("IVEC4", "extent")]
-    constants += [("IVEC2", "window")] * fill
+    constants.append(("IVEC2", "window") if fill else ("INT", "culls"))
     constants += [("VEC4", "box_low"), ("VEC4", "box_high")] * group
     return ShaderInfo(
         name="aplanat_bokeh_cone",
@@ -193,7 +193,7 @@ def build_bounds(layers, opacity, bounds, levels, cell):
         dispatch(shader, -(-bounds.width // _GROUP), -(-bounds.height // _GROUP))
 
 
-def cull(sources, count, parameters, layers, bounds, cell, states):
+def cull(sources, count, parameters, layers, bounds, cell, culls, states):
     """Decide by the peeled layers which sources need a mask.
 
     Parameters
@@ -205,6 +205,8 @@ def cull(sources, count, parameters, layers, bounds, cell, states):
         `VisibilityParams`.
     layers, bounds : GPUTexture
     cell : int
+    culls : bool
+        False leaves every source undecided, for comparison.
     states : GPUTexture
         RGBA32F, as large as the list; gets what was found.
     """
@@ -217,10 +219,11 @@ def cull(sources, count, parameters, layers, bounds, cell, states):
     shader.uniform_block("visibility_buf", parameters)
     shader.uniform_int("count", count)
     shader.uniform_int("cell", cell)
+    shader.uniform_int("culls", int(culls))
     dispatch(shader, -(-count // _THREADS), 1)
 
 
-def count_pairs(sources, count, parameters, occluders, instances, groups, tables):
+def count_pairs(sources, count, parameters, occluders, instances, groups, culls, tables):
     """Count what meets the cones of the undecided sources; those of nothing are seen whole.
 
     Parameters
@@ -232,12 +235,15 @@ def count_pairs(sources, count, parameters, occluders, instances, groups, tables
     instances : GPUTexture
         The instance table.
     groups : sequence of GroupRange
+    culls : bool
+        False keeps every source undecided.
     tables : CullingTables
     """
     for number in range(-1, len(groups)):
         shader = _cone_shader(
             sources, count, parameters, occluders, instances, groups, number, tables, False
         )
+        shader.uniform_int("culls", int(culls))
         shader.image("states_img", tables.states)
         shader.image("keys_img", tables.keys)
         shader.image("counts_img", tables.counts)

@@ -1,7 +1,8 @@
 // Sorts out sources that need no mask: their disc is outside the frame, nothing of the lens sees
 // them, or nothing stands before them.
 // Inputs: sources_tx (x, y, depth, extent); layers_tx, bounds_tx (see bokeh_culling_bounds_comp);
-// visibility_buf; count; cell.
+// visibility_buf; count; cell; culls (0: every source
+// is undecided, for comparison).
 // Outputs: states_img: depth buffer value that nothing before the source falls below (x), class of
 // size (y), steps of a ray to the rim (z), state (w).
 // Source: methods 10 (J20 section 4.3.2).
@@ -110,6 +111,10 @@ void main()
   Source source = source_of(texelFetch(sources_tx, list_texel(index), 0), visibility_buf);
   float nearest = 0.0;
   float state = state_of(source, nearest);
+  if (culls == 0) {
+    state = STATE_OPEN;
+    nearest = 0.0;
+  }
   vec2 rate = source_reach(visibility_buf);
   float steps = max(rate.x, rate.y) * max(source.depth - nearest, 0.0);
   int size = source_class(source.coc, visibility_buf);

@@ -1,7 +1,8 @@
 // Which clusters of triangles, or instances of a group, meet the cone from a source to the lens.
 // Counts them for each undecided source; with FILL, writes the pairs where prefix sums place them.
 // Inputs: sources_tx; boxes_tx, parts_tx, shapes_tx (see engine/occluders.py); instances_tx;
-// visibility_buf; count; ivec4 extent (GROUP: first and last row of a group's instances, z: segment of
+// visibility_buf; count; culls (0: every source
+// keeps its mask); ivec4 extent (GROUP: first and last row of a group's instances, z: segment of
 // keys; else x: number of parts, z: segment); FILL: states_tx, keys_tx, totals_tx, window (places: first and
 // number).
 // GROUP: box (lower and upper corner of the mesh).
@@ -276,7 +277,7 @@ void main()
   }
   // Undecided until something meets the cone.
   vec4 record = imageLoad(states_img, texel);
-  record.w = (found > 0u || (extent.w > COUNT_PAIRS && state == STATE_OPEN)) ? STATE_OPEN :
+  record.w = (found > 0u || culls == 0 || (extent.w > COUNT_PAIRS && state == STATE_OPEN)) ? STATE_OPEN :
                                                                              STATE_FREE;
   imageStore(states_img, texel, record);
 #endif
