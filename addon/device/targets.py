@@ -23,12 +23,15 @@ class TargetSpec:
         Of an array texture; 0 is a plain one.
     scale : float
         How many times larger than the others it is, along each side, rounded up.
+    size : tuple of 2 int or None
+        Width and height of one that is not as large as the others.
     """
 
     name: str
     texel_format: str
     layers: int = 0
     scale: float = 1
+    size: tuple[int, int] | None = None
 
 
 class Targets:
@@ -77,7 +80,9 @@ class Targets:
         """Make one more texture."""
         import gpu
 
-        width, height = (math.ceil(side * spec.scale) for side in (self.width, self.height))
+        width, height = spec.size or (
+            math.ceil(side * spec.scale) for side in (self.width, self.height)
+        )
         size = census.texture_bytes(width, height, spec.texel_format, spec.layers)
         try:
             texture = gpu.types.GPUTexture(

@@ -20,12 +20,13 @@ from .levels import coc_radius, extents, world_corners
 _INFINITY = 1e6
 # Around the frame, px, for the edges of discs that end just outside.
 _RIM = 2
-# Of the peeled raster, in sub-pixels (20 bytes each a layer), and its longer side.
-_LARGEST_RASTER = 1 << 22
-_LONGEST_RASTER = 16384
+# Of the raster that highlights are searched in, in sub-pixels, and of a tile of it (20 bytes each a
+# layer).
+_LARGEST_RASTER = 1 << 26
+_LARGEST_TILE = 1 << 22
 _LEAST_SUBPIXELS, _MOST_SUBPIXELS = 2, 4
-# Sub-pixels along a side of a triangle that shines.
-_HITS_A_SIDE = 2.0
+# Sub-pixels along a side of a triangle that shines: a lamp of one is met within a few per cent.
+_HITS_A_SIDE = 6.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +75,38 @@ class BokehPlan:
     filter_width: float
 
     @property
+    def lens_views(self):
+        """Places on the lens that view-dependent highlights are looked for from.
+
+        Returns
+        -------
+        ndarray of shape (n^2, 2)
+            In units of half the opening, row by row: the centres of n x n regions.
+        """
+        side = max(1, int(np.sqrt(self.settings.lens_views)))
+        axis = (2.0 * np.arange(side) + 1.0) / side - 1.0
+        return np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+
+    @property
+    def tiles(self):
+        """Parts of the raster that are searched one after another.
+
+        Returns
+        -------
+        list of tuple of 4 int
+            x, y, width and height in pixels; the first is as large as any.
+        """
+        most = max(_LARGEST_TILE // self.subpixels**2, 1)
+        columns = -(-self.width // int(np.sqrt(most))) if self.width * self.height > most else 1
+        width = -(-self.width // columns)
+        height = min(max(most // width, 1), self.height)
+        return [
+            (x, y, min(width, self.width - x), min(height, self.height - y))
+            for y in range(0, self.height, height)
+            for x in range(0, self.width, width)
+        ]
+
+    @property
     def layers(self):
         """Number of highlights behind one another that are found, the world's not counted."""
         return self.settings.layers
@@ -108,7 +141,8 @@ def plan_bokeh(snapshot, plan):
     margin = _margin(plan, settings, largest)
     width, height = plan.width + 2 * margin[0], plan.height + 2 * margin[1]
     # Of a parallel camera, all pixels show the same point at infinity: it is no highlight.
-    world = bool(snapshot.content.world.image) and not snapshot.film.transparent
+    world = settings.world and bool(snapshot.content.world.image)
+    world = world and not snapshot.film.transparent
     world = world and not plan.orthographic
     film = snapshot.film
     return BokehPlan(
@@ -136,7 +170,7 @@ def _shining(content, threshold):
             zip(content.groups, brightest(content), strict=True)
         )
         for (slot, _, _), bound in zip(content.meshes[group.mesh].slots, bounds, strict=True)
-        if bound > threshold
+        if bound > threshold and content.materials[group.materials[slot]].highlights
     )
 
 
@@ -188,9 +222,7 @@ def _subpixels(content, plan, rows, of_group, seen, size):
     int
     """
     width, height = size
-    affordable = min(
-        int(np.sqrt(_LARGEST_RASTER / (width * height))), _LONGEST_RASTER // max(width, height)
-    )
+    affordable = int(np.sqrt(_LARGEST_RASTER / (width * height)))
     area = np.array([content.meshes[g.mesh].triangle_area for g in content.groups])[of_group]
     stretch = np.abs(np.linalg.det(content.instances.world[rows, :3, :3].astype(float)))
     side = np.sqrt(area) * np.cbrt(stretch) * plan.projection[1, 1] * plan.height / 2.0

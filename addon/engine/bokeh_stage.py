@@ -18,6 +18,8 @@ from ..device.uniforms import uniform_buffer
 from ..passes import background, highlights, peel, splat, surface
 from .bokeh_visibility import BokehVisibility
 
+# Highlights that the list has room for at first.
+_FIRST_LIST = 1 << 16
 # Texels along a side of an opening's layers.
 _OPENING = 512
 
@@ -67,7 +69,6 @@ def highlight_buffer(bokeh):
     return uniform_buffer(
         surface.HIGHLIGHT_PARAMS.pack(
             split=(settings.threshold, bokeh.least_coc, settings.gain, settings.amplification),
-            raster=(bokeh.width, bokeh.height, *bokeh.margin),
             world=(bokeh.world_depth, float(bokeh.world), bokeh.world_share, 0.0),
         )
     )
@@ -128,14 +129,60 @@ class BokehStage:
     def _find(self, fullscreen, held):
         """Return the list of highlights, two textures, and how many they are."""
         bokeh = self._plan.bokeh
-        with Targets(bokeh.width, bokeh.height, self._specs()) as layers:
-            view = uniform_buffer(self._raster_params())
-            self._peel(layers, view, fullscreen)
-            sources, count = self._extract(layers, view, held)
-            self.bytes = max(self.bytes, layers.bytes)
-            # The layers are given back only after the device has read them.
-            readback.wait(layers.framebuffer("light_color_0"))
-        return sources, count
+        room = _FIRST_LIST
+        while True:
+            with Targets(2, 1, [TargetSpec("total", "R32UI")]) as totals:
+                total = totals["total"]
+                total.clear(format="UINT", value=(0,))
+                specs = [TargetSpec(name, "RGBA32F") for name in "ab"]
+                lists = Targets(highlights.COLUMNS, room // highlights.COLUMNS, specs)
+                _, _, width, height = bokeh.tiles[0]
+                with Targets(width, height, self._specs()) as layers:
+                    for peeled in self._rasters(layers, fullscreen):
+                        self._list(peeled, layers, lists, total)
+                    self.bytes = max(self.bytes, layers.bytes)
+                    # The layers are given back only after the device has read them.
+                    count, sharp = (int(n) for n in np.asarray(total.read()).ravel()[:2])
+            if count <= room:
+                break
+            lists.release()
+            room = highlights.COLUMNS * -(-count // highlights.COLUMNS)
+        held.append(lists)
+        self.counts.found = count + sharp
+        self.counts.culled_size = sharp
+        self.counts.clustered = count
+        return (lists["a"], lists["b"]), count
+
+    def _rasters(self, layers, fullscreen):
+        """Peel tile by tile, what looks different from each place on the lens also view by view.
+
+        Yields
+        ------
+        PeeledRaster
+            To be read before the next.
+        """
+        bokeh, drawing = self._plan.bokeh, self._drawing
+        opaque = drawing.full_detail_draws(peel.OPAQUE)
+        shining = drawing.full_detail_draws(peel.HIGHLIGHTS, bokeh.shining)
+        views = [((0.0, 0.0), 0, shining)]
+        if len(bokeh.lens_views) > 1:
+            lit = [draw for draw in shining if draw.lighting]
+            views[0] = ((0.0, 0.0), 0, [draw for draw in shining if not draw.lighting])
+            places = (bokeh.lens_views * self._plan.lens_extent).tolist()
+            views += [(tuple(p), n, lit) for n, p in enumerate(places, start=1) if lit]
+        for tile in bokeh.tiles:
+            view = uniform_buffer(self._raster_params(tile, layers))
+            for lens, region, draws in views:
+                world = bokeh.world and region == 0
+                if not draws and not world:
+                    continue
+                peeled = self._peel(layers, view, (opaque, draws), lens, fullscreen, world)
+                shape = (tile[2:], bokeh.subpixels, lens, region)
+                yield highlights.PeeledRaster(peeled, view, self._highlights, *shape)
+
+    def _list(self, peeled, layers, lists, total):
+        highlights.count(peeled, layers["counts"], layers["rows"], total)
+        highlights.emit(peeled, layers["counts"], layers["rows"], (lists["a"], lists["b"]))
 
     def _hide(self, sources, count, held):
         """Find what hides the sources from the lens, as `Visibility`."""
@@ -150,41 +197,55 @@ class BokehStage:
 
     def _specs(self):
         bokeh, fine = self._plan.bokeh, self._plan.bokeh.subpixels
+        _, _, _, height = bokeh.tiles[0]
+        lists = bokeh.layers + bokeh.world
         names = [f"light_color_{k}" for k in range(bokeh.layers)] + ["no_color"]
         names += ["world"] * bokeh.world
         specs = [TargetSpec(name, "RGBA32F", scale=fine) for name in names]
         names = [f"light_depth_{k}" for k in range(bokeh.layers)] + ["no_depth", "scene_depth"]
         specs += [TargetSpec(name, "DEPTH_COMPONENT32F", scale=fine) for name in names]
+        specs.append(TargetSpec("counts", "R32UI", lists))
+        specs.append(TargetSpec("rows", "R32UI", size=(height, 2 * lists)))
         return specs
 
-    def _raster_params(self):
+    def _raster_params(self, tile, layers):
         plan, bokeh = self._plan, self._plan.bokeh
-        fine = bokeh.subpixels
+        x, y, _, _ = tile
+        width, height = layers.width, layers.height
+        crop = np.eye(4)
+        crop[0, 0], crop[1, 1] = bokeh.width / width, bokeh.height / height
+        crop[0, 3] = (bokeh.width - 2 * x - width) / width
+        crop[1, 3] = (bokeh.height - 2 * y - height) / height
         return surface.VIEW_PARAMS.pack(
             view=plan.view,
             view_inverse=np.linalg.inv(plan.view),
-            projection=bokeh.projection,
+            projection=crop @ bokeh.projection,
             lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
-            film=(bokeh.width * fine, bokeh.height * fine, 0.0, 0.0),
+            film=(width * bokeh.subpixels, height * bokeh.subpixels, 0.0, 0.0),
         )
 
-    def _peel(self, layers, view, fullscreen):
-        """Draw what is brighter than the threshold, layer by layer."""
-        bokeh, drawing = self._plan.bokeh, self._drawing
+    def _peel(self, layers, view, draws, lens, fullscreen, world):
+        """Draw what is brighter than the threshold, layer by layer.
+
+        Returns
+        -------
+        tuple of (GPUTexture, GPUTexture or None)
+            Light and depth of each layer.
+        """
+        opaque, shining = draws
         nothing = layers.framebuffer("no_color", depth="no_depth")
         with nothing.bind():
             nothing.clear(color=(0.0, 0.0, 0.0, 0.0), depth=0.0)
         before = ("no_depth", "no_color")
-        opaque = drawing.full_detail_draws(peel.OPAQUE)
         # The first layer's colour is drawn over by its highlights.
-        self._draw_layer(layers, view, opaque, before[:1], "light_color_0", "scene_depth")
-        shining = drawing.full_detail_draws(peel.HIGHLIGHTS, bokeh.shining)
-        for k in range(bokeh.layers):
+        self._draw_layer(layers, view, opaque, before[:1], ("light_color_0", "scene_depth"), lens)
+        peeled = []
+        for k in range(self._plan.bokeh.layers if shining else 0):
             layer = (f"light_color_{k}", f"light_depth_{k}")
-            textures = (*before, "scene_depth")
-            self._draw_layer(layers, view, shining, textures, *layer, self._highlights)
+            self._draw_layer(layers, view, shining, (*before, "scene_depth"), layer, lens)
             before = layer[::-1]
-        if bokeh.world:
+            peeled.append(tuple(layers[name] for name in layer))
+        if world:
             with layers.framebuffer("world").bind():
                 background.draw_excess(
                     fullscreen,
@@ -193,49 +254,25 @@ class BokehStage:
                     self._buffers.environment_image,
                     self._highlights,
                 )
+            peeled.append((layers["world"], None))
+        return tuple(peeled)
 
-    def _draw_layer(self, layers, view, draws, textures, color, depth, highlights_buffer=None):
+    def _draw_layer(self, layers, view, draws, textures, layer, lens):
+        color, depth = layer
         framebuffer = layers.framebuffer(color, depth=depth)
         with framebuffer.bind():
             framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
             read = [layers[name] for name in textures]
             instances = self._buffers.instances
-            peel.draw_layer(draws, view, instances, read, highlights_buffer)
+            peel.draw_layer(draws, view, instances, read, self._highlights, lens)
         self._drawing.counts.draw_calls += len(draws)
         self._drawing.counts.triangles += sum(d.triangles * d.count for d in draws)
 
-    def _extract(self, layers, view, held):
-        """Return the list of highlights, two textures, and how many they are."""
-        bokeh = self._plan.bokeh
-        peeled = [
-            (layers[f"light_color_{k}"], layers[f"light_depth_{k}"]) for k in range(bokeh.layers)
-        ]
-        if bokeh.world:
-            peeled.append((layers["world"], None))
-        raster = (view, self._highlights, (bokeh.width, bokeh.height), bokeh.subpixels)
-        layers.add(TargetSpec("counts", "R32UI", len(peeled)))
-        with (
-            Targets(bokeh.height, 2 * len(peeled), [TargetSpec("rows", "R32UI")]) as rows,
-            Targets(2, 1, [TargetSpec("total", "R32UI")]) as total,
-        ):
-            listed = (peeled, layers["counts"], rows["rows"])
-            highlights.count(*listed, total["total"], *raster)
-            count, sharp = (int(n) for n in np.asarray(total["total"].read()).ravel()[:2])
-            self.counts.found = count + sharp
-            self.counts.culled_size = sharp
-            self.counts.clustered = count
-            height = max(1, -(-count // highlights.COLUMNS))
-            specs = [TargetSpec(name, "RGBA32F") for name in ("a", "b")]
-            lists = Targets(highlights.COLUMNS, height, specs)
-            held.append(lists)
-            sources = (lists["a"], lists["b"])
-            highlights.emit(*listed, sources, *raster)
-            return sources, count
-
     def _splat(self, sources, count, visibility, target, frame_view):
         bokeh = self._plan.bokeh
+        regions = np.sqrt(len(bokeh.lens_views))
         parameters = uniform_buffer(
-            splat.SPLAT_PARAMS.pack(opening=(bokeh.iris.ratio, bokeh.filter_width, 1.0, 0.0))
+            splat.SPLAT_PARAMS.pack(opening=(bokeh.iris.ratio, bokeh.filter_width, 1.0, regions))
         )
         rays = None
         if visibility.counts.method == "SPLAT":

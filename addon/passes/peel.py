@@ -1,4 +1,4 @@
-"""Peeling the scene into layers, seen by a pinhole at the lens' centre (methods 9).
+"""Peeling the scene into layers, seen by a pinhole at a place on the lens (methods 9).
 
 A layer holds, in every texel, the nearest surface behind the layer before: of all surfaces
 (`OCCLUDERS`), of the opaque ones (`OPAQUE`), or only of what is brighter than the threshold
@@ -30,7 +30,7 @@ HIGHLIGHTS = surface.SurfaceTarget(
 )
 
 
-def draw_layer(draws, view_buffer, instances, textures, highlights=None):
+def draw_layer(draws, view_buffer, instances, textures, highlights=None, lens=(0.0, 0.0)):
     """Draw one layer into the bound frame buffer.
 
     Parameters
@@ -46,9 +46,11 @@ def draw_layer(draws, view_buffer, instances, textures, highlights=None):
         also the layer before and the depth of the nearest opaque surface.
     highlights : GPUUniformBuf or None
         `HighlightParams`, for highlights.
+    lens : tuple of 2 float
+        Place on the lens that the scene is seen from, m.
     """
     state.opaque()
     names = ("front_tx", "front_color_tx", "scene_tx")
     bindings = tuple(zip(names[: len(textures)], textures, strict=True))
-    center = (0.0, 0.0, 0.0, 0.0)
-    surface.draw_sample(draws, view_buffer, instances, center, 0, bindings, highlights)
+    sample = (*lens, 0.0, 0.0)
+    surface.draw_sample(draws, view_buffer, instances, sample, 0, bindings, highlights)

@@ -31,6 +31,7 @@ def _info(casts):
             ("FLAT FLOAT", "v_blur"),
             ("FLAT VEC4", "v_tile"),
             ("FLAT INT", "v_source"),
+            ("FLAT FLOAT", "v_region"),
         ),
         outputs=(("VEC4", "out_color"),),
         samplers=samplers,

@@ -3,10 +3,13 @@
 // The sub-pixels of a pixel are one highlight, or two where they lie so far apart in depth that
 // their circles of confusion differ.
 // Inputs: color_tx (light above the threshold), depth_tx (window depth); view_buf (of the peeled
-// raster), highlight_buf; layer; with EMIT rows_img. WORLD: the world at infinity, no depth.
+// raster), highlight_buf; layer; size (of the part of the raster that counts, px); with EMIT rows_img
+// and lens_view (xy: place on the lens that it was seen from, m; z: region of the lens that it stands
+// for). WORLD: the world at infinity, no depth.
 // Outputs: counts_img: highlights of a pixel, and those too sharp to be splatted times 256; EMIT
-// reads how many come before the pixel in its row, and fills a_img (x, y and depth in camera space,
-// m; side of the square it stands for, px) and b_img (energy: radiance times pixels; weight).
+// reads the highlights of a pixel and how many come before it in its row, times 4, and fills a_img
+// (x, y and depth in camera space, m; side of the square it stands for, px) and b_img (energy:
+// radiance times pixels; region of the lens).
 // Source: methods 9 (J20 section 4.1).
 #include "lib/depth_lib.glsl"
 #include "lib/highlight_lib.glsl"
@@ -111,8 +114,7 @@ Highlight gather(ivec2 pixel, float from, float to)
 
 void emit(Highlight found, uint index)
 {
-  vec2 size = highlight_buf.raster.xy * float(SUBPIXELS);
-  vec2 clip = found.place / found.weight / size * 2.0 - 1.0;
+  vec2 clip = found.place / found.weight / view_buf.film.xy * 2.0 - 1.0;
   float depth = found.weight / found.inverse_depth;
   vec2 scale = vec2(view_buf.projection[0][0], view_buf.projection[1][1]);
   vec2 xy;
@@ -122,34 +124,41 @@ void emit(Highlight found, uint index)
   else {
     xy = (clip + view_buf.projection[2].xy) / scale * depth;
   }
+  // Where it is, not where it appears from that place.
+  xy += lens_view.xy * (view_buf.lens.x - depth) / view_buf.lens.x;
   float area = 1.0 / float(SUBPIXELS * SUBPIXELS);
   ivec2 place = ivec2(index % SOURCE_COLUMNS, index / SOURCE_COLUMNS);
+  if (place.y >= imageSize(a_img).y) {
+    return;
+  }
   imageStore(a_img, place, vec4(xy, depth, sqrt(found.texels * area)));
-  imageStore(b_img, place, vec4(found.energy * (area * highlight_buf.split.z), 1.0));
+  imageStore(b_img, place, vec4(found.energy * (area * highlight_buf.split.z), lens_view.z));
 }
 #endif
 
 void main()
 {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(highlight_buf.raster.xy)))) {
+  if (any(greaterThanEqual(pixel, size))) {
     return;
   }
-  bool sharp;
-  vec2 range = coc_range(pixel, sharp);
-  uint count = highlights_of(range);
 #ifdef EMIT
+  uint before = imageLoad(counts_img, ivec3(pixel, layer)).x;
+  uint count = before & 3u;
   if (count == 0u) {
     return;
   }
-  uint index = imageLoad(rows_img, ivec2(pixel.y, layer)).x +
-               imageLoad(counts_img, ivec3(pixel, layer)).x;
+  uint index = imageLoad(rows_img, ivec2(pixel.y, layer)).x + (before >> 2u);
+  bool sharp;
+  vec2 range = coc_range(pixel, sharp);
   float middle = (count == 1u) ? 1e30 : 0.5 * (range.x + range.y);
   emit(gather(pixel, -1e30, middle), index);
   if (count == 2u) {
     emit(gather(pixel, middle, 1e30), index + 1u);
   }
 #else
+  bool sharp;
+  uint count = highlights_of(coc_range(pixel, sharp));
   imageStore(counts_img, ivec3(pixel, layer), uvec4(count + (sharp ? 256u : 0u)));
 #endif
 }

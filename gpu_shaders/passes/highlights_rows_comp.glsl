@@ -1,7 +1,7 @@
 // Where each pixel's highlights begin in the list: prefix sums, in an order that is always the same.
-// Without TOTALS: along each row, in place; rows_img gets each row's sums.
-// TOTALS, one group: over the rows, in place; count_img gets the number of highlights (0, 0) and of
-// those too sharp to be splatted (1, 0).
+// Without TOTALS: along each row, in place, as highlights_comp reads it; rows_img gets each row's sums.
+// TOTALS, one group: over the rows, in place, after those that count_img counts already; it gets the
+// number of highlights so far (0, 0) and of those too sharp to be splatted (1, 0).
 // Inputs: counts_img (see highlights_comp), size (columns, rows, layers).
 // Outputs: counts_img, rows_img (row, layer: highlights; row, layers + layer: sharp ones), count_img.
 // Source: methods 9.
@@ -20,7 +20,9 @@ void main()
   }
   sums[lane] = sum;
   barrier();
-  uvec2 before = uvec2(0u);
+  uvec2 before = uvec2(imageLoad(count_img, ivec2(0, 0)).x, imageLoad(count_img, ivec2(1, 0)).x);
+  // All have read it before one writes it.
+  barrier();
   for (int i = 0; i < lane; i++) {
     before += sums[i];
   }
@@ -47,7 +49,7 @@ void main()
   for (int x = 0; x < size.x; x++) {
     ivec3 texel = ivec3(x, row, layer);
     uint count = imageLoad(counts_img, texel).x;
-    imageStore(counts_img, texel, uvec4(found));
+    imageStore(counts_img, texel, uvec4(found << 2u | (count & 3u)));
     found += count & 255u;
     sharp += count >> 8u;
   }

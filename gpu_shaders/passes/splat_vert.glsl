@@ -2,7 +2,7 @@
 // Inputs: pos (corner, 0 or 1); sources_a_tx, sources_b_tx (see highlights_comp); tiles_tx (what hides
 // them, see visibility_lib); view_buf (of the frame), splat_buf.
 // Outputs: place on the opening in units of its radius before the anamorphic ratio (v_place), energy
-// density (v_density), blur of the disc in the same units (v_blur); tile and number of the source.
+// density (v_density), blur of the disc in the same units (v_blur); tile, number and region of the source.
 // Source: methods 1, 13.
 #include "lib/lens_lib.glsl"
 #include "lib/visibility_lib.glsl"
@@ -14,6 +14,7 @@ void main()
   vec4 b = texelFetch(sources_b_tx, texel, 0);
   v_tile = texelFetch(tiles_tx, texel, 0);
   v_source = gl_InstanceID;
+  v_region = b.w;
   float coc = coc_radius_px(a.z, view_buf.lens);
   vec4 clip = view_buf.projection * vec4(a.xy, -a.z, 1.0);
   vec2 center = (clip.xy / clip.w * 0.5 + 0.5) * view_buf.film.xy;

@@ -2,8 +2,6 @@
 struct HighlightParams {
   vec4 split;           // x: threshold; y: least circle of confusion, px; z: gain of what is
                         // splatted; w: amplification of the whites of an encoded world
-  vec4 raster;          // xy: pixels of the peeled picture, with what lies outside the frame;
-                        // zw: how far it reaches beyond the frame's left and lower edge, px
   vec4 world;           // x: depth that stands for infinity, m; y: 1 if the world gives highlights;
                         // z: share of its light above the threshold that is splatted; w unused
 };

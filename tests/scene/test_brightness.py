@@ -1,0 +1,90 @@
+"""Bounds of how bright surfaces may be."""
+
+import numpy as np
+import pytest
+
+from addon.scene.brightness import brightest
+from addon.scene.snapshot import (
+    ImageSnapshot,
+    InstanceGroup,
+    InstanceTable,
+    MaterialSnapshot,
+    MeshSnapshot,
+    SceneContent,
+    next_uid,
+)
+from addon.scene.surface_graph import Constant, Link, ShaderNode, SurfaceGraph, emission_graph
+
+IMAGE = 77
+
+
+def bound(graph, attributes=None, images=None, holdout=False):
+    mesh = MeshSnapshot(
+        next_uid(),
+        "m",
+        np.zeros((3, 3), np.float32),
+        np.array([[0, 1, 2]], np.int32),
+        ((0, 0, 1),),
+        attributes or {},
+    )
+    material = MaterialSnapshot(next_uid(), "m", graph)
+    content = SceneContent(
+        meshes={mesh.uid: mesh},
+        images=images or {},
+        materials={material.uid: material},
+        instances=InstanceTable(np.eye(4, dtype=np.float32)[None], np.zeros(1, np.float32)),
+        groups=(InstanceGroup(mesh.uid, (material.uid,), 0, 1, holdout),),
+    )
+    ((found,),) = brightest(content)
+    return found
+
+
+def emission(color, strength=1.0):
+    return ShaderNode("emission", (("Color", color), ("Strength", Constant((strength,)))))
+
+
+def test_emission_is_as_bright_as_its_largest_channel():
+    assert bound(emission_graph((0.5, 2.0, 1.0), 3.0)) == 6.0
+    assert bound(emission_graph((0.0, 0.0, 0.0), 1e9)) == 0.0
+
+
+def test_colours_of_vertices_count_with_their_largest():
+    colors = np.array([[0.1, 0, 0, 1], [0, 4.0, 0, 1], [0, 0, 0.2, 1]], np.float32)
+    graph = SurfaceGraph(
+        (
+            ShaderNode("color_attribute", settings=(("name", "Col"),)),
+            emission(Link(0, "Color"), 2.0),
+        ),
+        Link(1, "Emission"),
+    )
+    assert bound(graph, {"color:Col": colors}) == 8.0
+
+
+@pytest.mark.parametrize(("pixels", "expected"), [(np.uint8(255), 2.0), (np.float32(30.0), 60.0)])
+def test_images_count_with_their_largest_pixel(pixels, expected):
+    picture = ImageSnapshot(IMAGE, "i", np.full((2, 2, 4), pixels))
+    texture = ShaderNode("image_texture", (("Vector", Constant((0.0, 0.0, 0.0))),), image=IMAGE)
+    graph = SurfaceGraph((texture, emission(Link(0, "Color"), 2.0)), Link(1, "Emission"))
+    assert bound(graph, images={IMAGE: picture}) == expected
+
+
+def test_mixed_surfaces_are_as_bright_as_the_brighter_and_added_ones_as_both():
+    nodes = (emission(Constant((2.0, 0, 0))), emission(Constant((3.0, 0, 0))))
+    inputs = (("Shader", Link(0, "Emission")), ("Shader_001", Link(1, "Emission")))
+    mixed = ShaderNode("mix_shader", (("Fac", Constant((0.5,))), *inputs))
+    assert bound(SurfaceGraph((*nodes, mixed), Link(2, "Shader"))) == 3.0
+    added = ShaderNode("add_shader", inputs)
+    assert bound(SurfaceGraph((*nodes, added), Link(2, "Shader"))) == 5.0
+
+
+def test_lit_and_unknown_surfaces_may_be_of_any_brightness():
+    lit = ShaderNode("diffuse", (("Color", Constant((0.1, 0.1, 0.1))),))
+    assert bound(SurfaceGraph((lit,), Link(0, "BSDF"))) == np.inf
+    unknown = ShaderNode("math")
+    graph = SurfaceGraph((unknown, emission(Link(0, "Value"))), Link(1, "Emission"))
+    assert bound(graph) == np.inf
+
+
+def test_holdouts_and_empty_surfaces_are_dark():
+    assert bound(emission_graph((9.0, 9.0, 9.0)), holdout=True) == 0.0
+    assert bound(SurfaceGraph()) == 0.0
