@@ -5,6 +5,9 @@ from .engine import render_engine
 from .ui import (
     background,
     blender_panels,
+    bokeh_panel,
+    bokeh_presets,
+    bokeh_previews,
     lens_import,
     lens_operators,
     lens_panel,
@@ -27,6 +30,9 @@ _MODULES = (
     lens_operators,
     lens_import,
     lens_panel,
+    bokeh_previews,
+    bokeh_presets,
+    bokeh_panel,
     blender_command,
 )
 

@@ -4,7 +4,9 @@ import sys
 
 import bpy
 
+from ..bokeh.iris_mask import PictureIris
 from ..device.context import device_name
+from ..scene.bokeh import corner_tangent, read_bokeh
 from ..scene.camera import focus_distance
 from ..scene.lenses import read_real_lens
 from .version import version
@@ -76,9 +78,43 @@ def settings_in_force(scene, arguments=None):
         "aperture_blades": dof.aperture_blades,
         "aperture_rotation": dof.aperture_rotation,
         "aperture_ratio": dof.aperture_ratio,
+        "bokeh": _bokeh(scene, data, lens),
         "view_transform": scene.view_settings.view_transform,
         "no_bokeh": bool(arguments and arguments.no_bokeh),
         "no_chromatic": bool(arguments and arguments.no_chromatic),
+    }
+
+
+def _bokeh(scene, data, lens):
+    own = scene.aplanat
+    bokeh, _ = read_bokeh(data, lens, corner_tangent(data, scene))
+    if bokeh is None or (own.method == "REFERENCE" and not own.use_reference_bokeh):
+        return None
+    look = bokeh.appearance
+    picture = isinstance(look.iris, PictureIris)
+    return {
+        "threshold": bokeh.threshold,
+        "gain": bokeh.gain,
+        "model": bokeh.model.lower(),
+        "cluster_levels": bokeh.cluster_levels if bokeh.model == "CLUSTERED" else 0,
+        "similarity": bokeh.similarity,
+        "global_merge": bokeh.global_merge,
+        "visibility": bokeh.visibility.lower(),
+        "layers": bokeh.layers,
+        "lens_views": bokeh.lens_views,
+        "overscan": bokeh.overscan,
+        "amplification": bokeh.amplification,
+        "world": bokeh.world,
+        "hardness": look.edge,
+        "profile_strength": bokeh.profile_strength if lens else None,
+        "iris_image": data.aplanat.bokeh.iris_image.name if picture else None,
+        "blade_curvature": None if picture else look.iris.curvature,
+        "vignetting": bokeh.vignetting.lower(),
+        "distortion": bokeh.distortion,
+        "grain": look.grain.strength if look.grain else 0.0,
+        "dust": look.grain.dust if look.grain else 0,
+        "diffraction": look.diffraction.strength if look.diffraction else 0.0,
+        "onion": look.onion.contrast if look.onion else 0.0,
     }
 
 

@@ -17,7 +17,7 @@ from ..scene.extract import SceneExtractor
 from .gpu_thread import gpu_of_render
 from .level_store import level_store
 from .levels import meshes_with_levels
-from .outcome import LayerPicture, PassPicture
+from .outcome import LayerPicture, PassPicture, note_highlights
 from .pacing import Pacer
 from .pipeline import FrameRenderer
 from .plan import plan_frame
@@ -74,6 +74,7 @@ def render_view_layer(engine, depsgraph, heard):
             statistics.triangles_full_detail += counts.triangles_full_detail
             statistics.sprites_drawn += counts.sprites_drawn
             statistics.sprites_copied += counts.sprites_copied
+            note_highlights(depsgraph.scene.name, renderer.highlights)
             if renderer.highlights:
                 for name, number in vars(renderer.highlights).items():
                     statistics.highlights[name] += number

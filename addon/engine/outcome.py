@@ -166,6 +166,28 @@ class RenderOutcome:
         self.report.extend(line for line in dict.fromkeys(lines) if line not in self.report)
 
 
+# What became of the highlights of the last picture of each scene, by its name.
+_highlights = {}
+
+
+def note_highlights(scene, counts):
+    """Remember what became of the highlights of a scene's picture, for the panel.
+
+    Parameters
+    ----------
+    scene : str
+        Its name.
+    counts : HighlightCounts or None
+        None where none were searched.
+    """
+    _highlights[scene] = dict(vars(counts)) if counts else None
+
+
+def last_highlights(scene):
+    """Return what `note_highlights` was told last of a scene, as a dict, or None."""
+    return _highlights.get(scene)
+
+
 _listeners = []
 
 

@@ -19,6 +19,7 @@ from ..scene.snapshot import SceneSnapshot
 from ..scene.view import read_view
 from .level_store import level_store
 from .levels import meshes_with_levels
+from .outcome import note_highlights
 from .pacing import Pacer
 from .pipeline import FrameRenderer
 from .plan import plan_frame
@@ -182,6 +183,7 @@ class Viewport:
             renderer = self._renderer
             if not renderer.finished():
                 self._pacer.advance(renderer)
+                note_highlights(depsgraph.scene.name, renderer.highlights)
             x, y, width, height = view.rectangle
             with state.confined(x, y, width, height):
                 renderer.resolve((x, y), view.pixel_size)

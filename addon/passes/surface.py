@@ -83,9 +83,20 @@ COLOR_AND_MATTES = SurfaceTarget(
 )
 
 
+_SPLIT = "HIGHLIGHTS"
+
+
 def without_highlights(target):
     """Return a target of the colour picture from which the splatted light is left out."""
-    return replace(target, splits=True, defines=(*target.defines, "HIGHLIGHTS"))
+    return replace(target, splits=True, defines=(*target.defines, _SPLIT))
+
+
+def _whole(target):
+    """Return the target for a material whose light is never splatted."""
+    if not target.splits:
+        return target
+    defines = tuple(name for name in target.defines if name != _SPLIT)
+    return replace(target, splits=False, defines=defines)
 
 
 @dataclass(frozen=True)
@@ -249,7 +260,8 @@ def _list_draws(content, buffers, target, glow, wanted=None):
             if glow and (group.holdout or not code.glows):
                 continue
             deforms = mesh.motion is not None
-            shader = surface_shader(target, code, mesh.attributes, group.holdout, deforms, glow)
+            drawn = target if material.highlights else _whole(target)
+            shader = surface_shader(drawn, code, mesh.attributes, group.holdout, deforms, glow)
             order = shaders.setdefault(id(shader), len(shaders))
             constants, textures = None, ()
             transparent = code.transparent and not group.holdout
@@ -277,7 +289,7 @@ def _list_draws(content, buffers, target, glow, wanted=None):
                 ),
                 group=number,
                 level=level,
-                splits=target.splits and shaded,
+                splits=drawn.splits and shaded,
             )
             draws.append(((order, material.uid, group.mesh, slot, level), draw))
     draws.sort(key=lambda item: item[0])

@@ -77,12 +77,14 @@ class MaterialReader:
 
     def _snapshot(self, material, known):
         if material is None:
-            name, graph = "", DEFAULT_GRAPH
+            name, graph, highlights = "", DEFAULT_GRAPH, True
         else:
             name, graph = material.name, self._graph(material)
-        if known and (name, graph) == (known.name, known.graph):
+            highlights = material.aplanat.highlights != "NEVER"
+        if known and (name, graph, highlights) == (known.name, known.graph, known.highlights):
             return known
-        return MaterialSnapshot(next_uid(), name, graph, cryptomatte_id(name) if name else 0.0)
+        matte = cryptomatte_id(name) if name else 0.0
+        return MaterialSnapshot(next_uid(), name, graph, matte, highlights)
 
     def _graph(self, material):
         tree = material.node_tree

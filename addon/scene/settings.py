@@ -78,6 +78,7 @@ def read_sampling(scene):
         uses_levels=settings.use_levels,
         level_bias=settings.level_bias,
         least_triangles=settings.least_triangles,
+        reference_bokeh=settings.use_reference_bokeh,
     )
 
 
@@ -107,6 +108,8 @@ def read_passes(view_layer):
     """
     own = view_layer.aplanat
     switches = (
+        ("Defocus", own.use_pass_defocus),
+        ("Bokeh", own.use_pass_bokeh),
         ("Depth", view_layer.use_pass_z),
         ("Normal", view_layer.use_pass_normal),
         ("Position", view_layer.use_pass_position),

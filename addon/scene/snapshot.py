@@ -124,12 +124,15 @@ class MaterialSnapshot:
     graph : SurfaceGraph
     cryptomatte_id : float
         Hash of the name as the Cryptomatte specification defines it.
+    highlights : bool
+        Its light may be drawn as bokeh.
     """
 
     uid: int
     name: str
     graph: SurfaceGraph
     cryptomatte_id: float = 0.0
+    highlights: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -290,10 +293,13 @@ class BokehSettings:
         mirroring surfaces show to different parts of the lens.
     amplification : float
         How much brighter white is taken to be in worlds whose pictures hold nothing brighter.
+    world : bool
+        Highlights of the world's image are found, too.
     appearance : Appearance
         Masks over the opening.
     distortion : float
-        K of the division model; negative is a barrel.
+        K of the division model, in units of the distance from the picture's middle to its corner;
+        negative is a barrel.
     vignetting : {'NONE', 'ANALYTIC', 'LENS'}
         Cat's eyes: none, by the appearance's rims, or by the real lens' own pupil.
     profile_strength : float
@@ -311,6 +317,7 @@ class BokehSettings:
     overscan: float = 0.25
     lens_views: int = 1
     amplification: float = 0.0
+    world: bool = True
     appearance: Appearance = field(default_factory=Appearance)
     distortion: float = 0.0
     vignetting: str = "NONE"

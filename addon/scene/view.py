@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .bokeh import corner_tangent, read_bokeh
 from .camera import evaluated_camera, read_lens
 from .lenses import read_real_lens
 from .snapshot import Camera, Film
@@ -65,7 +66,7 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
     covered = np.array([region.width / width, region.height / height]) / pixel_size
     stretch = np.diag([*covered, 1.0, 1.0])
     stretch[:2, 3] = covered - 1.0
-    lens, real_lens, frame = None, None, None
+    lens, real_lens, bokeh, frame = None, None, None, None
     through_camera = region_3d.view_perspective == "CAMERA" and space.camera is not None
     if through_camera and space.camera.type == "CAMERA":
         camera = evaluated_camera(depsgraph, space.camera)
@@ -73,6 +74,7 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
         real_lens, _ = read_real_lens(camera.data)
         if camera.data.dof.use_dof:
             lens = read_lens(depsgraph, camera, real_lens)
+        bokeh, _ = read_bokeh(camera.data, real_lens, corner_tangent(camera.data, scene))
     if through_camera:
         border = _border_in_frame(scene.render, frame)
     else:
@@ -91,7 +93,12 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
     )
     orthographic = window[3, 3] != 0.0
     camera = Camera(
-        view, stretch @ window, lens, orthographic=bool(orthographic), real_lens=real_lens
+        view,
+        stretch @ window,
+        lens,
+        orthographic=bool(orthographic),
+        real_lens=real_lens,
+        bokeh=bokeh,
     )
     return View(camera, film, pixel_size)
 

@@ -1,10 +1,12 @@
-"""What Aplanat adds to a camera: which real lens it has, and at which zoom position."""
+"""What Aplanat adds to a camera: its real lens and zoom position, and its bokeh."""
 
 import bpy
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import EnumProperty, PointerProperty, StringProperty
 
 from ..scene.lenses import shelf
 from . import lens_thumbnails
+from .bokeh_properties import APPEARANCE_NAMES, AplanatBokehSettings
+from .lens_memory import remember
 
 _LONGEST_TEXT = 255
 _THIN = "thin"
@@ -101,6 +103,7 @@ def _lens_changed(camera, _context):
     labels = _labels(camera)
     if camera.zoom_label and labels and camera.zoom_label not in labels:
         camera.zoom_label = ""
+    remember(camera, "bokeh", APPEARANCE_NAMES)
     camera.id_data.update_tag()
 
 
@@ -110,7 +113,7 @@ def _zoom_changed(camera, _context):
 
 
 class AplanatCameraSettings(bpy.types.PropertyGroup):
-    """The real lens of a camera."""
+    """The real lens of a camera, and its bokeh."""
 
     lens: StringProperty(
         name="Lens",
@@ -145,4 +148,22 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
         get=_chosen_zoom,
         set=_choose_zoom,
         options=set(),
+    )
+    bokeh: PointerProperty(
+        type=AplanatBokehSettings,
+        name="Bokeh",
+        description="How the camera's highlights are drawn",
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    bokeh_lens: StringProperty(
+        name="Lens of the Bokeh",
+        description="Lens for which the appearance of the bokeh was set",
+        options={"HIDDEN"},
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    bokeh_memory: StringProperty(
+        name="Bokeh of Other Lenses",
+        description="What was set for lenses that were used before, as JSON",
+        options={"HIDDEN"},
+        override={"LIBRARY_OVERRIDABLE"},
     )

@@ -174,6 +174,9 @@ class APLANAT_VIEWLAYER_PT_data(EnginePanel, bpy.types.Panel):
         lens = column.column(heading="Lens")
         lens.prop(layer.aplanat, "use_pass_coc")
         lens.prop(layer.aplanat, "use_pass_focus_matte")
+        parts = column.column(heading="Combined")
+        parts.prop(layer.aplanat, "use_pass_defocus")
+        parts.prop(layer.aplanat, "use_pass_bokeh")
         diagnosis = column.column(heading="Diagnosis")
         diagnosis.prop(layer.aplanat, "use_pass_detail")
 
@@ -229,8 +232,10 @@ class APLANAT_MATERIAL_PT_settings(EnginePanel, bpy.types.Panel):
         return super().poll(context) and material is not None and not material.grease_pencil
 
     def draw(self, context):
-        """Draw Blender's settings."""
-        self.column().prop(context.material, "use_backface_culling")
+        """Draw Blender's settings and ours."""
+        column = self.column()
+        column.prop(context.material, "use_backface_culling")
+        column.prop(context.material.aplanat, "highlights")
 
 
 CLASSES = (

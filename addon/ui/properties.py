@@ -9,6 +9,7 @@ from bpy.props import (
     PointerProperty,
 )
 
+from .bokeh_properties import AplanatBokehSettings
 from .camera_properties import AplanatCameraSettings
 
 # Also what the command line accepts.
@@ -128,6 +129,12 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
         soft_max=10000,
         max=10000000,
     )
+    use_reference_bokeh: BoolProperty(
+        name="Separate Highlights",
+        description="Draw the cameras' bokeh with the reference method, too. Without it, highlights"
+        " are sampled as everything else",
+        default=False,
+    )
     seed: IntProperty(
         name="Seed",
         description="Chooses another pattern of samples; the same seed gives the same picture",
@@ -182,9 +189,50 @@ class AplanatViewLayerSettings(bpy.types.PropertyGroup):
         default=False,
         update=_update_passes,
     )
+    use_pass_defocus: BoolProperty(
+        name="Defocus",
+        description="What the lens samples show: Combined without the highlights that were drawn"
+        " one by one",
+        default=False,
+        update=_update_passes,
+    )
+    use_pass_bokeh: BoolProperty(
+        name="Bokeh",
+        description="The highlights that were drawn one by one. Defocus and Bokeh together are"
+        " Combined",
+        default=False,
+        update=_update_passes,
+    )
 
 
-CLASSES = (AplanatSceneSettings, AplanatViewLayerSettings, AplanatCameraSettings)
+def _material_changed(settings, _context):
+    settings.id_data.update_tag()
+
+
+class AplanatMaterialSettings(bpy.types.PropertyGroup):
+    """What only Aplanat knows of a material."""
+
+    highlights: EnumProperty(
+        name="Highlights",
+        description="Whether the light of surfaces with this material is drawn as bokeh where it is"
+        " brighter than the camera's threshold",
+        items=(
+            ("AUTOMATIC", "Automatic", "Where it is bright and blurred enough"),
+            ("NEVER", "Never", "It is sampled as everything else, however bright it is"),
+        ),
+        default="AUTOMATIC",
+        override={"LIBRARY_OVERRIDABLE"},
+        update=_material_changed,
+    )
+
+
+CLASSES = (
+    AplanatSceneSettings,
+    AplanatViewLayerSettings,
+    AplanatMaterialSettings,
+    AplanatBokehSettings,
+    AplanatCameraSettings,
+)
 
 _register, _unregister = bpy.utils.register_classes_factory(CLASSES)
 
@@ -194,6 +242,9 @@ def register():
     _register()
     bpy.types.Scene.aplanat = PointerProperty(type=AplanatSceneSettings)
     bpy.types.ViewLayer.aplanat = PointerProperty(type=AplanatViewLayerSettings)
+    bpy.types.Material.aplanat = PointerProperty(
+        type=AplanatMaterialSettings, override={"LIBRARY_OVERRIDABLE"}
+    )
     bpy.types.Camera.aplanat = PointerProperty(
         type=AplanatCameraSettings, override={"LIBRARY_OVERRIDABLE"}
     )
@@ -202,6 +253,7 @@ def register():
 def unregister():
     """Undo `register`."""
     del bpy.types.Camera.aplanat
+    del bpy.types.Material.aplanat
     del bpy.types.ViewLayer.aplanat
     del bpy.types.Scene.aplanat
     _unregister()

@@ -1,0 +1,25 @@
+"""A lens that was not cleaned for long."""
+
+import bpy
+
+camera = getattr(bpy.context, "camera", None) or bpy.context.scene.camera.data
+bokeh = camera.aplanat.bokeh
+
+bokeh.hardness = 0.0
+bokeh.profile_strength = 1.0
+bokeh.blade_curvature = 0.0
+bokeh.vignetting = "LENS"
+bokeh.vignetting_strength = 0.5
+bokeh.vignetting_softness = 0.0
+bokeh.distortion_source = "NONE"
+bokeh.distortion = -0.1
+bokeh.grain = 0.2
+bokeh.grain_size = 0.06
+bokeh.dust = 60
+bokeh.dust_size = 0.07
+bokeh.dust_depth = 0.6
+bokeh.texture_seed = 1
+bokeh.diffraction = 0.0
+bokeh.onion = 0.0
+bokeh.onion_pitch = 0.045
+bokeh.onion_irregularity = 0.5
