@@ -154,11 +154,33 @@ def _density_of_row(row, radius):
     return np.where((radius < 1.0)[..., None], row.density[ring], 0.0)
 
 
+def edge_landing(edge, pupil):
+    """Where rays land in a disc under third-order spherical aberration.
+
+    Parameters
+    ----------
+    edge : float
+        -1 a bright core, 1 a bright rim.
+    pupil : ndarray of shape (...)
+        Places of the opening, 0 to 1.
+
+    Returns
+    -------
+    ndarray of shape (...)
+        Radii, 0 to 1, rising with the place.
+    """
+    return pupil * (1.0 + _edge_strength(edge) * (pupil**2 - 1.0))
+
+
+def _edge_strength(edge):
+    return _BUBBLE * edge if edge > 0.0 else -_CREAM * edge
+
+
 def _density_of_edge(edge, radius):
     """Density of a disc under third-order spherical aberration, by its own radius."""
-    k = _BUBBLE * edge if edge > 0.0 else -_CREAM * edge
+    k = _edge_strength(edge)
     pupil = np.linspace(0.0, 1.0, 1025)
-    landing = pupil * (1.0 + k * (pupil**2 - 1.0))
+    landing = edge_landing(edge, pupil)
     # p dp / (r dr) = 1 / ((r / p) (dr / dp)), with its limit on the axis.
     density = 1.0 / ((1.0 + k * (pupil**2 - 1.0)) * (1.0 - k + 3.0 * k * pupil**2))
     return np.interp(radius, landing, density)

@@ -1,0 +1,239 @@
+"""Patterns of a real lens over field and depth, as splats read them.
+
+Each tile is the traced pattern of a point (`bokeh.pupil_beam`) at a field and a depth, in the
+meridional frame: the picture's azimuth of the point is +y. It holds the light, and for each of its
+texels the place in the stop that the light has come through, so that an iris of any shape can be
+laid over it at any azimuth. A tile spans its pattern, wherever that lies: tiles of neighbouring
+fields and depths can be mixed texel by texel while places and sizes are mixed as numbers.
+
+Fields are even in the tangent of the angle, depths even in w (`bokeh.mapping`). Tiles carry unit
+light: what vignetting takes from the energy is left out, as it is for the rest of the picture.
+Beams are traced for a few vergences and interpolated.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .deposit import deposit, open_weights, rays_for
+from .pupil_beam import PupilBeam, beam_from_infinity, beam_from_point
+from .ray_map import lagrange_weights
+
+FIELDS, DEPTHS = 9, 13
+# Blur of the tiles in units of half their width, as the side of a box of the same variance; the first
+# one is of the sharp tiles. Must agree with lib/bokeh_look_lib.glsl.
+BLURS = (1.0 / 32.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0)
+SHARP, SOFT = 96, 32
+# Rays along a side of a tile's grid, at most: neighbours then land a texel apart for most light.
+_MOST_RAYS = 224
+# Places in the stop are stored as (s + 1.5) / 3, to be positive.
+STOP_OFFSET, STOP_SCALE = 1.5, 3.0
+AZIMUTHS = 64
+_VERGENCES = 7
+_LEAST_LIGHT = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class PupilTiles:
+    """What a shader samples.
+
+    Parameters
+    ----------
+    sharp : ndarray of float32, shape (FIELDS * DEPTHS, SHARP, SHARP, 4)
+        Density of light in a square from -e to e, e = 1 + the blur; integral 1 over the tile's
+        own units. Then density times the place in the stop, x and y.
+    soft : ndarray of float32, shape (3 * FIELDS * DEPTHS, SOFT, SOFT, 4)
+        The same with more blur, blur by blur.
+    places : ndarray of float32, shape (FIELDS, DEPTHS, 4)
+        Outward shift of the pattern's middle and half its width across and along the azimuth,
+        all over ``|c| + c0``.
+    largest_tangent : float
+        Of the last field.
+    """
+
+    sharp: np.ndarray
+    soft: np.ndarray
+    places: np.ndarray
+    largest_tangent: float
+
+
+def reach(blur):
+    """Return how far a tile of a blur reaches, in units of half its pattern's width."""
+    return 1.0 + blur
+
+
+class PupilBeams:
+    """Beams of a lens at an f-number over field and vergence.
+
+    Parameters
+    ----------
+    tables : PupilTables
+    pupil : float
+        z of the entrance pupil, mm from surface 1.
+    f_number : float
+    largest_tangent : float
+        Of the field angle wanted.
+    largest_vergence : float
+        1 / distance from the entrance pupil of the nearest point, 1/mm.
+    """
+
+    def __init__(self, tables, pupil, f_number, largest_tangent, largest_vergence):
+        limit = np.tan(min(np.radians(tables.half_field_deg), 1.5))
+        self.tangents = np.linspace(0.0, min(largest_tangent, limit), FIELDS)
+        turn = np.linspace(0.0, np.pi, _VERGENCES)
+        self._nodes = largest_vergence * 0.5 * (1.0 - np.cos(turn))
+        self._beams = [
+            [_traced(tables, pupil, f_number, t, v) for v in self._nodes] for t in self.tangents
+        ]
+
+    def at(self, field, vergence):
+        """Return the beam of a field's number and a vergence."""
+        weights, _ = lagrange_weights(self._nodes, vergence, len(self._nodes))
+        beams = self._beams[field]
+        mixed = {
+            name: sum(w * getattr(b, name) for w, b in zip(weights, beams, strict=True))
+            for name in ("image", "slope", "stop", "rims", "weight", "transmission", "pupil")
+        }
+        first = beams[0]
+        return PupilBeam(
+            **mixed,
+            chief=first.chief,
+            angle=first.angle,
+            distance=first.distance,
+            stop_scale=first.stop_scale,
+        )
+
+
+def _traced(tables, pupil, f_number, tangent, vergence):
+    if vergence * 1e7 < 1.0:
+        return beam_from_infinity(tables, float(np.arctan(tangent)), f_number)
+    distance = 1.0 / vergence
+    return beam_from_point(tables, tangent * distance, distance - pupil, f_number)
+
+
+def pupil_tiles(beams, shift, blur, soft, w_range):
+    """Lay out the patterns at one focus.
+
+    Parameters
+    ----------
+    beams : PupilBeams
+    shift : float
+        Sensor's distance behind the sensor plane of the beams' tables, mm.
+    blur : tuple of 2 float
+        k0 in mm, k1 in mm^2: ``c = k0 + k1 V``.
+    soft : float
+        c0, mm.
+    w_range : tuple of 2 float
+        Rising.
+
+    Returns
+    -------
+    PupilTiles
+    """
+    tiles = np.zeros((FIELDS, DEPTHS, SHARP, SHARP, 3))
+    places = np.zeros((FIELDS, DEPTHS, 4), np.float32)
+    soft_tiles = np.zeros((len(BLURS) - 1, FIELDS, DEPTHS, SOFT, SOFT, 4), np.float32)
+    sharp_tiles = np.zeros((FIELDS, DEPTHS, SHARP, SHARP, 4), np.float32)
+    for j, w in enumerate(np.linspace(*w_range, DEPTHS)):
+        c = soft * w / (1.0 - abs(w))
+        vergence = max((c - blur[0]) / blur[1], 0.0)
+        for i in range(FIELDS):
+            tiles[i, j], place = _tile(beams.at(i, vergence), shift)
+            places[i, j, :3] = np.array(place) / (abs(c) + soft)
+            for layer, width in enumerate(BLURS):
+                size = SOFT if layer else SHARP
+                matrix = _blur_matrix(width, size)
+                blurred = matrix @ np.moveaxis(tiles[i, j], -1, 0) @ matrix.T
+                blurred *= (size / (2.0 * reach(width))) ** 2 / max(blurred[0].sum(), 1e-30)
+                target = soft_tiles[layer - 1, i, j] if layer else sharp_tiles[i, j]
+                target[..., :3] = np.moveaxis(blurred, 0, -1)
+    return PupilTiles(
+        sharp_tiles.reshape(-1, SHARP, SHARP, 4),
+        soft_tiles.reshape(-1, SOFT, SOFT, 4),
+        places,
+        float(beams.tangents[-1]),
+    )
+
+
+def _tile(beam, shift):
+    """Light and stop places of a beam, and where the pattern stands, mm."""
+    landing = beam.landing(shift)
+    inside = (beam.clearance > 0.0) & (np.hypot(*np.moveaxis(beam.stop, -1, 0)) < beam.stop_scale)
+    if not inside.any():
+        inside = beam.clearance == beam.clearance.max()
+    # A ray's width more than what passes.
+    wide = inside.copy()
+    for axis in (0, 1):
+        wide |= np.roll(inside, 1, axis) | np.roll(inside, -1, axis)
+    x, y = np.abs(landing[wide][:, 0]).max(), landing[wide][:, 1]
+    middle, half_x = 0.5 * (y.min() + y.max()), max(x, 1e-6)
+    half_y = max(0.5 * (y.max() - y.min()), 1e-6)
+    extent = max(half_x, half_y)
+    fine = beam.refined(min(rays_for(beam, shift, 2.0 * extent / SHARP), _MOST_RAYS))
+    light = open_weights(fine)
+    # The camera sees the stop turned by half a turn against the sensor's picture.
+    stop = -fine.stop / fine.stop_scale
+    at = (fine.landing(shift) - (0.0, middle)) / (half_x, half_y) * (0.5 * SHARP) + 0.5 * SHARP
+    share = np.clip((stop + STOP_OFFSET) / STOP_SCALE, 0.0, 1.0)
+    layers = [light, light * share[..., 0], light * share[..., 1]]
+    tile = np.stack([deposit(at, layer, SHARP) for layer in layers], axis=-1)
+    return tile, (middle - _center(beam, landing), half_x, half_y)
+
+
+def _center(beam, landing):
+    """Height where the ray through the middle of the stop lands: the point's pinhole picture."""
+    column = beam.stop.shape[1] // 2
+    stop, height = beam.stop[:, column, 1], landing[:, column, 1]
+    near = np.argsort(np.abs(stop))[:9]
+    # A vignetted pupil may end before the middle of the stop.
+    return float(np.polyval(np.polyfit(stop[near], height[near], 2), 0.0))
+
+
+def _blur_matrix(width, size):
+    """Matrix that blurs the texels of a pattern and samples them at those of a tile."""
+    source = (np.arange(SHARP) + 0.5) * (2.0 / SHARP) - 1.0
+    at = (np.arange(size) + 0.5) * (2.0 * reach(width) / size) - reach(width)
+    return np.exp(-0.5 * ((at[:, None] - source) * np.sqrt(12.0) / width) ** 2)
+
+
+def light_left(tiles, opening, largest_blur=0):
+    """Share of the tiles' light that an opening leaves at each azimuth.
+
+    Parameters
+    ----------
+    tiles : PupilTiles
+    opening : ndarray of shape (layers, size, size, 4)
+        From `bokeh.opening.opening_layers`; its first layer is used.
+    largest_blur : int
+        Layer of the opening.
+
+    Returns
+    -------
+    ndarray of float32, shape (FIELDS, AZIMUTHS + 1, DEPTHS, 4)
+        Red, green, blue.
+    """
+    light = opening[largest_blur]
+    size = len(light)
+    result = np.empty((FIELDS, AZIMUTHS + 1, DEPTHS, 4), np.float32)
+    step = 2
+    sharp = tiles.sharp.reshape(FIELDS, DEPTHS, SHARP // step, step, SHARP // step, step, 4)
+    sharp = sharp.sum(axis=(3, 5)).reshape(FIELDS, DEPTHS, -1, 4)
+    from .opening import extent
+
+    for i in range(FIELDS):
+        for j in range(DEPTHS):
+            tile = sharp[i, j][sharp[i, j, :, 0] > 0.0]
+            stop = tile[:, 1:3] / tile[:, :1] * STOP_SCALE - STOP_OFFSET
+            for k in range(AZIMUTHS):
+                turn = 2.0 * np.pi * k / AZIMUTHS - 0.5 * np.pi
+                x = stop[:, 0] * np.cos(turn) - stop[:, 1] * np.sin(turn)
+                y = stop[:, 0] * np.sin(turn) + stop[:, 1] * np.cos(turn)
+                at = [
+                    np.clip((p / extent(largest_blur) + 1.0) * 0.5 * size, 0, size - 1)
+                    for p in (y, x)
+                ]
+                passed = light[at[0].astype(int), at[1].astype(int), :3]
+                result[i, k, j, :3] = tile[:, 0] @ passed / tile[:, 0].sum()
+    result[:, AZIMUTHS] = result[:, 0]
+    result[..., 3] = 0.0
+    return np.maximum(result, _LEAST_LIGHT)
