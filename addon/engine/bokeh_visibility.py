@@ -31,9 +31,9 @@ _LONGEST_ATLAS = 16384
 _MOST_CELLS = 1 << 18
 # Pairs that are drawn at once.
 _WINDOW = 1 << 20
-# How far a source may be out of its surface, in sides of the square that it stands for: half a side
-# on a surface at an angle of 45 degrees, and as much again for what was averaged.
-_SLACK = 1.0
+# Surfaces so close before a source that the lens' rim sees them moved by less, in pixels, do not
+# part the lens into places that see it and places that do not.
+_SAME_VIEW = 0.25
 _MASK_TEXELS_PER_PIXEL = 1.0
 # Of the layers: between surfaces closer in depth than highlight and focus, a texel of a layer is
 # larger than one of a mask.
@@ -208,7 +208,7 @@ def visibility_params(plan, fine=1, reach=1.0):
         "projection": projection,
         "lens": (focus, float(plan.orthographic), plan.coc_scale, bokeh.iris.ratio),
         "opening": (*plan.lens_extent, start, reach),
-        "raster": (*raster, fine, _SLACK),
+        "raster": (*raster, fine, _SAME_VIEW),
         "frame": (*bokeh.margin, plan.width, plan.height),
         "sweep": (*sweep, *depth),
         "tiles": (
@@ -297,7 +297,7 @@ class BokehVisibility:
         self._plan = plan
         self._occluders = occluders
         self._buffers = buffers
-        self._fine = min(plan.bokeh.subpixels, _MOST_TEXELS_PER_PIXEL)
+        self._fine = int(__import__("os").environ.get("FINE", "3"))
         self._values = visibility_params(plan, self._fine, reach)
         self._parameters = uniform_buffer(bokeh_culling.VISIBILITY_PARAMS.pack(**self._values))
 
@@ -349,7 +349,9 @@ class BokehVisibility:
             tables = bokeh_culling.CullingTables(
                 rows, lists["states"], keys["keys"], totals["totals"], numbers["counts"]
             )
-            self._cull(sources, count, raster, tables, culls)
+            # What only rays through the layers mask, only the layers need to leave unmasked.
+            exact = method in {"AUTO", "RASTER"}
+            self._cull(sources, count, raster, tables, culls, exact)
             found = np.asarray(tables.counts.read()).ravel()
             _note(counts, found)
             counts.method = self._choose(counts, method)
@@ -430,7 +432,7 @@ class BokehVisibility:
         # Products of several surfaces must not be rounded to 8 bits each.
         return "R16F" if self._occluders.groups else "R8"
 
-    def _cull(self, sources, count, raster, tables, culls):
+    def _cull(self, sources, count, raster, tables, culls, exact):
         occluders = self._occluders
         layers = raster["layers"]
         cell = 1
@@ -458,7 +460,7 @@ class BokehVisibility:
                 occluders.opaque,
                 self._buffers.instances,
                 occluders.groups,
-                culls,
+                (culls, exact),
                 tables,
             )
             bokeh_culling.mark_sizes(count, self._parameters, tables)

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..device.textures import texture_2d
 
-# Triangles of a cluster; boxes below a box. Must agree with passes/visibility_raster.py.
+# Triangles of a cluster; boxes below a box. Must agree with passes/bokeh_culling.py.
 CLUSTER = 64
 BRANCHES = 8
 # Clusters in a row of the texture of triangles; texels in a row of the tables.

@@ -21,6 +21,10 @@ from .highlights import COLUMNS
 VISIBILITY_PARAMS = UniformStruct("shared/visibility_params.glsl", "VisibilityParams")
 TILE_LAYOUT = UniformStruct("shared/tile_layout.glsl", "TileLayout")
 
+# Must agree with engine/occluders.py.
+CLUSTER_CORNERS = 192
+CLUSTERS_PER_ROW = 16
+
 # Masks have sides of this many texels times powers of two.
 LEAST_SIDE = 8
 SIZES = 6
@@ -103,7 +107,7 @@ _TILES = ShaderInfo(
 def _cone_info(group, fill):
     samplers = [("FLOAT_2D", "sources_tx"), ("FLOAT_2D", "instances_tx")]
     if not group:
-        samplers += [("FLOAT_2D", f"{name}_tx") for name in ("boxes", "parts", "shapes")]
+        samplers += [("FLOAT_2D", f"{name}_tx") for name in ("boxes", "parts", "shapes", "corners")]
     if fill:
         samplers += [("FLOAT_2D", "states_tx"), ("UINT_2D", "keys_tx"), ("UINT_2D", "totals_tx")]
         images = [("RGBA32F", "FLOAT_2D", "pairs_img", ("WRITE",))]
@@ -114,7 +118,7 @@ def _cone_info(group, fill):
             ("R32UI", "UINT_2D", "counts_img", ("READ", "WRITE")),
         ]
     constants = [("INT", "count"), ("IVEC4", "extent")]
-    constants.append(("IVEC2", "window") if fill else ("INT", "culls"))
+    constants.append(("IVEC2", "window") if fill else ("IVEC2", "culls"))
     constants += [("VEC4", "box_low"), ("VEC4", "box_high")] * group
     return ShaderInfo(
         name="aplanat_bokeh_cone",
@@ -127,6 +131,8 @@ def _cone_info(group, fill):
         defines=(
             *_DEFINES,
             ("COUNT_PAIRS", str(COUNT_PAIRS)),
+            ("CLUSTERS_PER_ROW", str(CLUSTERS_PER_ROW)),
+            ("CLUSTER_CORNERS", str(CLUSTER_CORNERS)),
             *[("GROUP", "1")] * group,
             *[("FILL", "1")] * fill,
         ),
@@ -235,15 +241,16 @@ def count_pairs(sources, count, parameters, occluders, instances, groups, culls,
     instances : GPUTexture
         The instance table.
     groups : sequence of GroupRange
-    culls : bool
-        False keeps every source undecided.
+    culls : tuple of 2 bool
+        False keeps every source undecided, for comparison; and whether those that no surface of the
+        layers lies before are tested against the triangles, too.
     tables : CullingTables
     """
     for number in range(-1, len(groups)):
         shader = _cone_shader(
             sources, count, parameters, occluders, instances, groups, number, tables, False
         )
-        shader.uniform_int("culls", int(culls))
+        shader.uniform_int("culls", tuple(map(int, culls)))
         shader.image("states_img", tables.states)
         shader.image("keys_img", tables.keys)
         shader.image("counts_img", tables.counts)
@@ -284,7 +291,7 @@ def _cone_shader(sources, count, parameters, occluders, instances, groups, numbe
     shader.uniform_sampler("instances_tx", instances)
     segment = (SIZES + 1 + number) * tables.rows
     if number < 0:
-        for name in ("boxes", "parts", "shapes"):
+        for name in ("boxes", "parts", "shapes", "corners"):
             shader.uniform_sampler(f"{name}_tx", getattr(occluders, name))
         extent = (occluders.count, 0, segment, COUNT_PAIRS)
     else:

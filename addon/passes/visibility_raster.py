@@ -16,12 +16,13 @@ import numpy as np
 from ..device import census, shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
 from . import surface
-from .bokeh_culling import TILE_LAYOUT, VISIBILITY_PARAMS
+from .bokeh_culling import (
+    CLUSTER_CORNERS,
+    CLUSTERS_PER_ROW,
+    TILE_LAYOUT,
+    VISIBILITY_PARAMS,
+)
 from .highlights import COLUMNS
-
-# Must agree with engine/occluders.py.
-CLUSTER_CORNERS = 192
-CLUSTERS_PER_ROW = 16
 
 _CLIP_DISTANCES = 6
 _DEFINES = (("SOURCE_COLUMNS", str(COLUMNS)),)

@@ -36,8 +36,7 @@ Source source_of(vec4 a, VisibilityParams params)
   source.place = (clip.xy / clip.w * 0.5 + 0.5) * params.raster.xy;
   source.coc = coc_radius_px(a.z, params.lens);
   source.depth = window_depth(a.z, params.sweep, orthographic);
-  float pixel = 2.0 * params.raster.z * clip.w / (params.projection[1][1] * params.raster.y);
-  source.hides = hiding_depth(a.z, pixel * max(a.w, 1.0 / params.raster.z), params.raster.w);
+  source.hides = hiding_depth(a.z, params.lens, params.raster.w);
   source.limit = window_depth(source.hides, params.sweep, orthographic);
   return source;
 }

@@ -52,11 +52,15 @@ float window_depth(float depth, vec4 sweep, bool orthographic)
   return orthographic ? sweep.z + sweep.w * depth : sweep.z + sweep.w / depth;
 }
 
-// Depth from which on, towards the lens, surfaces hide the source: nearer ones than the source by
-// as much as it may be out of its own surface. `texel`: size of a texel of the raster there, m.
-float hiding_depth(float depth, float texel, float slack)
+// Depth from which on, towards the lens, surfaces hide the source. What lies behind that is seen by
+// the whole lens as by its centre, to within a movement of `same` pixels: it hides a source that is
+// seen from there nowhere, above all the surface that the source itself stands on.
+// `lens` as in ViewParams.
+float hiding_depth(float depth, vec4 lens, float same)
 {
-  return depth - max(slack * texel, 1e-5 * depth);
+  float move = same / max(lens.z, 1e-30);
+  float limit = (lens.y > 0.5) ? depth - move * lens.x : 1.0 / (1.0 / depth + move);
+  return min(limit, depth * (1.0 - 1e-5));
 }
 
 // Up to four layers' depth buffer values; nothing is outside the raster.
@@ -119,20 +123,26 @@ float visibility_cast(sampler2D layers_tx,
   return through;
 }
 
-// A mask at a place on the lens in units of half the opening, interpolated inside its tile.
+// A mask at a place on the lens in units of half the opening, blurred about as much as a pixel
+// filter blurs the disc: by a quadratic spline over 3 x 3 texels of its tile.
 // tile: x, y, size of a source in `tiles_tx`.
 float visibility_mask(sampler2D masks_tx, vec3 tile, vec2 lens)
 {
-  vec2 place = clamp((lens * 0.5 + 0.5) * tile.z, vec2(0.5), vec2(tile.z - 0.5));
-  vec2 low = floor(place - 0.5);
-  vec2 part = place - 0.5 - low;
-  ivec2 first = ivec2(tile.xy + low);
-  ivec2 last = ivec2(tile.xy + min(low + 1.0, vec2(tile.z - 1.0)));
-  float a = texelFetch(masks_tx, first, 0).x;
-  float b = texelFetch(masks_tx, ivec2(last.x, first.y), 0).x;
-  float c = texelFetch(masks_tx, ivec2(first.x, last.y), 0).x;
-  float d = texelFetch(masks_tx, last, 0).x;
-  return mix(mix(a, b, part.x), mix(c, d, part.x), part.y);
+  vec2 place = clamp((lens * 0.5 + 0.5) * tile.z, vec2(0.0), vec2(tile.z - 1e-3));
+  vec2 middle = floor(place);
+  vec2 part = place - middle - 0.5;
+  vec2 weights[3];
+  weights[0] = 0.5 * (0.5 - part) * (0.5 - part);
+  weights[1] = 0.75 - part * part;
+  weights[2] = 0.5 * (0.5 + part) * (0.5 + part);
+  float sum = 0.0;
+  for (int y = 0; y < 3; y++) {
+    for (int x = 0; x < 3; x++) {
+      vec2 texel = clamp(middle + vec2(x, y) - 1.0, vec2(0.0), vec2(tile.z - 1.0));
+      sum += weights[x].x * weights[y].y * texelFetch(masks_tx, ivec2(tile.xy + texel), 0).x;
+    }
+  }
+  return sum;
 }
 
 #endif

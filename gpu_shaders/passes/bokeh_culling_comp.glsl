@@ -11,6 +11,8 @@
 
 // The bounds hardly shrink after the third time.
 #define ITERATIONS 4
+// Of the depth from texel to texel, in texels that a line moves meanwhile: less is no gap.
+#define GAP 0.25
 // Up to so many texels along a side are looked at one by one.
 #define WALK 24
 
@@ -96,7 +98,7 @@ float state_of(Source source, inout float nearest)
     return all_inside ? STATE_VISIBLE : STATE_EDGE;
   }
   // A surface without a gap that a line to the lens could slip through hides everything.
-  if (inside && bounds.y < source.limit && bounds.z * max(rate.x, rate.y) < 1.0) {
+  if (inside && bounds.y < source.limit && bounds.z * max(rate.x, rate.y) < GAP) {
     return STATE_HIDDEN;
   }
   return STATE_OPEN;
@@ -113,7 +115,6 @@ void main()
   float state = state_of(source, nearest);
   if (culls == 0) {
     state = STATE_OPEN;
-    nearest = 0.0;
   }
   vec2 rate = source_reach(visibility_buf);
   float steps = max(rate.x, rate.y) * max(source.depth - nearest, 0.0);

@@ -1,8 +1,8 @@
 // Which clusters of triangles, or instances of a group, meet the cone from a source to the lens.
 // Counts them for each undecided source; with FILL, writes the pairs where prefix sums place them.
 // Inputs: sources_tx; boxes_tx, parts_tx, shapes_tx (see engine/occluders.py); instances_tx;
-// visibility_buf; count; culls (0: every source
-// keeps its mask); ivec4 extent (GROUP: first and last row of a group's instances, z: segment of
+// visibility_buf; count; culls (x: 0: every source
+// keeps its mask; y: 1: sources that the layers leave free are tested, too); corners_tx; ivec4 extent (GROUP: first and last row of a group's instances, z: segment of
 // keys; else x: number of parts, z: segment); FILL: states_tx, keys_tx, totals_tx, window (places: first and
 // number).
 // GROUP: box (lower and upper corner of the mesh).
@@ -34,18 +34,21 @@ Bundle source_bundle(Source source, float farthest)
 {
   Bundle bundle;
   Cone cone = source.cone;
+  // A mask is blurred when it is read: what lies a texel and a half beyond the rim counts.
+  float side = visibility_buf.tiles.y * exp2(float(source_class(source.coc, visibility_buf)));
+  vec2 opening = visibility_buf.opening.xy * (1.0 + 3.0 / side);
   for (int i = 0; i < SIDES; i++) {
     float angle = 6.2831853 * float(i) / float(SIDES);
     vec2 n = vec2(cos(angle), sin(angle));
-    float reach = length(n * visibility_buf.opening.xy) * cone.rate;
+    float reach = length(n * opening) * cone.rate;
     bundle.planes[i] = vec4(-n, reach - dot(n, cone.b), reach * cone.depth + dot(n, cone.a));
   }
   bundle.planes[SIDES] = vec4(0.0, 0.0, -1.0, -visibility_buf.opening.z);
   bundle.planes[SIDES + 1] = vec4(0.0, 0.0, 1.0, farthest);
   for (int i = 0; i < CORNERS; i++) {
     float z = (i & 4) == 0 ? visibility_buf.opening.z : farthest;
-    vec2 side = vec2((i & 1) == 0 ? -1.0 : 1.0, (i & 2) == 0 ? -1.0 : 1.0);
-    vec2 lens = side * visibility_buf.opening.xy * ((cone.depth - z) * cone.rate);
+    vec2 corner = vec2((i & 1) == 0 ? -1.0 : 1.0, (i & 2) == 0 ? -1.0 : 1.0);
+    vec2 lens = corner * opening * ((cone.depth - z) * cone.rate);
     bundle.corners[i] = vec3(cone.a + cone.b * z + lens, -z);
   }
   return bundle;
@@ -95,6 +98,39 @@ bool meets(Bundle bundle, int box)
   return meets_box(bundle,
                    texelFetch(boxes_tx, list_texel(2 * box), 0).xyz,
                    texelFetch(boxes_tx, list_texel(2 * box + 1), 0).xyz);
+}
+
+// Whether any triangle of a cluster may meet the bundle: no plane of the bundle parts them, and not
+// the triangle's own.
+bool meets_cluster(Bundle bundle, int cluster)
+{
+  ivec2 place = ivec2((cluster % CLUSTERS_PER_ROW) * CLUSTER_CORNERS, cluster / CLUSTERS_PER_ROW);
+  for (int i = 0; i < CLUSTER_CORNERS; i += 3) {
+    vec3 a = texelFetch(corners_tx, place + ivec2(i, 0), 0).xyz;
+    vec3 b = texelFetch(corners_tx, place + ivec2(i + 1, 0), 0).xyz;
+    vec3 c = texelFetch(corners_tx, place + ivec2(i + 2, 0), 0).xyz;
+    bool parted = any(lessThan(max(a, max(b, c)), bundle.low)) ||
+                  any(greaterThan(min(a, min(b, c)), bundle.high));
+    for (int k = 0; k < PLANES && !parted; k++) {
+      vec3 n = bundle.planes[k].xyz;
+      float slack = bundle.planes[k].w + 1e-6 * abs(bundle.planes[k].w);
+      parted = max(dot(n, a), max(dot(n, b), dot(n, c))) + slack < 0.0;
+    }
+    if (parted) {
+      continue;
+    }
+    vec3 n = cross(b - a, c - a);
+    float low = 1e30, high = -1e30;
+    for (int k = 0; k < CORNERS; k++) {
+      float distance = dot(n, bundle.corners[k] - a);
+      low = min(low, distance);
+      high = max(high, distance);
+    }
+    if (low <= 0.0 && high >= 0.0 && n != vec3(0.0)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // A tree of boxes: `number` leaves from box `first` on, then what is round eight of them each.
@@ -190,8 +226,10 @@ bool meets_edge(Source source)
     Tree clusters = tree_of(int(shape.x), int(shape.y));
     ivec2 within = ivec2(clusters.top, 0);
     int cluster;
-    if (next_leaf(clusters, own, within, cluster)) {
-      return true;
+    while (next_leaf(clusters, own, within, cluster)) {
+      if (meets_cluster(own, int(shape.z) + cluster)) {
+        return true;
+      }
     }
   }
 #endif
@@ -222,19 +260,17 @@ void main()
   uint place = texelFetch(keys_tx, key, 0).x + texelFetch(totals_tx, list_texel(key.y), 0).x;
 #else
   float state = index < count ? imageLoad(states_img, texel).w : 0.0;
-  if (state != STATE_OPEN && state != STATE_FREE && state != STATE_EDGE) {
+  bool free = state == STATE_VISIBLE || state == STATE_EDGE;
+  if (state != STATE_OPEN && state != STATE_FREE && !free) {
     imageStore(keys_img, key, uvec4(0u));
     return;
   }
 #endif
   Source source = source_of(texelFetch(sources_tx, texel, 0), visibility_buf);
 #ifndef FILL
-  if (state == STATE_EDGE) {
-    if (!meets_edge(source)) {
-      imageStore(keys_img, key, uvec4(0u));
-      return;
-    }
-    state = STATE_OPEN;
+  if (free && culls.y == 0 && (state == STATE_VISIBLE || !meets_edge(source))) {
+    imageStore(keys_img, key, uvec4(0u));
+    return;
   }
 #endif
   Bundle bundle = transform_bundle(source_bundle(source, source.hides), visibility_buf.view);
@@ -263,6 +299,9 @@ void main()
     ivec2 within = ivec2(clusters.top, 0);
     int cluster;
     while (next_leaf(clusters, own, within, cluster)) {
+      if (!meets_cluster(own, int(shape.z) + cluster)) {
+        continue;
+      }
       found++;
 #ifdef FILL
       write_pair(place, index, row, int(shape.z) + cluster);
@@ -275,10 +314,14 @@ void main()
   if (found > 0u) {
     imageAtomicAdd(counts_img, ivec2(extent.w, 0), found);
   }
-  // Undecided until something meets the cone.
+  // Free until something meets the cone.
   vec4 record = imageLoad(states_img, texel);
-  record.w = (found > 0u || culls == 0 || (extent.w > COUNT_PAIRS && state == STATE_OPEN)) ? STATE_OPEN :
-                                                                             STATE_FREE;
+  if (found > 0u || culls.x == 0) {
+    record.w = STATE_OPEN;
+  }
+  else if (state == STATE_OPEN && extent.w == COUNT_PAIRS) {
+    record.w = STATE_FREE;
+  }
   imageStore(states_img, texel, record);
 #endif
 }

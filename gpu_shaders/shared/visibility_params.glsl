@@ -7,7 +7,7 @@ struct VisibilityParams {
   vec4 opening;         // xy: half width and height of the opening, m; z: clip start, m;
                         // w: how far a disc reaches in units of its radius
   vec4 raster;          // xy: size of the peeled raster, texels; z: texels a pixel;
-                        // w: sides of a texel by which a source is out of its surface, at most
+                        // w: movement in the picture that makes no difference, px
   vec4 frame;           // xy: lower left corner of the frame in the raster, px; zw: its size, px
   vec4 sweep;           // xy: texels that a metre of the lens moves a unit of the depth buffer;
                         // zw: depth buffer value = z + w / depth (orthographic: z + w depth)
