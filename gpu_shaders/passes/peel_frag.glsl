@@ -39,12 +39,9 @@ void main()
   out_color = vec4(0.0, 0.0, 0.0, opacity);
 }
 #else
-// Whether an opaque surface at a depth hides what lies at another from the whole lens.
+// Whether an opaque surface in front hides what lies behind it from the whole lens.
 bool hides(float front, float window_depth)
 {
-  if (front >= window_depth - DEPTH_STEPS) {
-    return false;
-  }
   float near = depth_from_window(front, view_buf.projection, view_buf.lens);
   float far = depth_from_window(window_depth, view_buf.projection, view_buf.lens);
   return abs(coc_radius_px(near, view_buf.lens) - coc_radius_px(far, view_buf.lens)) < SAME_VIEW;
@@ -74,7 +71,8 @@ void main()
   if (max(excess.r, max(excess.g, excess.b)) <= 0.0) {
     discard;
   }
-  if (hides(texelFetch(scene_tx, texel, 0).x, z)) {
+  float scene = texelFetch(scene_tx, texel, 0).x;
+  if (scene < z - DEPTH_STEPS && hides(scene, z)) {
     discard;
   }
   if (texelFetch(front_color_tx, texel, 0).a >= 0.999 && hides(front, z)) {
