@@ -140,8 +140,8 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
     )
     lens_views: IntProperty(
         name="Lens Views",
-        description="Places on the lens from which highlights are searched: 1, 4, 9 or 16. More keep"
-        " apart what mirroring surfaces show to different parts of the lens",
+        description="Places on the lens from which highlights are searched: 1, 4, 9 or 16. More"
+        " keep apart what mirroring surfaces show to different parts of the lens",
         default=1,
         min=1,
         max=16,

@@ -1,0 +1,232 @@
+"""Bokeh of a camera as Blender keeps it: properties, presets, what a lens remembers, pictures."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from addon.bokeh.appearance import Appearance
+from addon.bokeh.grain import Grain
+from addon.bokeh.iris_mask import BladedIris
+from addon.bokeh.vignetting_model import cat_eye
+from addon.ui import bokeh_panel, bokeh_presets
+from addon.ui.bokeh_panel import counts_as_lines
+from addon.ui.bokeh_previews import disc_pictures
+from addon.ui.bokeh_properties import APPEARANCE_NAMES
+from addon.ui.lens_memory import values_of
+
+TESSAR, PLANAR = "tessar-50mm-f2.8", "planar-50mm-f1.4"
+MENU = "APLANAT_PT_bokeh_presets"
+COUNTS = dict.fromkeys(
+    ("found", "clustered", "culled_size", "culled_occlusion", "culled_cone", "masked", "splatted"),
+    0,
+)
+
+
+@pytest.fixture
+def camera(empty_scene, aplanat_bpy):
+    data = aplanat_bpy.data.cameras.new("Camera")
+    obj = aplanat_bpy.data.objects.new("Camera", data)
+    aplanat_bpy.context.collection.objects.link(obj)
+    empty_scene.camera = obj
+    return data
+
+
+@pytest.fixture
+def bokeh(camera):
+    return camera.aplanat.bokeh
+
+
+def appearance(bokeh):
+    return values_of(bokeh, APPEARANCE_NAMES)
+
+
+def preset(bpy, name):
+    path = bpy.utils.preset_find(name, "aplanat/bokeh", display_name=True)
+    assert path, name
+    assert bpy.ops.script.execute_preset(filepath=path, menu_idname=MENU) == {"FINISHED"}
+
+
+def test_every_property_has_a_name_a_tooltip_bounds_and_can_be_overridden(bokeh):
+    for prop in bokeh.bl_rna.properties:
+        if prop.identifier in {"rna_type", "name"}:
+            continue
+        assert prop.name and prop.description, prop.identifier
+        assert not prop.description.endswith("."), prop.identifier
+        assert prop.is_overridable, prop.identifier
+        if prop.type in {"INT", "FLOAT"}:
+            assert prop.hard_min <= prop.default <= prop.hard_max
+            assert prop.soft_max < 2**31 - 1 or prop.identifier == "texture_seed"
+        if prop.type == "ENUM":
+            assert all(item.description for item in prop.enum_items)
+
+
+def test_what_a_preset_keeps_are_properties(bokeh):
+    assert set(APPEARANCE_NAMES) <= set(bokeh.bl_rna.properties.keys())
+
+
+def test_clean_is_how_a_camera_starts(bokeh, aplanat_bpy):
+    start = appearance(bokeh)
+    preset(aplanat_bpy, "Vintage")
+    assert appearance(bokeh) != start
+    preset(aplanat_bpy, "Clean")
+    assert appearance(bokeh) == start
+
+
+def test_every_shipped_preset_sets_all_of_the_appearance_and_nothing_else(aplanat_bpy):
+    (folder,) = aplanat_bpy.utils.preset_paths("aplanat/bokeh")
+    files = list(Path(folder).glob("*.py"))
+    assert {"Clean", "Soap_Bubble", "Creamy", "Vintage"} <= {path.stem for path in files}
+    for path in files:
+        lines = path.read_text(encoding="utf-8").splitlines()
+        set_here = [line.split(" = ")[0] for line in lines if line.startswith("bokeh.")]
+        assert set_here == [f"bokeh.{name}" for name in APPEARANCE_NAMES], path.name
+
+
+def test_soap_bubble_and_creamy_are_opposites(bokeh, aplanat_bpy):
+    preset(aplanat_bpy, "Soap Bubble")
+    assert bokeh.hardness > 0.5
+    preset(aplanat_bpy, "Creamy")
+    assert bokeh.hardness < -0.5
+
+
+def test_a_preset_leaves_search_and_light_alone(bokeh, aplanat_bpy):
+    bokeh.threshold, bokeh.model, bokeh.visibility = 3.0, "CLUSTERED", "SPLAT"
+    preset(aplanat_bpy, "Swirl")
+    assert (bokeh.threshold, bokeh.model, bokeh.visibility) == (3.0, "CLUSTERED", "SPLAT")
+
+
+def test_an_own_preset_is_saved_and_loaded(camera, bokeh, aplanat_bpy, tmp_path, monkeypatch):
+    bpy = aplanat_bpy
+
+    def user_resource(*_, path="", **__):
+        (tmp_path / path).mkdir(parents=True, exist_ok=True)
+        return str(tmp_path / path)
+
+    monkeypatch.setattr(bpy.utils, "user_resource", user_resource)
+    bokeh.hardness, bokeh.dust, bokeh.vignetting = 0.25, 7, "ANALYTIC"
+    before = appearance(bokeh)
+    assert bpy.ops.camera.aplanat_bokeh_preset_add(name="Mine") == {"FINISHED"}
+    saved = next(tmp_path.rglob("Mine.py"))
+    other = bpy.data.cameras.new("Other")
+    with bpy.context.temp_override(camera=other):
+        bpy.ops.script.execute_preset(filepath=str(saved), menu_idname=MENU)
+    assert appearance(other.aplanat.bokeh) == before
+
+
+def test_a_lens_remembers_its_appearance_and_the_camera_keeps_the_rest(camera, bokeh):
+    bokeh.hardness, bokeh.threshold = 0.5, 2.0
+    camera.aplanat.lens = TESSAR
+    # A new lens takes over what is there.
+    assert bokeh.hardness == 0.5
+    bokeh.onion, bokeh.vignetting, bokeh.threshold = 0.25, "NONE", 3.0
+    of_tessar = appearance(bokeh)
+    camera.aplanat.lens = PLANAR
+    bokeh.onion, bokeh.vignetting = 0.0, "LENS"
+    of_planar = appearance(bokeh)
+    camera.aplanat.lens = TESSAR
+    assert appearance(bokeh) == of_tessar
+    camera.aplanat.lens_choice = f"lens:{PLANAR}"
+    assert appearance(bokeh) == of_planar
+    camera.aplanat.lens = ""
+    assert (bokeh.hardness, bokeh.onion, bokeh.vignetting) == (0.5, 0.0, "LENS")
+    assert bokeh.threshold == 3.0
+
+
+def test_what_a_lens_remembers_is_saved(camera, bokeh, aplanat_bpy, tmp_path):
+    bpy = aplanat_bpy
+    bokeh.grain = 0.25
+    camera.aplanat.lens = TESSAR
+    bokeh.grain = 0.5
+    path = str(tmp_path / "scene.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    loaded = bpy.data.cameras["Camera"].aplanat
+    assert loaded.bokeh.grain == 0.5
+    loaded.lens = ""
+    assert loaded.bokeh.grain == 0.25
+
+
+def test_a_damaged_memory_does_no_harm(camera, bokeh):
+    damages = ("{", "[]", '{"": 3}', '{"": {"vignetting": "X", "grain": "x", "dust": 99999999999}}')
+    for damage in damages:
+        camera.aplanat.bokeh_memory = damage
+        bokeh.hardness = 0.5
+        camera.aplanat.lens = TESSAR if camera.aplanat.lens == "" else ""
+        assert (bokeh.hardness, bokeh.vignetting, bokeh.grain) == (0.5, "LENS", 0.0)
+
+
+def test_counts_are_told_in_words():
+    assert counts_as_lines(COUNTS) == ["No highlights in the last picture"]
+    lines = counts_as_lines(
+        COUNTS
+        | {"found": 12000, "culled_size": 2000, "clustered": 1000, "culled_occlusion": 300}
+        | {"masked": 150, "splatted": 700}
+    )
+    assert lines == [
+        "12,000 highlights found, 700 discs drawn",
+        "10,000 merged into 1,000",
+        "2,000 sharp, 300 out of sight, 150 partly hidden",
+    ]
+
+
+def test_pictures_of_discs_show_hardness_on_its_side_of_the_focus():
+    look = Appearance(edge=0.9)
+    front, behind, corner = disc_pictures(look, (0.3, 0.2))
+    middle = slice(40, 56)
+
+    def rim_over_middle(picture):
+        line = picture[48, :, 0]
+        return line[4:14].max() / line[middle].mean()
+
+    assert rim_over_middle(behind) > 1.2
+    assert rim_over_middle(front) < 0.8
+    assert np.array_equal(behind, corner)
+
+
+def test_pictures_of_discs_are_dark_around_and_mirrored_in_front():
+    front, behind, _ = disc_pictures(Appearance(iris=BladedIris(3)), (0.3, 0.2))
+    assert behind[0, 0, 0] < 0.05 < behind[48, 48, 0]
+    # Texels on the rim of a triangle are shared in another way from the other side.
+    assert np.abs(front - behind[::-1, ::-1])[..., 0].mean() < 0.01
+    assert np.abs(front - behind)[..., 0].mean() > 0.05
+
+
+def test_cats_eyes_are_seen_in_the_corner_only_and_lose_light():
+    _, behind, corner = disc_pictures(Appearance(rims=cat_eye(0.8, 0.5)), (0.4, 0.3))
+    assert corner[..., 0].sum() < 0.8 * behind[..., 0].sum()
+    # What is left is as bright as before.
+    assert corner[48, 48, 0] == pytest.approx(behind[48, 48, 0], rel=0.02)
+
+
+def test_grain_and_a_wide_iris_fit_into_the_picture():
+    wide = Appearance(grain=Grain(0.3, dust=5), anamorphic_ratio=0.5)
+    for picture in disc_pictures(wide, (0.3, 0.2)):
+        assert np.isfinite(picture).all() and picture.max() <= 1.0
+        assert picture[:, 0, 0].max() < 0.05
+        assert picture[:10].max(axis=(0, 1))[0] < 0.05
+
+
+def test_panels_are_for_aplanat_only():
+    for panel in bokeh_panel.CLASSES:
+        assert panel.is_registered and set(panel.COMPAT_ENGINES) == {"APLANAT"}
+    assert bokeh_presets.APLANAT_OT_bokeh_preset_add.bl_description
+
+
+def test_a_material_starts_with_automatic_highlights(aplanat_bpy, empty_scene):
+    material = aplanat_bpy.data.materials.new("Material")
+    assert material.aplanat.highlights == "AUTOMATIC"
+    (prop,) = [p for p in material.aplanat.bl_rna.properties if p.identifier == "highlights"]
+    assert prop.description and all(item.description for item in prop.enum_items)
+
+
+def test_nothing_stays_after_unregistering(aplanat_bpy):
+    import addon
+
+    bpy = aplanat_bpy
+    addon.unregister()
+    try:
+        assert not bpy.utils.preset_paths("aplanat/bokeh")
+        assert not hasattr(bpy.types.Material, "aplanat")
+    finally:
+        addon.register()
