@@ -35,9 +35,9 @@ _WINDOW = 1 << 20
 # part the lens into places that see it and places that do not.
 _SAME_VIEW = 0.25
 _MASK_TEXELS_PER_PIXEL = 1.0
-# Of the layers: between surfaces closer in depth than highlight and focus, a texel of a layer is
-# larger than one of a mask.
-_MOST_TEXELS_PER_PIXEL = 2
+# Of the layers, along a side of a pixel: coarser ones miss what is thin. And of all their texels.
+_TEXELS_PER_PIXEL = 3
+_LARGEST_RASTER = 1 << 23
 
 MASKED, IN_SPLAT = 2, 3
 
@@ -220,6 +220,12 @@ def visibility_params(plan, fine=1, reach=1.0):
     }
 
 
+def _texels_per_pixel(bokeh):
+    affordable = int(np.sqrt(_LARGEST_RASTER / (bokeh.width * bokeh.height)))
+    longest = _LONGEST_ATLAS // max(bokeh.width, bokeh.height)
+    return max(1, min(_TEXELS_PER_PIXEL, affordable, longest))
+
+
 def _reaching_depth(plan):
     """Return up to which depth discs are wider than what the raster has around the frame, m.
 
@@ -297,7 +303,7 @@ class BokehVisibility:
         self._plan = plan
         self._occluders = occluders
         self._buffers = buffers
-        self._fine = int(__import__("os").environ.get("FINE", "3"))
+        self._fine = _texels_per_pixel(plan.bokeh)
         self._values = visibility_params(plan, self._fine, reach)
         self._parameters = uniform_buffer(bokeh_culling.VISIBILITY_PARAMS.pack(**self._values))
 

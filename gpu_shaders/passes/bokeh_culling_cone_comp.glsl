@@ -34,9 +34,9 @@ Bundle source_bundle(Source source, float farthest)
 {
   Bundle bundle;
   Cone cone = source.cone;
-  // A mask is blurred when it is read: what lies a texel and a half beyond the rim counts.
+  // A mask is blurred when it is read: what lies 1.5 texels beyond the rim counts, also aslant.
   float side = visibility_buf.tiles.y * exp2(float(source_class(source.coc, visibility_buf)));
-  vec2 opening = visibility_buf.opening.xy * (1.0 + 3.0 / side);
+  vec2 opening = visibility_buf.opening.xy * (1.0 + 4.3 / side);
   for (int i = 0; i < SIDES; i++) {
     float angle = 6.2831853 * float(i) / float(SIDES);
     vec2 n = vec2(cos(angle), sin(angle));
