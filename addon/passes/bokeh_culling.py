@@ -357,15 +357,28 @@ def mark_sizes(count, parameters, tables):
 
 def scan(tables):
     """Turn the keys into prefix sums over all of them."""
-    for totals in (False, True):
-        shader = compile_shader(_scan_info(totals))
+    scan_table(tables.keys, tables.totals)
+
+
+def scan_table(numbers, totals):
+    """Turn a table of numbers into prefix sums: within its rows, and of the rows.
+
+    Parameters
+    ----------
+    numbers : GPUTexture
+        R32UI, `COLUMNS` wide.
+    totals : GPUTexture
+        R32UI, `COLUMNS` wide: gets for each row what comes before it.
+    """
+    for over_rows in (False, True):
+        shader = compile_shader(_scan_info(over_rows))
         shader.bind()
-        shader.image("totals_img", tables.totals)
-        if totals:
-            shader.uniform_int("rows", tables.keys.height)
+        shader.image("totals_img", totals)
+        if over_rows:
+            shader.uniform_int("rows", numbers.height)
         else:
-            shader.image("keys_img", tables.keys)
-        dispatch(shader, 1 if totals else tables.keys.height, 1)
+            shader.image("keys_img", numbers)
+        dispatch(shader, 1 if over_rows else numbers.height, 1)
 
 
 def place_tiles(count, layout, kind, tables, tiles, masked):
