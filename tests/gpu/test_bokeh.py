@@ -11,6 +11,7 @@ from addon.device import geometry, readback
 from addon.device.targets import Targets, TargetSpec
 from addon.device.textures import texture_2d, texture_array
 from addon.device.uniforms import uniform_buffer
+from addon.engine.bokeh_look import BokehLook
 from addon.passes import highlights, splat, surface
 from addon.reference.highlights import Raster
 from addon.reference.highlights import highlights as twin
@@ -37,8 +38,11 @@ WIDTH, HEIGHT = 96, 64
 
 
 def lamp(x, y, depth, size):
-    """Return a triangle that faces the camera, with its centre of gravity in the middle."""
-    angles = np.pi / 2 + np.arange(3) * 2 * np.pi / 3
+    """Return a triangle that faces the camera, with its centre of gravity in the middle.
+
+    None of its sides lies along the rows of the raster, where a row more or less is much of it.
+    """
+    angles = 0.4 + np.arange(3) * 2 * np.pi / 3
     return np.stack([x + size * np.cos(angles), y + size * np.sin(angles), 0 * angles - depth], 1)
 
 
@@ -168,7 +172,14 @@ def splatted(radius, center, iris=None, ratio=1.0, size=64, light=(1.0, 2.0, 4.0
             film=(size, size, 0.0, 0.0),
         )
     )
-    parameters = uniform_buffer(splat.SPLAT_PARAMS.pack(opening=(ratio, 1.0, 1.0, 1.0)))
+    parameters = splat.SPLAT_PARAMS.pack(
+        opening=(ratio, 1.0, 1.0, 1.0),
+        rows=(-1.0, 0.5, 0.0, 0.0),
+        field=(1.0, 0.0, 1.0, 0.0),
+        rims=np.zeros((splat.MOST_RIMS, 4)),
+        wavelength=(1.0, 1.0, 1.0, 0.1),
+        lateral=(1.0, 0.0, 0.0, 0.0),
+    )
     place = np.asarray(center, float) - size / 2
     lists = np.zeros((3, 1, 1024, 4), np.float32)
     lists[0, 0, 0] = (*place, depth, 1.0)
@@ -178,10 +189,11 @@ def splatted(radius, center, iris=None, ratio=1.0, size=64, light=(1.0, 2.0, 4.0
     textures = [texture_2d(table) for table in lists]
     textures.append(texture_2d(np.ones((1, 1, 4), np.float32)))
     opening = texture_array(opening_layers(iris.coverage), "RGBA16F")
+    look = BokehLook((), (("opening_tx", opening),), (uniform_buffer(parameters),))
     with Targets(size, size, [TargetSpec("bokeh", "RGBA32F")]) as targets:
         targets.clear("bokeh", (0.0, 0.0, 0.0, 0.0))
         with targets.framebuffer("bokeh").bind():
-            splat.splat(geometry.square_batch(), 1, textures, opening, view, parameters)
+            splat.splat(geometry.square_batch(), 1, textures, look, view)
         return readback.read_color(targets.framebuffer("bokeh"), size, size)
 
 
@@ -271,9 +283,9 @@ def test_splats_are_what_the_reference_method_converges_to(iris, parallel):
     few = with_bokeh(lamps(lens, samples=64, parallel=parallel))
     picture = render_snapshot(few)["Combined"].astype(np.float64)
     many = render_snapshot(lamps(lens, samples=4096, parallel=parallel))["Combined"]
-    # Of energy: edges of lamps at sub-pixels, a few in a thousand.
+    # Lamps of 3 pixels, met by sub-pixels of a half to a quarter: a few per cent.
     black = np.array(WORLD_COLOR) * WIDTH * HEIGHT
-    assert energy(picture) - black == pytest.approx(energy(many) - black, rel=0.02)
+    assert energy(picture) - black == pytest.approx(energy(many) - black, rel=0.03)
     peak = many[..., :3].max()
     error = np.abs(picture - many)[..., :3]
     # Noise of 4096 samples; a disc of another size, place or orientation would differ by its
