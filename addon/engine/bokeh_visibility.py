@@ -3,7 +3,8 @@
 Tests sort out what needs no mask. What is left gets a mask over the lens in an atlas, drawn by
 projecting the scene (RASTER) or by rays through the peeled layers (WARP), or is left to rays that
 the splat casts pixel by pixel (SPLAT). AUTO compares the work of the first two by counts: triangles
-of the pairs of highlight and cluster against steps of the rays.
+of the pairs of highlight and cluster against steps of the rays; where highlights are very many, it
+takes the layers, without asking for triangles.
 
 Masks have about a texel for each pixel of the disc. There is room for a number of texels that does
 not depend on the number of highlights: where they are many, their masks are smaller, so that the
@@ -22,10 +23,11 @@ from ..passes import bokeh_culling, peel, surface, surface_code, visibility_rast
 from ..passes.highlights import COLUMNS
 from .occluders import CLUSTER, Occluders, Part
 
-# Steps of a ray that take as long as a triangle of a cluster; measured, see the tests' docstring.
-STEPS_PER_TRIANGLE = 40
+# Steps of a ray that take as long as a triangle of a cluster: 120 to 130 ns against 7 to 8 on
+# software OpenGL.
+STEPS_PER_TRIANGLE = 16
 # Texels of the atlas, at most, and its longer side.
-_LARGEST_ATLAS = 1 << 24
+_LARGEST_ATLAS = 1 << 23
 _LONGEST_ATLAS = 16384
 # Cells of the N-buffers over the peeled raster.
 _MOST_CELLS = 1 << 18
@@ -38,6 +40,9 @@ _MASK_TEXELS_PER_PIXEL = 1.0
 # Of the layers, along a side of a pixel: coarser ones miss what is thin. And of all their texels.
 _TEXELS_PER_PIXEL = 3
 _LARGEST_RASTER = 1 << 23
+
+# More sources are left to the layers alone, which cost the less a source the smaller the masks are.
+_MOST_CONES = 1 << 14
 
 MASKED, IN_SPLAT = 2, 3
 
@@ -356,15 +361,22 @@ class BokehVisibility:
                 rows, lists["states"], keys["keys"], totals["totals"], numbers["counts"]
             )
             # What only rays through the layers mask, only the layers need to leave unmasked.
+            if method == "AUTO" and count > _MOST_CONES:
+                method = "WARP"
             exact = method in {"AUTO", "RASTER"}
-            self._cull(sources, count, raster, tables, culls, exact)
+            cones = exact or count <= _MOST_CONES
+            self._cull(sources, count, raster, tables, culls, exact, cones)
             found = np.asarray(tables.counts.read()).ravel()
             _note(counts, found)
-            counts.method = self._choose(counts, method)
-            sizes = found[bokeh_culling.COUNT_SIZES : bokeh_culling.COUNT_WORK]
-            drawn = sizes[: bokeh_culling.SIZES] * (counts.method in {"RASTER", "WARP"})
+            drawn = found[bokeh_culling.COUNT_SIZES :][: bokeh_culling.SIZES].astype(np.int64)
             layout = lay_out(drawn)
             counts.texels = int((drawn * layout.sizes[:, 2] ** 2).sum())
+            wanted = (drawn * (bokeh_culling.LEAST_SIDE << np.arange(len(drawn))) ** 2).sum()
+            counts.work = int(counts.work * (counts.texels / max(wanted, 1)))
+            counts.method = self._choose(counts, method)
+            if counts.method not in {"RASTER", "WARP"}:
+                layout = lay_out(drawn * 0)
+                counts.texels = 0
             buffer = uniform_buffer(
                 bokeh_culling.TILE_LAYOUT.pack(
                     atlas=(layout.width, layout.height, 0.0, 0.0), sizes=layout.sizes
@@ -438,7 +450,7 @@ class BokehVisibility:
         # Products of several surfaces must not be rounded to 8 bits each.
         return "R16F" if self._occluders.groups else "R8"
 
-    def _cull(self, sources, count, raster, tables, culls, exact):
+    def _cull(self, sources, count, raster, tables, culls, exact, cones):
         occluders = self._occluders
         layers = raster["layers"]
         cell = 1
@@ -459,16 +471,17 @@ class BokehVisibility:
                 culls,
                 tables.states,
             )
-            bokeh_culling.count_pairs(
-                sources,
-                count,
-                self._parameters,
-                occluders.opaque,
-                self._buffers.instances,
-                occluders.groups,
-                (culls, exact),
-                tables,
-            )
+            if cones:
+                bokeh_culling.count_pairs(
+                    sources,
+                    count,
+                    self._parameters,
+                    occluders.opaque,
+                    self._buffers.instances,
+                    occluders.groups,
+                    (culls, exact),
+                    tables,
+                )
             bokeh_culling.mark_sizes(count, self._parameters, tables)
             # The stack is given back only after the device has read it.
             np.asarray(tables.counts.read())
