@@ -66,7 +66,7 @@ def _draw_counts(column, scene, letters):
     if counts is None:
         return
     for i, line in enumerate(counts_as_lines(counts)):
-        draw_sentences(column, line, letters, icon="BLANK1" if i else "OUTLINER_OB_LIGHTPROBE")
+        draw_sentences(column, line, letters, icon="BLANK1" if i else "OUTLINER_OB_LIGHT")
 
 
 def counts_as_lines(counts):
