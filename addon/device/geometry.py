@@ -90,3 +90,16 @@ def square_batch():
     vertices.attr_fill("pos", corners)
     census.record("vertex_buffer", vertices, corners.nbytes)
     return census.record("batch", gpu.types.GPUBatch(type="TRIS", buf=vertices))
+
+
+def numbered_batch(count):
+    """Return triangles whose corners are only numbered, from 0; attribute ``corner``."""
+    import gpu
+
+    vertex_format = gpu.types.GPUVertFormat()
+    vertex_format.attr_add(id="corner", comp_type="F32", len=1, fetch_mode="FLOAT")
+    numbers = np.arange(count, dtype=np.float32)[:, None]
+    vertices = gpu.types.GPUVertBuf(vertex_format, count)
+    vertices.attr_fill("corner", numbers)
+    census.record("vertex_buffer", vertices, numbers.nbytes)
+    return census.record("batch", gpu.types.GPUBatch(type="TRIS", buf=vertices))

@@ -504,7 +504,7 @@ class BokehVisibility:
     def _raster(self, sources, count, counts, found, tables, lists, layout, atlas):
         occluders = self._occluders
         shared = {"sources": sources, "tiles": lists["tiles"], "instances": self._buffers.instances}
-        batch = visibility_raster.cluster_batch()
+        batch = geometry.numbered_batch(bokeh_culling.CLUSTER_CORNERS)
         # Places of the prefix sums begin behind the masks'.
         first = counts.masked
         numbers = [counts.pairs, *found[bokeh_culling.COUNT_GROUPS :].tolist()]

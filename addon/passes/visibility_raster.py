@@ -11,9 +11,7 @@ References
 Jeong et al., TVCG 2020, section 4.2.
 """
 
-import numpy as np
-
-from ..device import census, shader_source, state
+from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
 from . import surface
 from .bokeh_culling import (
@@ -61,26 +59,13 @@ TARGET = surface.SurfaceTarget(
 )
 
 
-def cluster_batch():
-    """Return the corners of a cluster, numbered; attribute ``corner``."""
-    import gpu
-
-    vertex_format = gpu.types.GPUVertFormat()
-    vertex_format.attr_add(id="corner", comp_type="F32", len=1, fetch_mode="FLOAT")
-    numbers = np.arange(CLUSTER_CORNERS, dtype=np.float32)[:, None]
-    vertices = gpu.types.GPUVertBuf(vertex_format, len(numbers))
-    vertices.attr_fill("corner", numbers)
-    census.record("vertex_buffer", vertices, numbers.nbytes)
-    return census.record("batch", gpu.types.GPUBatch(type="TRIS", buf=vertices))
-
-
 def draw_clusters(batch, count, tables, parameters, layout):
     """Draw pairs of source and cluster into the bound frame buffer of the atlas.
 
     Parameters
     ----------
     batch : GPUBatch
-        Of `cluster_batch`.
+        Of `device.geometry.numbered_batch`, with CLUSTER_CORNERS corners.
     count : int
         Pairs.
     tables : dict of str to GPUTexture
