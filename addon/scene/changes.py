@@ -117,6 +117,8 @@ def same_camera(old, new):
         and _same_array(old.projection, new.projection)
         and (old.lens, old.orthographic) == (new.lens, new.orthographic)
         and old.bokeh == new.bokeh
+        # Only bokeh shows more of a real lens than its opening.
+        and (new.bokeh is None or old.real_lens == new.real_lens)
         and _same_pose(old.previous, new.previous)
         and _same_pose(old.next, new.next)
     )

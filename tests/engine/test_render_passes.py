@@ -19,6 +19,8 @@ def view_layer(depth=6, **switches):
     own = Record(
         use_pass_coc=switches.get("coc", False),
         use_pass_focus_matte=switches.get("focus_matte", False),
+        use_pass_defocus=switches.get("defocus", False),
+        use_pass_bokeh=switches.get("bokeh", False),
         use_pass_detail=switches.get("detail", False),
     )
     return Record(pass_cryptomatte_depth=depth, aplanat=own, **values)
@@ -46,6 +48,8 @@ def test_every_name_that_can_be_asked_for_is_in_the_table():
             normal=True,
             position=True,
             vector=True,
+            defocus=True,
+            bokeh=True,
             coc=True,
             focus_matte=True,
             cryptomatte_object=True,

@@ -5,7 +5,7 @@ import pytest
 from addon.lens_io.lens_shelf import LensShelf
 from addon.scene import lenses
 from addon.scene.camera import read_camera, sensor_diagonal
-from addon.scene.changes import Change, compare
+from addon.scene.changes import Change, compare, same_camera
 from addon.scene.extract import SceneExtractor
 from addon.scene.lenses import read_real_lens, shelf, user_folder
 from addon.scene.snapshot import Film
@@ -62,6 +62,7 @@ def test_a_clamp_restarts_the_picture_and_a_lens_without_effect_does_not(camera,
         return SceneExtractor().extract(aplanat_bpy.context.evaluated_depsgraph_get())
 
     camera.dof.aperture_fstop = 4.0
+    camera.aplanat.bokeh.use = False
     thin = snapshot()
     camera.aplanat.lens = "tessar-50mm-f2.8"
     assert not compare(thin, snapshot()) & Change.CAMERA
@@ -70,6 +71,17 @@ def test_a_clamp_restarts_the_picture_and_a_lens_without_effect_does_not(camera,
     assert compare(thin, wide) & Change.CAMERA
     camera.aplanat.lens = "planar-50mm-f1.4"
     assert compare(wide, snapshot()) & Change.CAMERA
+
+
+def test_bokeh_is_drawn_anew_for_another_lens_of_the_same_opening(camera, aplanat_bpy):
+    camera.dof.aperture_fstop = 4.0
+    camera.aplanat.lens = "tessar-50mm-f2.8"
+    tessar = read(aplanat_bpy)
+    assert same_camera(tessar, read(aplanat_bpy))
+    camera.aplanat.lens = "planar-50mm-f1.4"
+    planar = read(aplanat_bpy)
+    assert (planar.lens, planar.bokeh) == (tessar.lens, tessar.bokeh)
+    assert not same_camera(tessar, planar)
 
 
 def test_zoom_positions_have_their_own_openings(camera, aplanat_bpy):
