@@ -43,17 +43,35 @@ def opening_layers(coverage, size=512, layers=LAYERS):
         of the coverage over the largest of the three.
     """
     mask = np.asarray(coverage(texel_centres(_MASK), 2.0 / _MASK), dtype=float)
-    mask = mask.reshape(_MASK, _MASK, -1)
+    return layers_of_mask(mask.reshape(_MASK, _MASK, -1), range(layers), size)
+
+
+def layers_of_mask(mask, layers, size=512):
+    """Make layers of an opening that has been drawn.
+
+    Parameters
+    ----------
+    mask : ndarray of shape (M, M, channels)
+        Means over the texels of a square from -1 to 1; M a power of 2.
+    layers : sequence of int
+    size : int
+        Texels along a side of a layer.
+
+    Returns
+    -------
+    ndarray of shape (layers, size, size, 4)
+        As of `opening_layers`.
+    """
     channels = [0, 1, 2] if mask.shape[-1] >= 3 else [0, 0, 0]
-    integral = mask.sum(axis=(0, 1)) * (2.0 / _MASK) ** 2
+    integral = mask.sum(axis=(0, 1))
     share = integral / integral.max()
-    result = np.zeros((layers, size, size, 4), np.float32)
-    for layer in range(layers):
+    result = np.zeros((len(layers), size, size, 4), np.float32)
+    for i, layer in enumerate(layers):
         blurred = _blurred(mask, LEAST_BLUR * 2.0**layer / np.sqrt(2.0), extent(layer), size)
         texel = 2.0 * extent(layer) / size
         total = blurred.sum(axis=(0, 1)) * texel**2
         density = blurred * (share / np.maximum(total, 1e-30))
-        result[layer, ..., :3] = density[..., channels]
+        result[i, ..., :3] = density[..., channels]
     return result
 
 

@@ -1,15 +1,15 @@
 """The profile of a lens as splats read it: over depth and radius, in layers of rising blur.
 
-A splat multiplies the opening (`bokeh.opening`) by the profile. Both are blurred to what a pixel and
-a source's extent ask for, the same layer of both at a time. The opening has the rim, so the
+A splat multiplies the opening (`bokeh.opening`) by the profile. Both are blurred to what a pixel
+and a source's extent ask for, the same layer of both at a time. The opening has the rim, so the
 profile goes on beyond it: otherwise the rim would be blurred twice. Each row of each layer is then
 scaled so that opening times profile has the opening's energy, channel by channel. Layers and rows
 are mixed linearly, which keeps that.
 
 Rows run over ``w = c / (|c| + c0)`` of the signed circle of confusion as in `bokeh.mapping`.
 Lengths on the sensor become pixels by the ratio of the renderer's circle of confusion to the
-lens' own: both have the form ``k (1 - d_f / d)`` with distances from the entrance pupil, so that the
-picture keeps the camera's field of view and blur and takes the lens' patterns.
+lens' own: both have the form ``k (1 - d_f / d)`` with distances from the entrance pupil, so that
+the picture keeps the camera's field of view and blur and takes the lens' patterns.
 """
 
 from dataclasses import dataclass
@@ -90,7 +90,7 @@ def rows_of_lens(profile, focus_distance, f_number):
     FocusError
         If the lens cannot be focused there.
     """
-    table = frame_table(profile, _from_h(profile, focus_distance), f_number, _ROWS, RADII)
+    table = frame_table(profile, distance_from_h(profile, focus_distance), f_number, _ROWS, RADII)
     order = slice(None) if table.w_range[0] < table.w_range[1] else slice(None, None, -1)
     w_range = tuple(sorted(table.w_range))
     return DepthRows(
@@ -98,8 +98,20 @@ def rows_of_lens(profile, focus_distance, f_number):
     )
 
 
-def _from_h(profile, from_pupil):
-    """Return a distance from the first principal plane, both in mm, given from the pupil in m."""
+def distance_from_h(profile, from_pupil):
+    """Return a distance from the first principal plane.
+
+    Parameters
+    ----------
+    profile : LensProfile
+    from_pupil : float
+        Distance from the centre of the entrance pupil, m.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     distance = from_pupil * _MM
     # The pupil moves with a focus group, little against the distance.
     for _ in range(8):
@@ -186,7 +198,7 @@ def _blur(width, reach):
 
 
 def _bessel(x):
-    """Modified Bessel function of order 0 times exp(-x)."""
+    """Return the modified Bessel function of order 0 times exp(-x)."""
     small = np.minimum(x, 30.0)
     large = np.maximum(x, 30.0)
     series = 1.0 + 1.0 / (8.0 * large) + 9.0 / (128.0 * large**2) + 225.0 / (3072.0 * large**3)

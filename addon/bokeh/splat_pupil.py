@@ -16,12 +16,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from .deposit import deposit, open_weights, rays_for
+from .opening import extent
 from .pupil_beam import PupilBeam, beam_from_infinity, beam_from_point
 from .ray_map import lagrange_weights
 
 FIELDS, DEPTHS = 9, 13
-# Blur of the tiles in units of half their width, as the side of a box of the same variance; the first
-# one is of the sharp tiles. Must agree with lib/bokeh_look_lib.glsl.
+# Blur of the tiles in units of half their width, as the side of a box of the same variance; the
+# first one is of the sharp tiles. Must agree with lib/bokeh_look_lib.glsl.
 BLURS = (1.0 / 32.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0)
 SHARP, SOFT = 96, 32
 # Rays along a side of a tile's grid, at most: neighbours then land a texel apart for most light.
@@ -75,12 +76,19 @@ class PupilBeams:
         Of the field angle wanted.
     largest_vergence : float
         1 / distance from the entrance pupil of the nearest point, 1/mm.
+
+    Attributes
+    ----------
+    tangents : ndarray of shape (FIELDS,)
+    sensor : float
+        z of the sensor plane of the tables, mm.
     """
 
     def __init__(self, tables, pupil, f_number, largest_tangent, largest_vergence):
         limit = np.tan(min(np.radians(tables.half_field_deg), 1.5))
         self.tangents = np.linspace(0.0, min(largest_tangent, limit), FIELDS)
         turn = np.linspace(0.0, np.pi, _VERGENCES)
+        self.sensor = tables.sensor
         self._nodes = largest_vergence * 0.5 * (1.0 - np.cos(turn))
         self._beams = [
             [_traced(tables, pupil, f_number, t, v) for v in self._nodes] for t in self.tangents
@@ -196,7 +204,7 @@ def _blur_matrix(width, size):
     return np.exp(-0.5 * ((at[:, None] - source) * np.sqrt(12.0) / width) ** 2)
 
 
-def light_left(tiles, opening, largest_blur=0):
+def light_left(tiles, opening):
     """Share of the tiles' light that an opening leaves at each azimuth.
 
     Parameters
@@ -204,22 +212,17 @@ def light_left(tiles, opening, largest_blur=0):
     tiles : PupilTiles
     opening : ndarray of shape (layers, size, size, 4)
         From `bokeh.opening.opening_layers`; its first layer is used.
-    largest_blur : int
-        Layer of the opening.
 
     Returns
     -------
     ndarray of float32, shape (FIELDS, AZIMUTHS + 1, DEPTHS, 4)
         Red, green, blue.
     """
-    light = opening[largest_blur]
+    light, step = opening[0], 2
     size = len(light)
     result = np.empty((FIELDS, AZIMUTHS + 1, DEPTHS, 4), np.float32)
-    step = 2
     sharp = tiles.sharp.reshape(FIELDS, DEPTHS, SHARP // step, step, SHARP // step, step, 4)
     sharp = sharp.sum(axis=(3, 5)).reshape(FIELDS, DEPTHS, -1, 4)
-    from .opening import extent
-
     for i in range(FIELDS):
         for j in range(DEPTHS):
             tile = sharp[i, j][sharp[i, j, :, 0] > 0.0]
@@ -228,11 +231,9 @@ def light_left(tiles, opening, largest_blur=0):
                 turn = 2.0 * np.pi * k / AZIMUTHS - 0.5 * np.pi
                 x = stop[:, 0] * np.cos(turn) - stop[:, 1] * np.sin(turn)
                 y = stop[:, 0] * np.sin(turn) + stop[:, 1] * np.cos(turn)
-                at = [
-                    np.clip((p / extent(largest_blur) + 1.0) * 0.5 * size, 0, size - 1)
-                    for p in (y, x)
-                ]
-                passed = light[at[0].astype(int), at[1].astype(int), :3]
+                at = (np.stack([y, x]) / extent(0) + 1.0) * (0.5 * size)
+                at = np.clip(at, 0, size - 1).astype(int)
+                passed = light[at[0], at[1], :3]
                 result[i, k, j, :3] = tile[:, 0] @ passed / tile[:, 0].sum()
     result[:, AZIMUTHS] = result[:, 0]
     result[..., 3] = 0.0

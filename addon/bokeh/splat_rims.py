@@ -1,8 +1,8 @@
 """How much light analytic vignetting leaves of a splat, so that a shader can keep its energy.
 
 A splat is the product of opening, profile and rims (`bokeh.vignetting_model`). What is left of it
-depends on the tangent of the chief ray's angle, on its azimuth where the opening is not round, on the
-blur and on the row of the profile. Along rings of the opening the integral over the azimuth is
+depends on the tangent of the chief ray's angle, on its azimuth where the opening is not round, on
+the blur and on the row of the profile. Along rings of the opening the integral over the azimuth is
 a circular correlation of the opening with the rims: one Fourier transform gives all azimuths.
 """
 
@@ -34,7 +34,7 @@ def light_left(rims, opening, profile, largest_tangent):
     -------
     ndarray of shape (layers * R, AZIMUTHS + 1, TANGENTS, 4)
         float32; R rows of the profile, even from the first to the last (1 without a profile). The
-        azimuth goes once round, anticlockwise from x; tangents rise from 0. At least `_LEAST_LIGHT`.
+        azimuth goes once round, anticlockwise from x; tangents rise from 0.
     """
     rows = 1 if profile is None else min(MOST_ROWS, profile.shape[1])
     azimuth = (np.arange(AZIMUTHS) + 0.5) * (2.0 * np.pi / AZIMUTHS)

@@ -13,7 +13,7 @@ from ..sampling.highlights import highlight_share, least_coc
 from ..sampling.iris import Iris
 from ..sampling.pixel_filter import filter_density
 from ..scene.brightness import brightest
-from ..scene.snapshot import BokehSettings
+from ..scene.snapshot import BokehSettings, LensSettings
 from .levels import coc_radius, extents, world_corners
 
 # Depth that stands for infinity, in focus distances: the circle of confusion differs by 1e-6.
@@ -56,6 +56,8 @@ class BokehPlan:
         That stands for infinity, m.
     iris : Iris
         The lens' opening.
+    real_lens : LensSettings or None
+        That shapes the discs; None: the thin lens.
     filter_width : float
         Side of the square that blurs as the pixel filter does, px.
     """
@@ -72,6 +74,7 @@ class BokehPlan:
     world_share: float
     world_depth: float
     iris: Iris
+    real_lens: LensSettings | None
     filter_width: float
 
     @property
@@ -158,6 +161,7 @@ def plan_bokeh(snapshot, plan):
         world_share=float(highlight_share(plan.empty_coc, least)) if world else 0.0,
         world_depth=_INFINITY * max(plan.focus_distance, 1.0),
         iris=lens.iris,
+        real_lens=None if plan.orthographic else snapshot.camera.real_lens,
         filter_width=_filter_width(film.filter_kind, film.filter_size_px),
     )
 

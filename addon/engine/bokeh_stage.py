@@ -4,24 +4,20 @@ Done once a frame, before its first lens sample; what the samples then leave out
 splatted here, light for light.
 """
 
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..bokeh.iris_mask import BladedIris
-from ..bokeh.opening import opening_layers
 from ..device import geometry, readback
 from ..device.targets import Targets, TargetSpec
-from ..device.textures import texture_array
 from ..device.uniforms import uniform_buffer
-from ..passes import background, highlights, peel, splat, surface
+from ..passes import background, clusters, highlights, peel, splat, surface
+from .bokeh_look import make_look
+from .bokeh_clusters import similarity_of
 from .bokeh_visibility import BokehVisibility
 
 # Highlights that the list has room for at first.
 _FIRST_LIST = 1 << 16
-# Texels along a side of an opening's layers.
-_OPENING = 512
 
 
 @dataclass
@@ -118,7 +114,7 @@ class BokehStage:
             target.clear(color=(0.0, 0.0, 0.0, 0.0))
         held = []
         try:
-            sources, count = self._find(fullscreen, held)
+            sources, count = self._merge(*self._find(fullscreen, held), held)
             if count:
                 self._splat(sources, count, self._hide(sources, count, held), target, frame_view)
             self.bytes = max(self.bytes, sum(targets.bytes for targets in held))
@@ -150,8 +146,21 @@ class BokehStage:
         held.append(lists)
         self.counts.found = count + sharp
         self.counts.culled_size = sharp
-        self.counts.clustered = count
         return (lists["a"], lists["b"]), count
+
+    def _merge(self, sources, count, held):
+        """Merge similar highlights, as the model asks for; returns the list and its length."""
+        similarity = similarity_of(self._plan.bokeh.settings, count)
+        if similarity and count > 1:
+            plan = self._plan
+            lens = (plan.focus_distance, float(plan.orthographic), plan.coc_scale, 0.0)
+            pixel = 2.0 / (plan.projection[1, 1] * plan.height)
+            parameters = clusters.cluster_params(similarity, plan.view, lens, pixel)
+            lists, count = clusters.cluster(sources, count, uniform_buffer(parameters), similarity)
+            held.append(lists)
+            sources = (lists["a"], lists["b"])
+        self.counts.clustered = count
+        return sources, count
 
     def _rasters(self, layers, fullscreen):
         """Peel tile by tile, what looks different from each place on the lens also view by view.
@@ -193,6 +202,12 @@ class BokehStage:
         self.counts.culled_cone = counts.visible + counts.free
         self.counts.masked = counts.masked
         self.counts.splatted = count - self.counts.culled_occlusion
+        if counts.masked and counts.method != "SPLAT" and count < self.counts.found:
+            masks = found.masks
+            soft = Targets(masks.width, masks.height, [TargetSpec("masks", "R16F")])
+            held.append(soft)
+            clusters.soften(sources[0], count, found, soft["masks"])
+            found = replace(found, masks=soft["masks"])
         return found
 
     def _specs(self):
@@ -269,11 +284,6 @@ class BokehStage:
         self._drawing.counts.triangles += sum(d.triangles * d.count for d in draws)
 
     def _splat(self, sources, count, visibility, target, frame_view):
-        bokeh = self._plan.bokeh
-        regions = np.sqrt(len(bokeh.lens_views))
-        parameters = uniform_buffer(
-            splat.SPLAT_PARAMS.pack(opening=(bokeh.iris.ratio, bokeh.filter_width, 1.0, regions))
-        )
         rays = None
         if visibility.counts.method == "SPLAT":
             rays = (visibility.layers, visibility.opacity, visibility.states, visibility.parameters)
@@ -282,20 +292,9 @@ class BokehStage:
                 geometry.square_batch(),
                 count,
                 (*sources, visibility.tiles, visibility.masks),
-                self._opening(),
+                make_look(self._plan),
                 frame_view,
-                parameters,
                 rays,
             )
         # What it reads is given back only after the device has read it.
         readback.wait(target)
-
-    def _opening(self):
-        iris = self._plan.bokeh.iris
-        return texture_array(_opening_layers(iris.blades, iris.rotation), "RGBA16F")
-
-
-@lru_cache(maxsize=4)
-def _opening_layers(blades, rotation):
-    iris = BladedIris(blades if blades >= 3 else 0, 0.0, rotation)
-    return opening_layers(iris.coverage, _OPENING)

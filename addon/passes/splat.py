@@ -1,4 +1,8 @@
-"""Splatting highlights: a disc each, in the shape of the opening, added up (methods 13)."""
+"""Splatting highlights: a disc each, in the shape of the opening, added up (methods 13).
+
+What the shape depends on beside the opening has a variant of the shader each: PROFILE (radial
+profile of a lens), RIMS (analytic vignetting), TILES (patterns of a real lens over the field).
+"""
 
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
@@ -11,11 +15,30 @@ SPLAT_PARAMS = UniformStruct("shared/splat_params.glsl", "SplatParams")
 
 _TEXTURES = ("sources_a_tx", "sources_b_tx", "tiles_tx", "masks_tx")
 _RAYS = ("layers_tx", "opacity_tx", "states_tx")
+VARIANTS = ("PROFILE", "RIMS", "TILES")
+MOST_RIMS = 4
+# Textures and varyings of the variants.
+_LOOK_TEXTURES = {
+    "PROFILE": (("FLOAT_2D_ARRAY", "profile_tx"),),
+    "RIMS": (("FLOAT_2D_ARRAY", "left_tx"),),
+    "TILES": (
+        ("FLOAT_2D_ARRAY", "sharp_tx"),
+        ("FLOAT_2D_ARRAY", "soft_tx"),
+        ("FLOAT_2D", "places_tx"),
+        ("FLOAT_2D_ARRAY", "left_tx"),
+    ),
+}
+_LOOK_VARYINGS = {
+    "PROFILE": (("FLAT FLOAT", "v_row"),),
+    "RIMS": (("FLAT VEC3", "v_left_lower"), ("FLAT VEC3", "v_left_upper")),
+    "TILES": (("FLAT FLOAT", "v_row"), ("FLAT VEC2", "v_tile_at"), ("FLAT FLOAT", "v_upright")),
+}
 
 
-def _info(casts):
+def _info(casts, variants):
     names = _TEXTURES + _RAYS * casts
     samplers = tuple(("FLOAT_2D", name) for name in names) + (("FLOAT_2D_ARRAY", "opening_tx"),)
+    samplers += tuple(texture for variant in variants for texture in _LOOK_TEXTURES[variant])
     uniforms = (("ViewParams", "view_buf"), ("SplatParams", "splat_buf"))
     uniforms += (("VisibilityParams", "visibility_buf"),) * casts
     structs = VIEW_PARAMS.source + SPLAT_PARAMS.source
@@ -32,15 +55,21 @@ def _info(casts):
             ("FLAT VEC4", "v_tile"),
             ("FLAT INT", "v_source"),
             ("FLAT FLOAT", "v_region"),
+            ("FLAT VEC2", "v_chief"),
+            *(varying for variant in variants for varying in _LOOK_VARYINGS[variant]),
         ),
         outputs=(("VEC4", "out_color"),),
         samplers=samplers,
         uniforms=uniforms,
-        defines=(("SOURCE_COLUMNS", str(COLUMNS)), *(("IN_SPLAT", "1"),) * casts),
+        defines=(
+            ("SOURCE_COLUMNS", str(COLUMNS)),
+            *(("IN_SPLAT", "1"),) * casts,
+            *((variant, "1") for variant in variants),
+        ),
     )
 
 
-def splat(square, count, textures, opening, view_buffer, splat_buffer, rays=None):
+def splat(square, count, textures, look, view_buffer, rays=None):
     """Add highlights to the bound frame buffer.
 
     Parameters
@@ -52,12 +81,10 @@ def splat(square, count, textures, opening, view_buffer, splat_buffer, rays=None
     textures : sequence of 4 GPUTexture
         The list of highlights (see `passes.highlights`), what becomes of each, and the atlas of
         masks (see `engine.bokeh_visibility`).
-    opening : GPUTexture
-        Array of `bokeh.opening.opening_layers`.
+    look : engine.bokeh_look.BokehLook
+        Shape of the discs, as ``variants``, ``textures`` and, for each wavelength, ``blocks``.
     view_buffer : GPUUniformBuf
         `ViewParams` of the frame.
-    splat_buffer : GPUUniformBuf
-        `SplatParams`.
     rays : tuple or None
         What sources without a mask cast rays through: layers, opacity and states (GPUTexture),
         and `VisibilityParams` (GPUUniformBuf).
@@ -65,7 +92,7 @@ def splat(square, count, textures, opening, view_buffer, splat_buffer, rays=None
     if count == 0:
         return
     state.additive()
-    shader = compile_shader(_info(rays is not None))
+    shader = compile_shader(_info(rays is not None, look.variants))
     shader.bind()
     for name, texture in zip(_TEXTURES, textures, strict=True):
         shader.uniform_sampler(name, texture)
@@ -73,7 +100,9 @@ def splat(square, count, textures, opening, view_buffer, splat_buffer, rays=None
         for name, texture in zip(_RAYS, rays[:3], strict=True):
             shader.uniform_sampler(name, texture)
         shader.uniform_block("visibility_buf", rays[3])
-    shader.uniform_sampler("opening_tx", opening)
+    for name, texture in look.textures:
+        shader.uniform_sampler(name, texture)
     shader.uniform_block("view_buf", view_buffer)
-    shader.uniform_block("splat_buf", splat_buffer)
-    square.draw_instanced(shader, instance_count=count)
+    for block in look.blocks:
+        shader.uniform_block("splat_buf", block)
+        square.draw_instanced(shader, instance_count=count)

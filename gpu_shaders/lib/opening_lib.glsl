@@ -21,16 +21,23 @@ vec3 opening_layer(sampler2DArray tx, vec2 place, float layer)
   return texture(tx, vec3(uv, layer)).rgb;
 }
 
-// Share of the light per unit of area at a place of the opening; the blur as OPENING_LEAST_BLUR.
-vec3 opening_density(sampler2DArray tx, vec2 place, float blur)
+// For a blur as OPENING_LEAST_BLUR, of `layers` layers: the lower of two, and the share of the upper.
+vec2 opening_layers(float layers, float blur)
 {
-  float top = float(textureSize(tx, 0).z - 1);
+  float top = layers - 1.0;
   float level = clamp(log2(max(blur, 1e-6) / OPENING_LEAST_BLUR), 0.0, top);
   float lower = min(floor(level), max(top - 1.0, 0.0));
   // Variances add up: the mixture has that of the blur.
-  float share = (exp2(2.0 * (level - lower)) - 1.0) / 3.0;
-  vec3 density = opening_layer(tx, place, lower);
-  return (share > 0.0) ? mix(density, opening_layer(tx, place, lower + 1.0), share) : density;
+  return vec2(lower, (exp2(2.0 * (level - lower)) - 1.0) / 3.0);
+}
+
+// Share of the light per unit of area at a place of the opening.
+vec3 opening_density(sampler2DArray tx, vec2 place, float blur)
+{
+  vec2 layers = opening_layers(float(textureSize(tx, 0).z), blur);
+  vec3 density = opening_layer(tx, place, layers.x);
+  return (layers.y > 0.0) ? mix(density, opening_layer(tx, place, layers.x + 1.0), layers.y) :
+                            density;
 }
 
 #endif

@@ -6,6 +6,7 @@
 // Source: methods 11, 13.
 #include "lib/opening_lib.glsl"
 #include "lib/visibility_lib.glsl"
+#include "lib/bokeh_look_lib.glsl"
 #ifdef IN_SPLAT
 #include "lib/source_lib.glsl"
 #endif
@@ -46,12 +47,64 @@ float region_weight(vec2 lens)
   return hat.x * hat.y;
 }
 
+#if defined(PROFILE) || defined(RIMS)
+// Density of one layer of blur, with the lens' profile and what the rims leave made up for.
+vec3 layer_density(float layer, vec3 left)
+{
+  vec3 density = opening_layer(opening_tx, v_place, layer);
+#ifdef PROFILE
+  float radius = length(v_place) / opening_extent(layer);
+  density *= profile_texel(profile_tx, radius, v_row, layer).rgb;
+#endif
+  return density / left;
+}
+#endif
+
+// Density per unit of area, and the place on the lens that the light has come through.
+vec3 disc_density(out vec2 lens)
+{
+  // Beyond the rim, what is blurred belongs to the rim.
+  lens = v_place / max(length(v_place), 1.0);
+#ifdef TILES
+  vec2 away = azimuth_of(v_chief);
+  vec3 light = tile_light(sharp_tx, soft_tx, v_place, v_blur, v_tile_at);
+  // The even disc that the pattern is blended with.
+  float edge = clamp(0.5 + (1.0 - length(v_place)) / max(v_blur, 1e-6), 0.0, 1.0);
+  light.x = mix(edge / 3.14159265, light.x, splat_buf.rows.w);
+  light.yz = mix(lens * v_upright, light.yz, splat_buf.rows.w);
+  lens = light.y * vec2(away.y, -away.x) + light.z * away;
+  lens /= max(length(lens), 1.0);
+  vec3 density = vec3(light.x);
+  return (splat_buf.field.w > 0.5) ? density * opening_density(opening_tx, lens, v_blur) : density;
+#elif defined(PROFILE) || defined(RIMS)
+  vec2 layers = opening_layers(float(textureSize(opening_tx, 0).z), v_blur);
+#ifdef RIMS
+  vec3 left_lower = v_left_lower;
+  vec3 left_upper = v_left_upper;
+#else
+  vec3 left_lower = vec3(1.0);
+  vec3 left_upper = vec3(1.0);
+#endif
+  vec3 density = layer_density(layers.x, left_lower);
+  if (layers.y > 0.0) {
+    density = mix(density, layer_density(layers.x + 1.0, left_upper), layers.y);
+  }
+#ifdef RIMS
+  for (int i = 0; i < int(splat_buf.field.y); i++) {
+    density *= rim_share(splat_buf.rims[i], v_place, v_chief, v_blur);
+  }
+#endif
+  return density;
+#else
+  return opening_density(opening_tx, v_place, v_blur);
+#endif
+}
+
 void main()
 {
-  vec3 density = v_density * opening_density(opening_tx, v_place, v_blur);
+  vec2 lens;
+  vec3 density = v_density * disc_density(lens);
   if (max(density.r, max(density.g, density.b)) > 0.0) {
-    // Beyond the rim, what is blurred belongs to the rim.
-    vec2 lens = v_place / max(length(v_place), 1.0);
     density *= seen_from(lens) * region_weight(lens);
   }
   out_color = vec4(density, 0.0);

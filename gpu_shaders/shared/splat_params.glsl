@@ -2,5 +2,12 @@
 struct SplatParams {
   vec4 opening;         // x: anamorphic ratio; y: side of the square that blurs as the pixel filter
                         // does, px; z: how far the opening reaches in units of its radius; w: regions
-                        // of the lens along a side that highlights are looked for from
+                        // of the lens along its width that sources stand for
+  vec4 rows;            // of the profile: x: w of the first row; y: 1 / (w of the last - of the first);
+                        // z: c0, px; w: strength
+  vec4 field;           // x: 1 / largest tangent of the tables over the field; y: number of rims;
+                        // z: rows of the light that rims leave; w: 1 if tiles are masked by the opening
+  vec4 rims[4];         // x: radius; y: shift for a tangent of 1; z: members; w unused
+  vec4 wavelength;      // rgb: its weights; w: 1 / focus distance, 1/m
+  vec4 lateral;         // x: scale of the picture; yzw unused
 };
