@@ -4,7 +4,8 @@ As in the reduction of a picture's mip levels, neighbours are merged level by le
 world space that stay where they are while the camera moves: a highlight does not change its
 company because the raster of pixels slides over the scene. The cells of level l have sides of
 ``2^l`` times a share of the circle of confusion in object space; the sources in a cell become one
-where that does no visible harm, else they go on as they are.
+where that does no visible harm, else they go on as they are. Instead of a horizontal and a vertical
+pass, each level has two with cells half a side apart: what a border parts meets in the other pass.
 
 What is merged has the sum of the energies, their mean place, and the extent of a square that
 spreads light as they did. Energies are added up as whole numbers: no order of the device's threads
@@ -64,7 +65,7 @@ _CELLS = _info(
     _GROUPS,
     _tables() + _SOURCES,
     (("table_img", _BOTH), ("slots_img", _WRITE)),
-    constants=(*_LEVEL, ("INT", "slots_mask")),
+    constants=(*_LEVEL, ("FLOAT", "shift"), ("INT", "slots_mask")),
 )
 _NEAREST = _info(
     "NEAREST", _GROUPS, _tables() + _SOURCES, (("nearest_img", _WRITE),), constants=_LEVEL
@@ -111,6 +112,21 @@ _WRITE_OUT = _info(
     ),
     ("PLACES",),
     parameters=False,
+)
+
+_SIDE = 8
+_SOFTEN = ShaderInfo(
+    name="aplanat_clusters_soften",
+    compute=shader_source.load("passes/clusters_soften_comp.glsl"),
+    typedefs=bokeh_culling.VISIBILITY_PARAMS.source + f"shared vec2 blurs[{_SIDE * _SIDE}];\n",
+    samplers=tuple(
+        ("FLOAT_2D", f"{name}_tx") for name in ("sources", "tiles", "states", "layers", "masks")
+    ),
+    images=(("R16F", "FLOAT_2D", "soft_img", ("WRITE",)),),
+    uniforms=(("VisibilityParams", "visibility_buf"),),
+    push_constants=(("INT", "count"),),
+    defines=(("SOURCE_COLUMNS", str(COLUMNS)),),
+    local_size=(_SIDE, _SIDE, 1),
 )
 
 
@@ -200,18 +216,44 @@ def cluster(sources, count, parameters, similarity):
         tables["number_0"].clear(format="UINT", value=(count,))
         # The last list that is written is `out`.
         lists = [(spare["a"], spare["b"]), (out["a"], out["b"])]
-        steps = [("CELLS", level) for level in range(1, similarity.levels + 1)]
-        steps += [("PAIRS", similarity.levels)] * similarity.pairs
-        for done, (kind, level) in enumerate(steps):
-            if done == similarity.levels and run.number() > MOST_PAIRED:
-                steps[done:] = [("CELLS", level)] * similarity.pairs
-                kind = "CELLS"
+        steps = [(level, shift) for level in range(1, similarity.levels + 1) for shift in (0.0, 0.5)]
+        cells = len(steps)
+        # None stands for pairs.
+        steps += [(similarity.levels, None)] * similarity.pairs
+        for done in range(len(steps)):
+            if done == cells and run.number() > MOST_PAIRED:
+                steps[done:] = [steps[0]] * similarity.pairs
+            level, shift = steps[done]
             target = lists[(len(steps) - done) % 2]
-            run.group(sources, kind, float(level))
+            run.group(sources, float(level), shift)
             run.merge(sources, target)
             sources = target
         # Also waits until the device has read the tables.
         return out, run.number()
+
+
+def soften(sources, count, visibility, soft):
+    """Blur the masks of merged sources as far as their parts see what hides them shifted.
+
+    Parameters
+    ----------
+    sources : GPUTexture
+        First texture of the list.
+    count : int
+    visibility : engine.bokeh_visibility.Visibility
+        With masks.
+    soft : GPUTexture
+        R16F, as large as the atlas; gets the blurred masks.
+    """
+    shader = compile_shader(_SOFTEN)
+    shader.bind()
+    shader.uniform_sampler("sources_tx", sources)
+    for name in ("tiles", "states", "layers", "masks"):
+        shader.uniform_sampler(f"{name}_tx", getattr(visibility, name))
+    shader.image("soft_img", soft)
+    shader.uniform_block("visibility_buf", visibility.parameters)
+    shader.uniform_int("count", count)
+    dispatch(shader, COLUMNS, -(-count // COLUMNS))
 
 
 class _Run:
@@ -238,14 +280,15 @@ class _Run:
         """Return how many sources there are."""
         return int(np.asarray(self._tables[f"number_{self._turn}"].read()).ravel()[0])
 
-    def group(self, sources, kind, level):
+    def group(self, sources, level, shift):
         """Say for every source which is the first of its group."""
         clear = ("sizes", "starts", "merged", "table", "marks")
         for name in clear:
             self._tables[name].clear(format="UINT", value=(0,))
         listed = tuple(zip(("a_tx", "b_tx"), sources, strict=True))
-        if kind == "CELLS":
-            self._step(_CELLS, listed, {"level": level, "slots_mask": self._slots - 1})
+        if shift is not None:
+            constants = {"level": level, "shift": shift, "slots_mask": self._slots - 1}
+            self._step(_CELLS, listed, constants)
             self._step(_COUNT)
         else:
             self._step(_NEAREST, listed, {"level": level}, nearest_img="slots")

@@ -46,12 +46,12 @@ int cluster_scale(float depth, float level, ClusterParams params)
 }
 
 // The cell of a source: which one along its axes, and the logarithm of its side with the region of
-// the lens. `source`: x, y, depth, m, and region.
-ivec4 cluster_cell(vec4 source, float level, ClusterParams params)
+// the lens. `source`: x, y, depth, m, and region; `shift`: of the cells, in sides.
+ivec4 cluster_cell(vec4 source, float level, float shift, ClusterParams params)
 {
   int scale = cluster_scale(source.z, level, params);
   vec3 world = (params.world * vec4(source.xy, -source.z, 1.0)).xyz;
-  vec3 cell = floor(CELL_AXES * world * ldexp(1.0, -scale) + CELL_SHIFT);
+  vec3 cell = floor(CELL_AXES * world * ldexp(1.0, -scale) + (CELL_SHIFT + shift));
   // Far from the origin, cells are no finer than the numbers.
   return ivec4(ivec3(clamp(cell, -1e9, 1e9)), scale + SCALES * int(source.w));
 }

@@ -3,7 +3,8 @@
 // each cell; whoever finds another cell's source in its place goes on to the next.
 // NEAREST: of a source, the nearest of all, or itself where none is near.
 // PAIRS: two that are nearest to each other.
-// Inputs: a_tx, b_tx (see highlights_comp); number_tx (how many); cluster_buf; level.
+// Inputs: a_tx, b_tx (see highlights_comp); number_tx (how many); cluster_buf; level; CELLS: shift of
+// the cells in sides.
 // Outputs: CELLS: table_img (first source + 1, 0 is empty), slots_img (place in it). NEAREST:
 // nearest_img. PAIRS: leaders_img, from nearest_tx.
 // Source: methods 9 (J20 section 4.2.2).
@@ -24,16 +25,21 @@ vec4 source_at(int index)
 #endif
 
 #ifdef CELLS
+ivec4 cell_at(int index)
+{
+  return cluster_cell(source_at(index), level, shift, cluster_buf);
+}
+
 void group_source(int index)
 {
-  ivec4 cell = cluster_cell(source_at(index), level, cluster_buf);
+  ivec4 cell = cell_at(index);
   uint slot = cluster_hash(cell) & uint(slots_mask);
   uint own = uint(index) + 1u;
   // There are twice as many slots as sources.
   for (uint tries = 0u; tries <= uint(slots_mask); tries++) {
     ivec2 texel = list_texel(int(slot));
     uint other = imageAtomicCompSwap(table_img, texel, 0u, own);
-    if (other == 0u || cluster_cell(source_at(int(other) - 1), level, cluster_buf) == cell) {
+    if (other == 0u || cell_at(int(other) - 1) == cell) {
       imageAtomicMin(table_img, texel, own);
       imageStore(slots_img, list_texel(index), uvec4(slot));
       return;
