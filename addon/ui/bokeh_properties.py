@@ -217,11 +217,10 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
     vignetting_strength: FloatProperty(
         name="Strength",
         description="How far the rims move until the corner of the picture, in radii of the"
-        " opening: 1 leaves a narrow eye there",
-        default=0.5,
+        " opening: 0.5 leaves a narrow eye there, 1 nothing",
+        default=0.3,
         min=0.0,
-        max=2.0,
-        soft_max=1.0,
+        max=1.0,
         subtype="FACTOR",
         **_SHARED,
     )
