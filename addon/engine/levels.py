@@ -137,9 +137,7 @@ def choose_levels(seen, triangles, plan, bias=0.0):
     front = (seen.nearest > 0.0) | plan.orthographic
     near, far = (coc_radius(np.where(front, d, 1.0), plan) for d in (seen.nearest, seen.farthest))
     smallest = np.where(near * far <= 0.0, 0.0, np.minimum(np.abs(near), np.abs(far)))
-    # An anamorphic opening is narrower than it is high.
-    narrowing = plan.lens_extent[0] / max(plan.lens_extent[1], 1e-30)
-    blur_area = np.pi * smallest**2 * narrowing
+    blur_area = np.pi * smallest**2 * _narrowing(plan)
     scale = plan.projection[1, 1] * plan.height / 2.0
     size = scale * seen.radius
     if not plan.orthographic:
@@ -148,6 +146,43 @@ def choose_levels(seen, triangles, plan, bias=0.0):
     ratio = blur_area / np.maximum(triangle_area, 1e-30)
     level = np.log2(np.maximum(ratio, 1e-30)) - bias
     return np.where(front & (smallest > 0.0), np.maximum(level, 0.0), 0.0)
+
+
+def blurred_area(depth, world, plan, bias):
+    """Return how large the triangles of an instance may be where it is blurred.
+
+    In the picture, a triangle that is seen at an average angle is then as large as the circle of
+    confusion, or smaller by the bias.
+
+    Parameters
+    ----------
+    depth : ndarray of shape (V,)
+        Of its vertices, m.
+    world : ndarray of shape (4, 4)
+        Object to world space.
+    plan : FramePlan
+    bias : float
+        Levels of detail.
+
+    Returns
+    -------
+    ndarray of shape (V,)
+        An area in object space; 0 in focus or behind the camera.
+    """
+    front = (depth > 0.0) | plan.orthographic
+    ahead = np.where(front, np.maximum(depth, 1e-9), 1.0)
+    circle = np.pi * coc_radius(ahead, plan) ** 2 * _narrowing(plan)
+    scale = plan.projection[1, 1] * plan.height / 2.0
+    pixels = np.full(len(depth), scale) if plan.orthographic else scale / ahead
+    # The mean over all directions of how an area is stretched and foreshortened.
+    stretch = np.abs(np.linalg.det(world[:3, :3])) ** (2.0 / 3.0) * 0.5
+    area = circle / np.maximum(pixels**2 * stretch, 1e-30)
+    return np.where(front, area * 2.0**-bias, 0.0)
+
+
+def _narrowing(plan):
+    # An anamorphic opening is narrower than it is high.
+    return plan.lens_extent[0] / max(plan.lens_extent[1], 1e-30)
 
 
 def level_for_sample(levels, sample, samples):

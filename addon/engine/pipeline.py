@@ -39,6 +39,7 @@ class FrameRenderer:
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
         self._content = self._levels = self._drawing = self._blur = None
+        self._graded = {}
         self._mattes = False
         self._targets = None
         self.restart(plan, snapshot)
@@ -60,7 +61,7 @@ class FrameRenderer:
         if (snapshot.content, mattes, levels) != (self._content, self._mattes, self._levels):
             self._content, self._mattes, self._levels = snapshot.content, mattes, levels
             target = surface.COLOR_AND_MATTES if mattes else surface.COLOR
-            self._drawing = SceneDrawing(snapshot.content, self._buffers, target)
+            self._drawing = SceneDrawing(snapshot.content, self._buffers, target, self._graded)
         self._drawing.aim(plan)
         self._view = uniform_buffer(_view_params(plan))
         world = snapshot.content.world
@@ -326,12 +327,12 @@ class FrameRenderer:
 
     def geometry_bytes(self):
         """Return how many bytes the meshes hold on the device."""
-        return self._buffers.geometry_bytes()
+        return self._buffers.geometry_bytes() + self._drawing.geometry_bytes()
 
     def release(self):
         """Give back to the device what nobody else holds; the renderer is of no use after it."""
         self._release_targets()
-        self._buffers = self._drawing = self._blur = None
+        self._buffers = self._drawing = self._blur = self._graded = None
 
     def _release_targets(self):
         if self._targets is not None:
