@@ -11,7 +11,7 @@ import numpy as np
 
 from ..device import context
 from ..device.geometry import MeshBuffers
-from .levels import LEAST_ALLOWANCE, blurred_area
+from .levels import LEAST_ALLOWANCE, LEAST_GRADED_TRIANGLES, blurred_area
 
 # Seconds a triangle of full detail: to make a graded mesh and bring it to the device, on a core at
 # 2 to 3 GHz; to draw, by a graphics device that manages 2 triangles a nanosecond, and by software
@@ -23,8 +23,6 @@ _DRAWING_IN_SOFTWARE = 3e-7
 # What may be given up any time, as the picture of a view that moves, is drawn at full detail until
 # the samples have cost as much as a graded mesh, but for so many at least.
 _LEAST_SAMPLES_BEFORE = 4
-# Smaller objects save less than the draw calls of their own that they need then.
-_LEAST_TRIANGLES = 10_000
 # Triangles left, over those of full detail, where that is not known yet.
 _USUAL_SHARE = 0.5
 # Of the graded meshes on the device, together.
@@ -90,7 +88,11 @@ class GradedDrawings:
             mesh = self._content.meshes[self._content.groups[group_of[row]].mesh]
             levels = self._buffers.levels.get(mesh.uid)
             count = len(mesh.triangles)
-            if count < _LEAST_TRIANGLES or not levels or not self._pays(count, 0.0, plan.samples):
+            if (
+                count < LEAST_GRADED_TRIANGLES
+                or not levels
+                or not self._pays(count, 0.0, plan.samples)
+            ):
                 continue
             world = self._content.instances.world[row].astype(np.float64)
             found = _Candidate(mesh, world, -(plan.view[2] @ world))

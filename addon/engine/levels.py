@@ -22,6 +22,10 @@ LEAST_ALLOWANCE = 0.5
 _ALLOWANCE, _CONTRAST = 1.5, 0.25
 _MOST_ALLOWANCE = 4.5
 
+# Smaller objects that are partly in focus save less by being coarser where they blur than the draw
+# calls of their own that they need then.
+LEAST_GRADED_TRIANGLES = 10_000
+
 # Triangles are counted once a side: half of them face away.
 _FACING_SHARE = 0.5
 
@@ -137,15 +141,43 @@ def choose_levels(seen, triangles, plan, bias=0.0):
     front = (seen.nearest > 0.0) | plan.orthographic
     near, far = (coc_radius(np.where(front, d, 1.0), plan) for d in (seen.nearest, seen.farthest))
     smallest = np.where(near * far <= 0.0, 0.0, np.minimum(np.abs(near), np.abs(far)))
-    blur_area = np.pi * smallest**2 * _narrowing(plan)
+    level = _level(smallest, seen, triangles, plan) - bias
+    return np.where(front, np.maximum(level, 0.0), 0.0)
+
+
+def may_grade(seen, triangles, plan):
+    """Return which instances may be drawn coarser where they are out of focus.
+
+    Parameters
+    ----------
+    seen : Extents
+    triangles : ndarray of shape (I,)
+        Of the mesh at full detail.
+    plan : FramePlan
+
+    Returns
+    -------
+    ndarray of shape (I,)
+        bool; large ones of which a part is blurred enough for another level of detail.
+    """
+    near = np.where(plan.orthographic, seen.nearest, np.maximum(seen.nearest, 1e-9))
+    ends = (coc_radius(near, plan), coc_radius(np.maximum(seen.farthest, near), plan))
+    level = _level(np.abs(ends).max(axis=0), seen, triangles, plan)
+    level -= plan.level_bias + LEAST_ALLOWANCE
+    reaches = plan.orthographic | (seen.farthest > 0.0)
+    return (triangles >= LEAST_GRADED_TRIANGLES) & reaches & (level >= 1.0)
+
+
+def _level(radius, seen, triangles, plan):
+    """Return the level whose triangles are as large as circles of confusion; it may be negative."""
+    blur_area = np.pi * radius**2 * _narrowing(plan)
     scale = plan.projection[1, 1] * plan.height / 2.0
     size = scale * seen.radius
     if not plan.orthographic:
         size = size / np.maximum(seen.center_depth, 1e-9)
     triangle_area = np.pi * size**2 / np.maximum(_FACING_SHARE * triangles, 1e-9)
     ratio = blur_area / np.maximum(triangle_area, 1e-30)
-    level = np.log2(np.maximum(ratio, 1e-30)) - bias
-    return np.where(front & (smallest > 0.0), np.maximum(level, 0.0), 0.0)
+    return np.log2(np.maximum(ratio, 1e-30))
 
 
 def blurred_area(depth, world, plan, bias):
@@ -170,7 +202,7 @@ def blurred_area(depth, world, plan, bias):
         An area in object space; 0 in focus or behind the camera.
     """
     front = (depth > 0.0) | plan.orthographic
-    ahead = np.where(front, np.maximum(depth, 1e-9), 1.0)
+    ahead = np.where(front, depth, 1.0)
     circle = np.pi * coc_radius(ahead, plan) ** 2 * _narrowing(plan)
     scale = plan.projection[1, 1] * plan.height / 2.0
     pixels = np.full(len(depth), scale) if plan.orthographic else scale / ahead
@@ -214,7 +246,7 @@ def allowances(content):
 
 
 def meshes_with_levels(content, plan):
-    """Return which meshes are drawn at a lower level of detail, if they have any.
+    """Return which meshes are drawn at a lower level of detail, if they have any, or in part.
 
     Parameters
     ----------
@@ -235,10 +267,11 @@ def meshes_with_levels(content, plan):
     for group, mesh in zip(content.groups, meshes, strict=True):
         full[group.first : group.first + group.count] = len(mesh.triangles)
     chosen = choose_levels(seen, full, plan, plan.level_bias + allowances(content))
+    coarser = (chosen > 0.0) | may_grade(seen, full, plan)
     wanted = {
         mesh.uid
         for group, mesh in zip(content.groups, meshes, strict=True)
         if len(mesh.triangles) >= 2 * plan.least_triangles
-        and (chosen[group.first : group.first + group.count] > 0.0).any()
+        and coarser[group.first : group.first + group.count].any()
     }
     return [uid for uid in content.meshes if uid in wanted]

@@ -55,7 +55,7 @@ def pictures(snapshot, mesh, levels):
 @pytest.fixture
 def plain(monkeypatch):
     """Draw without grading from here on."""
-    return lambda: monkeypatch.setattr(graded_drawings, "_LEAST_TRIANGLES", np.inf)
+    return lambda: monkeypatch.setattr(graded_drawings, "LEAST_GRADED_TRIANGLES", np.inf)
 
 
 @pytest.mark.parametrize("reuse_grid", [0, 2])
