@@ -11,13 +11,13 @@ which is `1/d_f = 1/d_hat + 1/F(lambda) - 1/F_hat`. Over the field, `F(lambda)` 
 The reference is the longest wavelength in use. Wavelengths are in nm, lengths in m.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..errors import InputError
 from .equalizer import FLAT, SpectralEqualizer
-from .field_maps import STANDARD, FieldMap
+from .field_maps import LIMIT, STANDARD, FieldMap
 
 RGB_WAVELENGTHS_NM = (650.0, 510.0, 475.0)
 SPECTRAL_RANGE_NM = (380.0, 780.0)
@@ -73,6 +73,11 @@ class Dispersion:
         if reference_nm is None:
             return ratio / self.focal_ratio[-1]
         return ratio / self._interpolate(reference_nm)
+
+    @property
+    def disperses(self):
+        """Whether the focal length depends on the wavelength at all."""
+        return float(np.ptp(self.focal_ratio)) > 1.0e-9
 
     def _interpolate(self, wavelengths_nm):
         # Cubic through the four nearest points: the error for a glass is below 1e-8.
@@ -277,10 +282,53 @@ class ChromaticAberration:
         field_value = self.lateral_map(t, theta)
         return lateral_scale(wavelengths_nm, self.reference_nm, self.lateral, field_value)
 
-    def without_field(self):
-        """Return the aberration with both maps as on the axis, for comparisons."""
-        none = FieldMap("CURVE", curve_f=(0.0, 0.0))
-        return replace(self, axial_map=none, lateral_map=none)
+    def problems(self, focus):
+        """Tell what is asked for and cannot be given.
+
+        Parameters
+        ----------
+        focus : float
+            Focus distance in m.
+
+        Returns
+        -------
+        tuple of str
+            One sentence each.
+        """
+        found = []
+        wavelengths = np.array(RGB_WAVELENGTHS_NM)
+        if self.mode == "SPECTRAL":
+            wavelengths = np.linspace(*self.wavelength_range, 41)
+            if not self.equalizer(np.linspace(*self.wavelength_range, 2001)).any():
+                found.append(
+                    "the spectral equalizer leaves no light in the wavelength range; all"
+                    " wavelengths count alike"
+                )
+        if self.axial != 0.0 and not self.dispersion.disperses:
+            found.append("the lens' glasses have no known dispersion: no axial aberration")
+        for name, strength, field_map in (
+            ("axial", self.axial, self.axial_map),
+            ("lateral", self.lateral, self.lateral_map),
+        ):
+            if strength != 0.0 and field_map.clamped:
+                found.append(
+                    f"the {name} field map {field_map.text} is singular in the picture; its"
+                    f" values are clamped to {LIMIT:g}"
+                )
+        t, theta = np.linspace(0.0, 1.0, 33), np.linspace(-np.pi, np.pi, 17)[:, None]
+        places = (wavelengths[:, None, None], t, theta)
+        at = self.focal_lengths(*places)
+        if self.axial != 0.0 and beyond_infinity(focus, self.focal_length, at).any():
+            found.append(
+                "the axial aberration would focus some wavelengths beyond infinity (equation 4.6);"
+                " they are focused at infinity"
+            )
+        if np.any(self.lateral_scales(*places) <= LEAST_SCALE):
+            found.append(
+                "the lateral aberration would turn the picture inside out; it is kept at"
+                f" {LEAST_SCALE:g} of its size"
+            )
+        return tuple(found)
 
 
 def chromatic_focus(focus, focal_length, focal_length_at):

@@ -204,8 +204,10 @@ def composed_text(f, g):
 
 
 STANDARD = FieldMap()
-# Name, axial map, lateral map. "Standard" and "Showcase" are those of the dissertation's figures
-# 4.9; the others are the combinations that its text describes for figure 4.10.
+# Name, axial map, lateral map. "Standard" and "Showcase" are those of the dissertation's figure 4.9;
+# five are what its text tells of figure 4.10 a to e, whose maps are only drawn there: spread from
+# the centre, decreasing and negative, steep with angular, angular with exponential, linear with
+# angular. "Centre" is its example exp(1 - t).
 FIELD_PRESETS = {
     "STANDARD": ("Standard", FieldMap(), FieldMap()),
     "SHOWCASE": (
@@ -213,10 +215,57 @@ FIELD_PRESETS = {
         FieldMap("ONE_MINUS", "RECIPROCAL"),
         FieldMap("ONE_MINUS", "RECIPROCAL"),
     ),
-    "SPREAD": ("Spread", FieldMap("T2"), FieldMap("EXP")),
-    "PERIPHERY": ("Periphery", FieldMap("ONE_MINUS"), FieldMap("ONE_MINUS", "EXP")),
-    "STEEP": ("Steep", FieldMap("EXP"), FieldMap("T_COS_THETA")),
-    "WHEEL": ("Wheel", FieldMap("COS_THETA"), FieldMap("T3", "EXP")),
-    "BUTTERFLY": ("Butterfly", FieldMap("T3"), FieldMap("COS_THETA")),
+    "SPREAD": ("Spread", FieldMap("T2"), FieldMap("T2", "EXP")),
+    "REVERSED": ("Reversed", FieldMap("ONE_MINUS"), FieldMap("EXP", "ONE_MINUS")),
+    "STEEP": ("Steep", FieldMap("EXP"), FieldMap("COS_THETA")),
+    "WHEEL": ("Wheel", FieldMap("COS_THETA"), FieldMap("EXP")),
+    "BUTTERFLY": ("Butterfly", FieldMap(), FieldMap("T_COS_THETA")),
+    "CENTRE": ("Centre", FieldMap("T3"), FieldMap("ONE_MINUS", "EXP")),
     "RINGS": ("Rings", FieldMap("COS_T"), FieldMap("COS_T")),
 }
+
+
+def field_corner(projection, orthographic=False):
+    """Return how far out the outermost corner of a picture is.
+
+    Parameters
+    ----------
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the whole picture, OpenGL convention.
+    orthographic : bool
+
+    Returns
+    -------
+    float
+        Angle of its chief ray with the axis, in radians; its distance from the axis in m for an
+        orthographic camera, whose chief rays do not tilt.
+    """
+    corners = np.array([[x, y, -1.0, 1.0] for x in (-1.0, 1.0) for y in (-1.0, 1.0)])
+    points = corners @ np.linalg.inv(np.asarray(projection, np.float64)).T
+    return float(_tilt(points[:, :3] / points[:, 3:], orthographic).max())
+
+
+def field_coordinates(points, corner, orthographic=False):
+    """Return where points lie in the field.
+
+    Parameters
+    ----------
+    points : ndarray of shape (..., 3)
+        In camera space, which looks along -z; in m.
+    corner : float
+        As `field_corner` returns it.
+    orthographic : bool
+
+    Returns
+    -------
+    t, theta : ndarray of shape (...)
+        t is at most 1; theta in radians from -pi to pi, 0 on the axis.
+    """
+    points = np.asarray(points, np.float64)
+    t = np.minimum(_tilt(points, orthographic) / corner, 1.0)
+    return t, np.arctan2(points[..., 1], points[..., 0])
+
+
+def _tilt(points, orthographic):
+    away = np.hypot(points[..., 0], points[..., 1])
+    return away if orthographic else np.arctan2(away, -points[..., 2])

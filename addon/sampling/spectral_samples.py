@@ -3,6 +3,13 @@
 Each sample is drawn at one wavelength and added to each channel with its own weight; the sums are
 divided by the channel's summed weights, whichever samples have been added so far. A neutral area,
 which looks the same at every wavelength, is therefore exactly neutral after any number of them.
+
+Samples come in groups of three that share their places on the lens and in the pixel: in the RGB
+mode one for each channel, else with wavelengths a third of the density apart. Blurred edges without a fringe then have the same places in all three channels.
+Against a place of its own for each sample that leaves, measured over blurred edges and lines of
+three widths of fringe, the error of a channel as it is (0.85 to 1.05 times, 16 to 510 samples), but
+a quarter of the colour noise where there is no fringe, and two thirds where there is one. What is
+left is noise of brightness, which is seen less.
 """
 
 from dataclasses import dataclass
@@ -14,6 +21,8 @@ from .halton import halton
 from .spectrum import color_matching, xyz_to_rgb
 
 WAVELENGTH_BASE = 11
+# Samples that share their places.
+GROUP = 3
 # Share of a channel's light that comes evenly from all wavelengths: too little to be seen, but a
 # channel is never without light, be it after the first sample or under an equalizer that leaves
 # nothing of its colour.
@@ -40,7 +49,7 @@ class SpectralSamples:
     lens_indices: np.ndarray
 
 
-def wavelengths_for(aberration, count, seed=0):
+def wavelengths_for(aberration, count, seed=0, importance=True):
     """Choose wavelength and colour of each sample.
 
     Parameters
@@ -49,6 +58,8 @@ def wavelengths_for(aberration, count, seed=0):
     count : int
     seed : int
         0 is the plain sequence; others rotate it.
+    importance : bool
+        False: wavelengths of the spectral mode are drawn evenly and only weighted, for comparisons.
 
     Returns
     -------
@@ -56,22 +67,19 @@ def wavelengths_for(aberration, count, seed=0):
         The samples of a smaller count are the first ones of a larger; only the factor that makes
         the channels' sums N differs.
     """
+    index = np.arange(count)
+    group, member = index // GROUP, index % GROUP
     if aberration.mode == "RGB":
-        return _rgb_samples(count)
+        weights = np.where(np.arange(3) == member[:, None], 1.0, _EVEN_SHARE_RGB)
+        return SpectralSamples(np.array(RGB_WAVELENGTHS_NM)[member], normalized(weights), group)
     density = channel_density(
-        aberration.wavelength_range, aberration.equalizer, aberration.primaries
+        aberration.wavelength_range, aberration.equalizer, aberration.primaries, importance
     )
     shift = 0.5 if seed == 0 else 0.5 + np.random.default_rng([seed, 3]).random(1)
-    uniform = halton(0, count, (WAVELENGTH_BASE,), shift)[:, 0]
-    wavelengths, weights = density.draw(uniform)
-    return SpectralSamples(wavelengths, normalized(weights), np.arange(count))
-
-
-def _rgb_samples(count):
-    index = np.arange(count)
-    weights = np.where(np.arange(3) == index[:, None] % 3, 1.0, _EVEN_SHARE_RGB)
-    wavelengths = np.array(RGB_WAVELENGTHS_NM)[index % 3]
-    return SpectralSamples(wavelengths, normalized(weights), index // 3)
+    # Modulo a third, base 11 fills a group's third evenly: each run of 33 samples is a grid.
+    uniform = halton(0, -(-count // GROUP), (WAVELENGTH_BASE,), shift)[group, 0]
+    wavelengths, weights = density.draw(np.mod(uniform + member / GROUP, 1.0))
+    return SpectralSamples(wavelengths, normalized(weights), group)
 
 
 def normalized(weights):
@@ -131,7 +139,9 @@ def channel_density(wavelength_range, equalizer, primaries, importance=True):
     """Return the density that gives all channels as little noise as they can have together.
 
     A channel's variance is the integral of its squared light over the density. The density that
-    makes the sum of the three least is the root of the sum of their squares.
+    makes the sum of the three least is the root of the sum of their squares. Over the whole visible
+    range, each channel then has 0.38 to 0.41 of the samples' worth; drawn evenly it were 0.19 to
+    0.25.
 
     Parameters
     ----------
