@@ -4,7 +4,7 @@ Decides, from the plan, at which level of detail each instance is drawn for each
 samples share a drawing.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
@@ -33,6 +33,10 @@ class DrawingCounts:
     triangles_full_detail: int = 0
     sprites_drawn: int = 0
     sprites_copied: int = 0
+
+    def __add__(self, other):
+        """Return the work of both."""
+        return DrawingCounts(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
 
 
 class SceneDrawing:
@@ -84,17 +88,21 @@ class SceneDrawing:
         self._unshared |= {d.group for d in self._glows}
         self._shared = SharedDrawings("MATTES" in target.defines)
 
-    def aim(self, plan):
+    def aim(self, plan, wavelengths=None):
         """Prepare a frame: levels, shared drawings, order of the instances.
 
         Parameters
         ----------
         plan : FramePlan
+        wavelengths : callable, optional
+            From a sample, or None for the reference wavelength, to its
+            `passes.chromatic.ChromaticSample`; for a target of `surface.in_wavelengths`.
         """
         self._plan = plan
+        self._wavelengths = wavelengths or (lambda _sample: None)
         self.counts = DrawingCounts()
         self._visible = culling.seen(self._spheres, plan)
-        seen = extents(self._corners, plan.view)
+        seen = extents(self._corners, plan.view, plan.chromatic)
         self.nearest = float(seen.nearest[self._visible].min(initial=np.inf))
         self.levels = self._choose_levels(seen)
         self._shared.forget()
@@ -175,11 +183,11 @@ class SceneDrawing:
         draws = self._by_level.get((int(self._group_of[row]), int(level)), ())
         return [replace(draw, first=place, count=1) for draw in draws]
 
-    def _draw(self, listed, view, lens_sample, index):
+    def _draw(self, listed, view, lens_sample, index, wavelength):
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         state.opaque()
-        surface.draw_sample(listed, view, self._table, lens_sample, index)
+        surface.draw_sample(listed, view, self._table, lens_sample, index, wavelength=wavelength)
 
     def draw(self, index, framebuffer, view, targets):
         """Draw the opaque surfaces for a lens sample.
@@ -200,11 +208,14 @@ class SceneDrawing:
                 level = level_for_sample(self.levels[row], index, plan.samples)
                 listed += self._of_row(row, level)
         with framebuffer.bind():
-            self._draw(listed, view, plan.lens_sample(index), index)
+            wavelength = self._wavelengths(index)
+            self._draw(listed, view, plan.lens_sample(index), index, wavelength)
 
         def draw_parent(sprite):
             drawn = self._of_row(sprite.row, sprite.level)
-            self._draw(drawn, view, plan.lens_sample(sprite.parent), sprite.parent)
+            parent = sprite.parent
+            wavelength = self._wavelengths(parent)
+            self._draw(drawn, view, plan.lens_sample(parent), parent, wavelength)
 
         before = shared.drawn + shared.copied
         shared.copy(index, framebuffer, targets, draw_parent)
@@ -218,7 +229,8 @@ class SceneDrawing:
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         with framebuffer.bind():
-            surface.draw_glows(listed, view, self._table, self._plan.lens_sample(index))
+            lens_sample, wavelength = self._plan.lens_sample(index), self._wavelengths(index)
+            surface.draw_glows(listed, view, self._table, lens_sample, wavelength)
 
     def draw_coarsest(self, framebuffer, view):
         """Draw everything at its coarsest level, from the lens' centre, for its depth alone."""
@@ -231,7 +243,7 @@ class SceneDrawing:
         for row in self._shared.rows:
             coarsest += self._of_row(row, len(self._triangles_of(row)) - 1)
         with framebuffer.bind():
-            self._draw(coarsest, view, (0.0, 0.0, 0.0, 0.0), 0)
+            self._draw(coarsest, view, (0.0, 0.0, 0.0, 0.0), 0, self._wavelengths(None))
 
     def specs(self):
         """Return the targets that drawing needs beside the sample's."""

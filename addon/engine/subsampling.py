@@ -20,16 +20,24 @@ class SubsampleBlur:
     plan : FramePlan
     nearest : float
         Least depth of anything that can be seen, m.
+    wavelengths : callable, optional
+        From a sample to its `passes.chromatic.ChromaticSample`, with chromatic aberration.
     """
 
-    def __init__(self, plan, nearest):
+    def __init__(self, plan, nearest, wavelengths=None):
         self._plan = plan
+        self._wavelengths = wavelengths
+        self._sweep, self._gain = plan.sweep, None
+        if wavelengths:
+            self._sweep, self._gain = plan.sweep_parts
         self._nearest = float(self._window_depth(max(nearest, 0.0)))
         offsets = np.zeros((*plan.subsample_offsets.shape[:2], 4))
         offsets[..., :2] = plan.subsample_offsets
         self._offsets = texture_2d(offsets)
         self._spread = np.abs(plan.subsample_offsets).max(axis=(0, 1))
         blur = max(abs(self._coc(self._nearest)), abs(self._coc(1.0)))
+        if wavelengths:
+            blur += self._largest_growth()
         self._layers = nbuffer.layers(min(blur + 1.0, max(plan.width, plan.height)))
 
     def _window_depth(self, depth):
@@ -38,8 +46,21 @@ class SubsampleBlur:
         return np.clip(clip[2] / max(clip[3], 1e-9) * 0.5 + 0.5, 0.0, 1.0)
 
     def _coc(self, window_depth):
-        sweep = self._plan.sweep
-        return np.abs(self._plan.lens_extent * (sweep[:2] + sweep[2:] * window_depth)).max()
+        sweeps = [self._sweep]
+        if self._wavelengths:
+            sweeps = [
+                self._sweep + self._gain * focus
+                for focus in self._plan.chromatic.overall().inverse_focus
+            ]
+        return max(
+            np.abs(self._plan.lens_extent * (sweep[:2] + sweep[2:] * window_depth)).max()
+            for sweep in sweeps
+        )
+
+    def _largest_growth(self):
+        chromatic = self._plan.chromatic
+        share = np.abs(chromatic.overall().scale - 1.0).max()
+        return share * chromatic.radius / np.abs(chromatic.raster[:2]).min()
 
     def specs(self):
         """Return the targets that it needs beside the sample's."""
@@ -63,9 +84,11 @@ class SubsampleBlur:
             nbuffer.draw_bounds(
                 fullscreen,
                 targets["depth_levels"],
-                plan.sweep,
+                self._sweep,
                 plan.lens_extent,
                 (self._nearest, 1.0),
+                self._gain,
+                self._wavelengths and self._wavelengths(0),
             )
 
     def add(self, fullscreen, targets, index):
@@ -81,9 +104,11 @@ class SubsampleBlur:
         subsample.blur(
             fullscreen,
             (targets["sample"], targets["sample_depth"], targets["blur_bounds"], self._offsets),
-            sweep=plan.sweep,
+            sweep=self._sweep,
             spread=self._spread,
             weight=float(plan.subpixel_weights[index].prod()),
             index=index,
             count=int(plan.subsample_counts[index]),
+            gain=self._gain,
+            wavelength=self._wavelengths and self._wavelengths(index),
         )
