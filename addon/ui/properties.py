@@ -10,6 +10,7 @@ from bpy.props import (
 )
 
 from .camera_properties import AplanatCameraSettings
+from .chromatic_properties import AplanatChromaticSettings
 
 # Also what the command line accepts.
 MAX_SAMPLES = 65536
@@ -184,7 +185,12 @@ class AplanatViewLayerSettings(bpy.types.PropertyGroup):
     )
 
 
-CLASSES = (AplanatSceneSettings, AplanatViewLayerSettings, AplanatCameraSettings)
+CLASSES = (
+    AplanatSceneSettings,
+    AplanatViewLayerSettings,
+    AplanatChromaticSettings,
+    AplanatCameraSettings,
+)
 
 _register, _unregister = bpy.utils.register_classes_factory(CLASSES)
 
