@@ -1,4 +1,4 @@
-"""Dispersion of a glass of the catalogue, or of a lens, for the chromatic aberration of a camera."""
+"""Dispersion of a catalogue glass or of a lens, for the chromatic aberration of a camera."""
 
 from functools import lru_cache
 

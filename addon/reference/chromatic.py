@@ -37,4 +37,5 @@ def displaced(points, lens_xy, wavelength_nm, aberration, focus, corner, orthogr
     scale = aberration.lateral_scales(wavelength_nm, t, theta)
     defocus = (1.0 + points[..., 2] / focus_at)[..., None]
     xy = points[..., :2] * scale[..., None] - np.asarray(lens_xy) * defocus
-    return np.concatenate([xy, np.broadcast_to(points[..., 2:], (*xy.shape[:-1], 1))], axis=-1)
+    z = np.broadcast_to(points[..., 2:], (*xy.shape[:-1], 1))
+    return np.concatenate([xy, z], axis=-1)

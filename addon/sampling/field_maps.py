@@ -111,7 +111,7 @@ class FieldMap:
 
     @property
     def text(self):
-        """The map as a formula."""
+        """The map as a formula, for people."""
         return composed_text(self.f, self.g)
 
     def table(self, size_t=256, size_theta=128):
@@ -143,7 +143,7 @@ class FieldMap:
 
 def _atom(name, value, theta, curve):
     """Return an atom's value, and where it is clamped."""
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         if name == "T2":
             result = value**2
         elif name == "T3":
@@ -153,8 +153,8 @@ def _atom(name, value, theta, curve):
         elif name == "ONE_MINUS":
             result = 1.0 - value
         elif name == "RECIPROCAL":
-            # Whatever the sign of zero: a tilt comes from the positive side.
-            result = 1.0 / np.where(value == 0.0, 0.0, value)
+            # Whatever the sign of a zero: a tilt comes from the positive side.
+            result = 1.0 / (value + 0.0)
         elif name == "COS_T":
             result = np.cos(2.0 * np.pi * value)
         elif name == "COS_THETA":
@@ -191,8 +191,10 @@ def composed_text(f, g):
     if g == "EXP":
         return f"exp({inner})"
     if g == "COS_T":
-        return f"cos(2\u03c0 ({inner}))" if f != "IDENTITY" else ATOMS[g]
-    wrapped = inner if f == "IDENTITY" else f"({inner})"
+        return ATOMS[g] if f == "IDENTITY" else f"cos(2\u03c0 ({inner}))"
+    # Sums and fractions need brackets, and powers under powers.
+    open_term = f in {"ONE_MINUS", "RECIPROCAL", "T_COS_THETA"}
+    wrapped = f"({inner})" if open_term or (f in {"T2", "T3"} and g in {"T2", "T3"}) else inner
     patterns = {
         "T2": "{}\u00b2",
         "T3": "{}\u00b3",
@@ -204,10 +206,10 @@ def composed_text(f, g):
 
 
 STANDARD = FieldMap()
-# Name, axial map, lateral map. "Standard" and "Showcase" are those of the dissertation's figure 4.9;
-# five are what its text tells of figure 4.10 a to e, whose maps are only drawn there: spread from
-# the centre, decreasing and negative, steep with angular, angular with exponential, linear with
-# angular. "Centre" is its example exp(1 - t).
+# Name, axial map, lateral map. "Standard" and "Showcase" are those of the dissertation's figure
+# 4.9. Five are what its text tells of figure 4.10 a to e, whose maps are only drawn there: spread
+# from the centre, decreasing and negative, steep with angular, angular with exponential, linear
+# with angular. "Centre" is its example exp(1 - t).
 FIELD_PRESETS = {
     "STANDARD": ("Standard", FieldMap(), FieldMap()),
     "SHOWCASE": (
