@@ -17,7 +17,7 @@ import numpy as np
 
 from ..errors import InputError
 from .equalizer import FLAT, SpectralEqualizer
-from .field_maps import LIMIT, STANDARD, FieldMap
+from .field_maps import STANDARD, FieldMap
 
 RGB_WAVELENGTHS_NM = (650.0, 510.0, 475.0)
 SPECTRAL_RANGE_NM = (380.0, 780.0)
@@ -283,13 +283,13 @@ class ChromaticAberration:
         field_value = self.lateral_map(t, theta)
         return lateral_scale(wavelengths_nm, self.reference_nm, self.lateral, field_value)
 
-    def problems(self, focus):
-        """Tell what is asked for and cannot be given.
+    def problems(self, focus=None):
+        """Tell what the strengths ask for and cannot be given.
 
         Parameters
         ----------
-        focus : float
-            Focus distance in m.
+        focus : float or None
+            Focus distance in m; None where nothing is out of focus.
 
         Returns
         -------
@@ -297,37 +297,21 @@ class ChromaticAberration:
             One sentence each.
         """
         found = []
-        wavelengths = np.array(RGB_WAVELENGTHS_NM)
-        if self.mode == "SPECTRAL":
-            wavelengths = np.linspace(*self.wavelength_range, 41)
-            if not self.equalizer(np.linspace(*self.wavelength_range, 2001)).any():
-                found.append(
-                    "the spectral equalizer leaves no light in the wavelength range; all"
-                    " wavelengths count alike"
-                )
-        if self.axial != 0.0 and not self.dispersion.disperses:
-            found.append("the lens' glasses have no known dispersion: no axial aberration")
-        for name, strength, field_map in (
-            ("axial", self.axial, self.axial_map),
-            ("lateral", self.lateral, self.lateral_map),
-        ):
-            if strength != 0.0 and field_map.clamped:
-                found.append(
-                    f"the {name} field map {field_map.text} is singular in the picture; its"
-                    f" values are clamped to {LIMIT:g}"
-                )
-        t, theta = np.linspace(0.0, 1.0, 33), np.linspace(-np.pi, np.pi, 17)[:, None]
+        spectral = np.linspace(*self.wavelength_range, 41)
+        wavelengths = np.array(RGB_WAVELENGTHS_NM) if self.mode == "RGB" else spectral
+        t, theta = np.linspace(0.0, 1.0, 33)[:, None], np.linspace(-np.pi, np.pi, 9)
         places = (wavelengths[:, None, None], t, theta)
-        at = self.focal_lengths(*places)
-        if self.axial != 0.0 and beyond_infinity(focus, self.focal_length, at).any():
-            found.append(
-                "the axial aberration would focus some wavelengths beyond infinity (equation 4.6);"
-                " they are focused at infinity"
-            )
+        if focus is not None:
+            lengths = self.focal_lengths(*places)
+            if beyond_infinity(focus, self.focal_length, lengths).any():
+                found.append(
+                    "its axial strength would focus some colors beyond infinity; they are focused"
+                    " at infinity"
+                )
         if np.any(self.lateral_scales(*places) <= LEAST_SCALE):
             found.append(
-                "the lateral aberration would turn the picture inside out; it is kept at"
-                f" {LEAST_SCALE:g} of its size"
+                "its lateral strength would turn some colors inside out; they are drawn at"
+                f" {LEAST_SCALE:g} of their size"
             )
         return tuple(found)
 

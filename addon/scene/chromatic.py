@@ -8,11 +8,9 @@ import numpy as np
 from ..errors import AplanatError, GlassNotFoundError
 from ..lens_io.dispersion import DEFAULT_GLASS, glass_dispersion, lens_dispersion
 from ..sampling.chromatic import (
-    RGB_WAVELENGTHS_NM,
     SPECTRAL_RANGE_NM,
     WIDEST_RANGE_NM,
     ChromaticAberration,
-    beyond_infinity,
 )
 from ..sampling.equalizer import FLAT, SpectralEqualizer
 from ..sampling.field_maps import LIMIT, LINEAR_CURVE, FieldMap
@@ -75,9 +73,7 @@ def describe_chromatic(camera, real_lens, focus=None):
         primaries,
     )
     problems += range_problems + equalizer_problems + space_problems
-    if focus is not None:
-        problems += _focus_problems(aberration, focus)
-    return aberration, problems
+    return aberration, problems + _problems(aberration, focus)
 
 
 def read_field_map(settings, which):
@@ -104,6 +100,7 @@ def read_field_map(settings, which):
 
 _field_map = lru_cache(maxsize=64)(FieldMap)
 _aberration = lru_cache(maxsize=16)(ChromaticAberration)
+_problems = lru_cache(maxsize=64)(ChromaticAberration.problems)
 
 
 @lru_cache(maxsize=16)
@@ -187,16 +184,3 @@ def _read_primaries():
     if primaries is None:
         return LINEAR_REC709, (f"working space '{space}' is not known; its colors are Rec.709's",)
     return primaries, ()
-
-
-@lru_cache(maxsize=64)
-def _focus_problems(aberration, focus):
-    spectral = np.linspace(*aberration.wavelength_range, 41)
-    used = np.array(RGB_WAVELENGTHS_NM) if aberration.mode == "RGB" else spectral
-    t, theta = np.linspace(0.0, 1.0, 33)[:, None], np.linspace(-np.pi, np.pi, 9)
-    lengths = aberration.focal_lengths(used[:, None, None], t, theta)
-    if not beyond_infinity(focus, aberration.focal_length, lengths).any():
-        return ()
-    return (
-        "its axial strength would focus some colors beyond infinity; they are focused at infinity",
-    )

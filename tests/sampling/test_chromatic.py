@@ -18,7 +18,6 @@ from addon.sampling.chromatic import (
     dispersion_of_glass,
     lateral_scale,
 )
-from addon.sampling.equalizer import band
 from addon.sampling.field_maps import FieldMap
 
 # N-BK7, Schott's data sheet: B1 to B3, then C1 to C3 in um^2.
@@ -127,7 +126,9 @@ def test_condition_4_6_is_kept_and_reported():
     np.testing.assert_allclose(distances, 40.0 * FARTHEST_FOCUS)
     assert beyond_infinity(40.0, FOCAL_LENGTH, FOCAL_LENGTH * 1.02)
     assert not beyond_infinity(0.4, FOCAL_LENGTH, FOCAL_LENGTH * 1.02)
-    assert any("beyond infinity" in problem for problem in model.problems(40.0))
+    (problem,) = model.problems(40.0)
+    assert "beyond infinity" in problem
+    assert model.problems() == ()
     # Continuous up to the limit: the distance grows until it is there.
     lengths = FOCAL_LENGTH * np.linspace(1.0, 1.01, 2001)
     grown = chromatic_focus(40.0, FOCAL_LENGTH, lengths)
@@ -142,25 +143,13 @@ def test_extreme_strengths_stay_finite():
         assert np.all(model.lateral_scales(WAVELENGTHS, t) >= LEAST_SCALE)
         assert np.isfinite(model.focus_distances(3.0, WAVELENGTHS, t)).all()
     assert lateral_scale(400.0, 780.0, -100.0, 1.0) == LEAST_SCALE
-    assert any("inside out" in problem for problem in model.problems(3.0))
+    (problem,) = aberration(axial=0.0, lateral=-3.0).problems(3.0)
+    assert "inside out" in problem
 
 
-def test_singular_maps_are_reported_where_they_matter():
-    showcase = FieldMap("ONE_MINUS", "RECIPROCAL")
-    model = aberration(lateral=0.001, axial=0.0, axial_map=showcase, lateral_map=showcase)
-    (problem,) = model.problems(3.0)
-    assert "lateral field map 1/(1 \u2212 t) is singular" in problem
-
-
-def test_dispersion_without_dispersion_is_reported():
-    flat = dispersion_of_glass(ConstantGlass(1.5))
-    assert not flat.disperses and bk7().disperses
-    assert any("dispersion" in text for text in aberration(dispersion=flat).problems(3.0))
-
-
-def test_equalizer_without_light_is_reported():
-    dark = aberration(wavelength_range=(600.0, 700.0), equalizer=band(450.0, 20.0))
-    assert any("no light" in problem for problem in dark.problems(3.0))
+def test_a_glass_without_dispersion_says_so():
+    assert not dispersion_of_glass(ConstantGlass(1.5)).disperses
+    assert bk7().disperses
 
 
 def test_ratio_is_that_of_the_longest_wavelength_or_of_another():
