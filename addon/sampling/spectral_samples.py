@@ -129,9 +129,11 @@ class ChannelDensity:
             Their expected value is 1.
         """
         cumulative = np.concatenate([[0.0], np.cumsum(self.density)])
-        wavelengths = np.interp(uniform, cumulative / cumulative[-1], self.edges_nm)
-        cell = np.searchsorted(self.edges_nm, wavelengths, side="right") - 1
-        cell = np.clip(cell, 0, len(self.density) - 1)
+        cumulative /= cumulative[-1]
+        # The last cell that begins at or before the number: never one without light.
+        cell = np.searchsorted(cumulative, uniform, side="right") - 1
+        share = (uniform - cumulative[cell]) / (cumulative[cell + 1] - cumulative[cell])
+        wavelengths = self.edges_nm[cell] + share * (self.edges_nm[cell + 1] - self.edges_nm[cell])
         return wavelengths, self.channels[cell] / self.density[cell, None]
 
 

@@ -21,7 +21,6 @@ _WORKING_SPACES = {
     "Linear Rec.709": LINEAR_REC709,
     "Linear Rec.2020": "ITU-R BT.2020",
     "ACEScg": "ACEScg",
-    "Linear ACEScg": "ACEScg",
 }
 
 

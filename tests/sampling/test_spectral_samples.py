@@ -130,6 +130,19 @@ def test_weak_ranges_cost_nothing():
     assert np.all(np.abs(wavelengths - 560.0) <= 21.1)
 
 
+def test_gaps_in_the_equalizer_are_never_drawn():
+    gap = SpectralEqualizer((450.0, 451.0, 500.0, 501.0, 550.0, 551.0), (0, 1, 1, 0, 0, 1))
+    density = channel_density((380.0, 780.0), gap, "ITU-R BT.709")
+    cumulative = np.concatenate([[0.0], np.cumsum(density.density)])
+    # The very borders of the gaps among them.
+    uniform = np.unique(np.concatenate([cumulative[cumulative < 1.0], np.linspace(0, 1, 99)[:-1]]))
+    wavelengths, weights = density.draw(uniform)
+    assert np.all(np.isfinite(weights)) and np.all(weights > 0.0)
+    assert np.all(np.diff(wavelengths) > 0.0)
+    assert not np.any((wavelengths > 501.2) & (wavelengths < 549.8))
+    assert wavelengths[0] > 449.8
+
+
 def test_seeds_rotate():
     plain, other = (wavelengths_for(aberration(), 16, seed).wavelengths_nm for seed in (0, 1))
     assert np.abs(plain - other).min() > 0.0
@@ -210,6 +223,39 @@ def test_shared_places_take_the_colour_noise_out_of_neutral_blur(mode):
     (shared_chroma, shared_error), (apart_chroma, apart_error) = noise
     assert shared_chroma < 0.45 * apart_chroma
     assert shared_error < 1.1 * apart_error
+
+
+def local_maxima(values, least):
+    """Count the maxima of a curve that stand out by `least` on both sides."""
+    count, rising, top, bottom = 0, True, values[0], values[0]
+    for value in values:
+        top, bottom = max(top, value), min(bottom, value)
+        if rising and top - value > least:
+            count, rising, bottom = count + 1, False, value
+        elif not rising and value - bottom > least:
+            rising, top = True, value
+    return count
+
+
+@pytest.mark.parametrize("preset", ["FLAT", "ENDS", "THREE_BANDS", "COMB"])
+@pytest.mark.parametrize("length_px", [10.0, 20.0, 30.0])
+def test_fringes_show_no_bands(preset, length_px):
+    # A line of 3 pixels under a lateral aberration of many, hardly blurred.
+    model = aberration(equalizer=EQUALIZER_PRESETS[preset][1])
+    places = np.arange(-12.0, length_px + 12.0)[:, None]
+
+    def profile(count):
+        samples = wavelengths_for(model, count)
+        lens = concentric_disk(halton(0, count // 3 + 1, (2, 7), 0.5))[samples.lens_indices]
+        moved = places - (780.0 - samples.wavelengths_nm) / 400.0 * length_px - 0.6 * lens[:, 0]
+        covered = np.clip(moved + 2.0, 0, 1) - np.clip(moved - 1.0, 0, 1)
+        return covered @ samples.weights / count
+
+    few, many = profile(128), profile(4096)
+    for channel in range(3):
+        assert local_maxima(few[:, channel], 0.004) == local_maxima(many[:, channel], 0.004)
+    # The red of the observer has a second lobe in the violet.
+    assert local_maxima(many[:, 0], 0.004) >= 1
 
 
 def test_normalized_keeps_ratios_inside_a_channel():
