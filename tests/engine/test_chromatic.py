@@ -141,12 +141,12 @@ def test_an_object_that_any_wavelength_has_in_focus_keeps_its_full_detail():
     found = chromatic_snapshot(axial_map=still, lateral=0.0)
     sharp = plan_frame(found)
     chromatic = found.camera.chromatic
-    blue = float(
-        chromatic.focus_distances(LENS.focus_distance, sharp.chromatic.wavelengths_nm.min())
-    )
+    drawn = sharp.chromatic.wavelengths_nm
+    ends = np.array([drawn.min(), drawn.max()])
+    blue, red = chromatic.focus_distances(LENS.focus_distance, ends)
     plain = plan_frame(replace(found, camera=replace(found.camera, chromatic=None)))
     triangles = np.array([200000.0])
-    for depth, is_sharp in ((LENS.focus_distance, True), (blue, True), (blue / 3.0, False)):
+    for depth, is_sharp in ((red, True), (blue, True), (blue / 3.0, False)):
         seen = extents(box(depth), sharp.view, sharp.chromatic)
         level = choose_levels(seen, triangles, sharp)
         assert (level[0] == 0.0) == is_sharp
