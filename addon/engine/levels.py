@@ -230,6 +230,8 @@ def meshes_with_levels(content, plan):
     """
     if plan.level_bias is None or plan.coc_scale == 0.0:
         return []
+    # What Fringe compares with is drawn beside the frame.
+    beside = set(meshes_with_levels(content, plan.plain)) if plan.plain else set()
     meshes = [content.meshes[group.mesh] for group in content.groups]
     bounds = {mesh.uid: mesh.bounds for mesh in meshes}
     seen = extents(world_corners(content, bounds), plan.view, plan.chromatic)
@@ -243,4 +245,4 @@ def meshes_with_levels(content, plan):
         if len(mesh.triangles) >= 2 * plan.least_triangles
         and (chosen[group.first : group.first + group.count] > 0.0).any()
     }
-    return [uid for uid in content.meshes if uid in wanted]
+    return [uid for uid in content.meshes if uid in wanted | beside]

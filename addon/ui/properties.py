@@ -183,11 +183,19 @@ class AplanatViewLayerSettings(bpy.types.PropertyGroup):
         default=False,
         update=_update_passes,
     )
+    use_pass_fringe: BoolProperty(
+        name="Fringe",
+        description="What chromatic aberration adds and takes away: Combined less the same picture"
+        " without it, which is rendered beside it",
+        default=False,
+        update=_update_passes,
+    )
 
 
 CLASSES = (
     AplanatSceneSettings,
     AplanatViewLayerSettings,
+    AplanatSpectrumBar,
     AplanatChromaticSettings,
     AplanatCameraSettings,
 )

@@ -330,25 +330,20 @@ def test_the_world_behind_is_seen_as_a_point_at_infinity_is():
     y, x = np.mgrid[: size[0], : size[1]] + 0.5
     longitude = (x / size[1] - 0.5) * -2.0 * np.pi
     latitude = (y / size[0] - 0.5) * np.pi
-    rays = np.stack(
-        [np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)],
-        axis=-1,
-    )  # fmt: skip
+    flat = np.cos(latitude)
+    rays = [flat * np.cos(longitude), flat * np.sin(longitude), np.sin(latitude)]
+    rays = np.stack(rays, axis=-1)
     pixels[rays @ direction > np.cos(0.02), :3] = 1.0
     pixels[..., 3] = 1.0
     image = ImageSnapshot(next_uid(), "world", pixels)
     snapshot = triangles_snapshot(
         [dot((0.0, 0.0, 50.0), 0.1)], [(0.0, 0.0, 0.0)], WIDTH, HEIGHT, ThinLens(0.01, 3.0), 90
     )
-    content = replace(
-        snapshot.content, images={image.uid: image}, world=World((1, 1, 1), image.uid)
-    )
+    world = World((1.0, 1.0, 1.0), image.uid)
+    content = replace(snapshot.content, images={image.uid: image}, world=world)
     snapshot = replace(snapshot, content=content)
-    for chromatic in (
-        aberration(axial=0.3, lateral=0.1),
-        aberration("RGB", axial=0.3, lateral=0.1),
-    ):
-        here = with_chromatic(snapshot, chromatic)
+    for mode in ("RGB", "SPECTRAL"):
+        here = with_chromatic(snapshot, aberration(mode, axial=0.3, lateral=0.1))
         plan = plan_frame(here)
         found = measured_centroids(render_snapshot(here, plan)["Combined"])
         wanted = expected_centroids(here, plan, direction * 1e5)
