@@ -1,7 +1,7 @@
 """Small pictures of chromatic aberration for panels: a field map, a spectrum.
 
 Made of numpy alone, fast enough to be made while a panel is drawn. Colours are sRGB encoded, pixels
-RGBA, the first row at the top.
+RGBA, the first row at the top; colours are multiplied by alpha, as Blender draws icons.
 """
 
 import numpy as np
@@ -22,6 +22,8 @@ _LINE_WIDTH = 1.6
 _SHOWN_QUANTILE, _POLE = 0.9, 3.0
 # Wavelengths between the middles of the pixels of a spectrum that is looked up, nm.
 _SPECTRUM_STEP = 1.0
+# Exponent of its brightness.
+_BRIGHTENING = 0.5
 
 
 def map_range(field_map, samples=64):
@@ -144,48 +146,24 @@ def spectrum_colors(wavelength_range_nm):
     Returns
     -------
     ndarray of shape (N, 3)
-        Linear RGB, 1 nm apart, from 0 to 1.
+        Linear RGB, 1 nm apart, from 0 to 1. Dim colours are brighter than they are to the eye: else
+        most of the violet and red would be black.
     """
     from ..sampling.spectrum import LINEAR_REC709, rgb_weights
 
     low, high = wavelength_range_nm
     colors = rgb_weights(np.arange(low, high + 0.5 * _SPECTRUM_STEP, _SPECTRUM_STEP), LINEAR_REC709)
-    return colors / colors.max()
+    brightness = colors.max(axis=1, keepdims=True)
+    return colors / np.maximum(brightness, 1e-12) * (brightness / brightness.max()) ** _BRIGHTENING
 
 
-def spectrum_strip(colors, weights, size):
-    """Return a spectrum as a strip.
-
-    Parameters
-    ----------
-    colors : ndarray of shape (N, 3)
-        As of `spectrum_colors`.
-    weights : ndarray of shape (M,)
-        From 0 to 1, over the same range.
-    size : tuple of 2 int
-        Width and height in pixels.
-
-    Returns
-    -------
-    ndarray of shape (height, width, 4)
-        float32.
-    """
-    width, height = size
-    place = (np.arange(width) + 0.5) / width
-    color = _at(colors, place) * _at(np.asarray(weights, float)[:, None], place)
-    return _with_alpha(np.broadcast_to(_srgb(color), (height, width, 3)), np.ones((height, width)))
-
-
-def _at(table, place):
-    known = np.linspace(0.0, 1.0, len(table))
-    return np.stack([np.interp(place, known, column) for column in table.T], axis=-1)
-
-
-def _srgb(linear):
+def encoded(linear):
+    """Return linear values from 0 to 1 as sRGB encodes them."""
     return np.where(
         linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055
     )
 
 
 def _with_alpha(picture, alpha):
-    return np.concatenate([picture, alpha[..., None]], axis=-1).astype(np.float32)
+    alpha = alpha[..., None]
+    return np.concatenate([picture * alpha, alpha], axis=-1).astype(np.float32)

@@ -3,25 +3,17 @@
 import bpy
 
 from ..scene.chromatic import describe_chromatic, read_field_map
-from ..scene.drawn_curves import (
-    EQUALIZER,
-    EQUALIZER_RANGE_NM,
-    MAP_CURVES,
-    curve_values,
-    find_mapping,
-)
+from ..scene.drawn_curves import EQUALIZER, MAP_CURVES, find_mapping
 from ..scene.lenses import read_real_lens
 from . import chromatic_previews
 from .chromatic_operators import APLANAT_OT_make_curves
 from .chromatic_presets import APLANAT_PT_chromatic_presets
 from .panels import EnginePanel
 from .sentences import draw_alert, draw_sentences, letters_across
+from .spectrum_bar import draw_spectrum
 
 # In units of Blender's buttons.
 _MAP_SCALE = 7.0
-# Of the spectrum under the equalizer: pixels of a button, and what the panel keeps for its margins,
-# before Blender's scale.
-_UNIT_PX, _MARGINS_PX = 20.0, 38.0
 
 
 class _ChromaticPanel(EnginePanel):
@@ -93,7 +85,7 @@ class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, bpy.types.Panel):
 class _FieldMapPanel(_ChromaticPanel):
     bl_parent_id = "APLANAT_CAMERA_PT_chromatic"
     bl_options = {"DEFAULT_CLOSED"}
-    which = None
+    which = meaning = None
 
     def draw(self, context):
         """Draw the two atoms, the curves that are drawn, and the map."""
@@ -113,13 +105,13 @@ class _FieldMapPanel(_ChromaticPanel):
         pictures.alignment = "CENTER"
         pictures.template_icon(icon_value=curve, scale=_MAP_SCALE)
         pictures.template_icon(icon_value=disc, scale=_MAP_SCALE)
-        caption = column.row()
-        caption.alignment = "CENTER"
+        captions = column.column(align=True)
         low, high = chromatic_previews.shown_range(field_map)
-        caption.label(text=f"{field_map.text}, drawn from {low:.3g} to {high:.3g}")
-        if field_map.clamped:
-            text = "It grows without bound there: its largest values are clamped to 100."
-            draw_alert(column.column(align=True), text, letters_across(context))
+        shown = f"{field_map.text}, drawn from {low:.3g} to {high:.3g}"
+        for text in (f"{shown}, clamped" if field_map.clamped else shown, self.meaning):
+            line = captions.row()
+            line.alignment = "CENTER"
+            line.label(text=text)
 
 
 class APLANAT_CAMERA_PT_chromatic_axial(_FieldMapPanel, bpy.types.Panel):
@@ -127,6 +119,7 @@ class APLANAT_CAMERA_PT_chromatic_axial(_FieldMapPanel, bpy.types.Panel):
 
     bl_label = "Axial Field Map"
     which = "axial"
+    meaning = "0: all of the axial strength, 1: none"
 
 
 class APLANAT_CAMERA_PT_chromatic_lateral(_FieldMapPanel, bpy.types.Panel):
@@ -134,6 +127,7 @@ class APLANAT_CAMERA_PT_chromatic_lateral(_FieldMapPanel, bpy.types.Panel):
 
     bl_label = "Lateral Field Map"
     which = "lateral"
+    meaning = "0: none of the lateral strength, 1: all"
 
 
 class APLANAT_CAMERA_PT_chromatic_equalizer(_ChromaticPanel, bpy.types.Panel):
@@ -162,30 +156,8 @@ class APLANAT_CAMERA_PT_chromatic_equalizer(_ChromaticPanel, bpy.types.Panel):
         """Draw the curve and its spectrum."""
         settings, column = self.begin(context)
         column.active = settings.use and settings.use_equalizer
-        if not _draw_curve(column, settings, EQUALIZER):
-            return
-        weights = curve_values(settings.curves, EQUALIZER)
-        scale = context.preferences.system.ui_scale
-        width = context.region.width / scale - _MARGINS_PX
-        icons = chromatic_previews.spectrum_icons(
-            context.camera,
-            EQUALIZER_RANGE_NM,
-            weights,
-            max(4, round(width / _UNIT_PX)),
-        )
-        bar = column.row(align=True)
-        bar.alignment = "CENTER"
-        for icon in icons:
-            bar.template_icon(icon_value=icon, scale=1.0)
-        ends = column.row()
-        low, high = EQUALIZER_RANGE_NM
-        ends.label(text=f"{low:.0f} nm")
-        middle = ends.row()
-        middle.alignment = "CENTER"
-        middle.label(text=f"{0.5 * (low + high):.0f}")
-        right = ends.row()
-        right.alignment = "RIGHT"
-        right.label(text=f"{high:.0f} nm")
+        if _draw_curve(column, settings, EQUALIZER):
+            draw_spectrum(column, settings.spectrum)
 
 
 def _draw_curve(column, settings, name):

@@ -1,4 +1,4 @@
-"""Pictures of field maps and spectra as icons: made when a panel is drawn with new values."""
+"""Pictures of field maps as icons: made when a panel is drawn with new values."""
 
 from functools import lru_cache
 
@@ -6,17 +6,12 @@ import bpy.utils.previews
 import numpy as np
 
 from ..plots import chromatic_pictures
-from . import background
 
 _SIZE = 160
-_STRIP_SIZE = 32
-_COLORS_KEY = "chromatic spectrum"
 
 _collection = None
 # What the pictures of a name were made of.
 _shown = {}
-# Colours of the spectrum, by its range.
-_colors = {}
 
 
 @lru_cache(maxsize=16)
@@ -51,43 +46,6 @@ def map_icons(camera, which, field_map, aspect):
         yield chromatic_pictures.map_disc(field_map, shown, aspect, _SIZE)
 
     return _icons_of(f"{which}:{camera.session_uid}", (field_map, aspect), pictures, 2)
-
-
-def spectrum_icons(camera, wavelength_range_nm, weights, count):
-    """Return icons that, side by side, show a spectrum, dimmed by weights.
-
-    Parameters
-    ----------
-    camera : bpy.types.Camera
-    wavelength_range_nm : tuple of 2 float
-    weights : tuple of float
-        Evenly spaced over the range, from 0 to 1.
-    count : int
-        How many icons.
-
-    Returns
-    -------
-    tuple of int
-        0 until the colours are there, which are made in the background.
-    """
-    colors = _colors.get(wavelength_range_nm)
-    if colors is None:
-        background.submit(
-            (_COLORS_KEY, wavelength_range_nm),
-            "Colors of the spectrum",
-            lambda _progress, _cancelled: chromatic_pictures.spectrum_colors(wavelength_range_nm),
-            lambda found: _colors.__setitem__(wavelength_range_nm, found),
-            urgent=True,
-        )
-        return (0,) * count
-
-    def pictures():
-        size = _STRIP_SIZE * count, _STRIP_SIZE
-        strip = chromatic_pictures.spectrum_strip(colors, np.array(weights), size)
-        yield from np.split(strip, count, axis=1)
-
-    key = wavelength_range_nm, weights, count
-    return _icons_of(f"spectrum:{camera.session_uid}", key, pictures, count)
 
 
 def _icons_of(name, key, pictures, count):

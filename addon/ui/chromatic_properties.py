@@ -15,6 +15,7 @@ from ..lens_io.dispersion import DEFAULT_GLASS
 from ..lens_io.glass_catalog import catalog_names
 from ..sampling.field_maps import ATOMS
 from .chromatic_curves import curves_as_text, curves_from_text, make_group
+from .spectrum_bar import AplanatSpectrumBar
 
 _LONGEST_TEXT = 255
 _OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
@@ -193,6 +194,12 @@ class AplanatChromaticSettings(bpy.types.PropertyGroup):
         options={"HIDDEN"},
         override=_OVERRIDABLE,
         update=_changed,
+    )
+    spectrum: PointerProperty(
+        name="Spectrum",
+        description="Colors under the equalizer's curve",
+        type=AplanatSpectrumBar,
+        options={"HIDDEN", "SKIP_SAVE"},
     )
     curve_text: StringProperty(
         name="Drawn Curves",

@@ -11,6 +11,7 @@ from bpy.props import (
 
 from .camera_properties import AplanatCameraSettings
 from .chromatic_properties import AplanatChromaticSettings
+from .spectrum_bar import AplanatSpectrumBar
 
 # Also what the command line accepts.
 MAX_SAMPLES = 65536
