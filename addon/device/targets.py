@@ -3,6 +3,7 @@
 Whoever makes targets releases them (``with Targets(...) as targets``); no pass allocates.
 """
 
+import math
 from dataclasses import dataclass
 
 from ..errors import DeviceLimitError
@@ -20,18 +21,18 @@ class TargetSpec:
     texel_format : str
     layers : int
         Of an array texture; 0 is a plain one.
-    scale : int
-        How many times larger than the others it is, along each side.
+    scale : float
+        How many times larger than the others it is, along each side, rounded up.
     """
 
     name: str
     texel_format: str
     layers: int = 0
-    scale: int = 1
+    scale: float = 1
 
 
 class Targets:
-    """Textures of one size or whole multiples of it, by name, and frame buffers over sets of them.
+    """Textures of one size or multiples of it, by name, and frame buffers over sets of them.
 
     Parameters
     ----------
@@ -76,7 +77,7 @@ class Targets:
         """Make one more texture."""
         import gpu
 
-        width, height = self.width * spec.scale, self.height * spec.scale
+        width, height = (math.ceil(side * spec.scale) for side in (self.width, self.height))
         size = census.texture_bytes(width, height, spec.texel_format, spec.layers)
         try:
             texture = gpu.types.GPUTexture(

@@ -360,7 +360,7 @@ def _size(levels):
     return sum(
         array.nbytes
         for level in levels
-        for array in (level.positions, level.triangles, *level.attributes.values())
+        for array in (level.positions, level.triangles, level.merged, *level.attributes.values())
     )
 
 

@@ -9,7 +9,11 @@ import numpy as np
 
 from ..device.targets import TargetSpec
 from ..device.textures import texture_2d
-from ..passes import nbuffer, subsample
+from ..passes import nbuffer, pyramid, subsample
+from ..sampling.spectral_samples import GROUP
+
+# Of the pyramid: footprints wider than 64 texels are sampled too coarsely for any mean to help.
+_MOST_LEVELS = 6
 
 
 class SubsampleBlur:
@@ -36,6 +40,14 @@ class SubsampleBlur:
         self._offsets = texture_2d(offsets)
         self._spread = np.abs(plan.subsample_offsets).max(axis=(0, 1))
         blur = max(abs(self._coc(self._nearest)), abs(self._coc(1.0)))
+        places = plan.samples + int(plan.subsample_counts.sum())
+        if wavelengths:
+            # Those of the samples that share their places count once.
+            places /= GROUP
+        self._cell = float(np.sqrt(np.pi * plan.lens_extent.prod() / places))
+        # As many levels as the widest footprint of a cell asks for.
+        widest = self._cell / plan.lens_extent.max() * blur
+        self._top = min(max(0, int(np.ceil(np.log2(max(widest, 1.0))))), _MOST_LEVELS)
         if wavelengths:
             blur += self._largest_growth()
         self._layers = nbuffer.layers(min(blur + 1.0, max(plan.width, plan.height)))
@@ -67,6 +79,9 @@ class SubsampleBlur:
         return (
             TargetSpec("depth_levels", "RG32F", self._layers),
             TargetSpec("blur_bounds", "RG32F"),
+            # A pyramid of no level still has to be bound.
+            TargetSpec("sample_means", "RGBA32F", max(self._top, 1), 0.5),
+            TargetSpec("sample_ranges", "RG32F", max(self._top, 1), 0.5),
         )
 
     def find_bounds(self, fullscreen, targets):
@@ -101,11 +116,16 @@ class SubsampleBlur:
         index : int
         """
         plan = self._plan
+        sample = (targets["sample"], targets["sample_depth"])
+        levels = (targets["sample_means"], targets["sample_ranges"])
+        pyramid.build(*sample, *levels, self._top)
         subsample.blur(
             fullscreen,
-            (targets["sample"], targets["sample_depth"], targets["blur_bounds"], self._offsets),
+            (*sample, targets["blur_bounds"], self._offsets, *levels),
             sweep=self._sweep,
             spread=self._spread,
+            cell=self._cell,
+            top=self._top,
             weight=float(plan.subpixel_weights[index].prod()),
             index=index,
             count=int(plan.subsample_counts[index]),

@@ -4,8 +4,14 @@ from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
 from . import chromatic
 
-_SAMPLERS = ("sample_tx", "depth_tx", "bounds_tx", "offsets_tx")
-
+_SAMPLERS = (
+    ("FLOAT_2D", "sample_tx"),
+    ("FLOAT_2D", "depth_tx"),
+    ("FLOAT_2D", "bounds_tx"),
+    ("FLOAT_2D", "offsets_tx"),
+    ("FLOAT_2D_ARRAY", "means_tx"),
+    ("FLOAT_2D_ARRAY", "ranges_tx"),
+)
 
 _INFO = ShaderInfo(
     name="aplanat_subsample",
@@ -13,11 +19,13 @@ _INFO = ShaderInfo(
     fragment=shader_source.load("passes/subsample_frag.glsl"),
     attributes=(("VEC2", "pos"),),
     outputs=(("VEC4", "out_color"),),
-    samplers=tuple(("FLOAT_2D", name) for name in _SAMPLERS),
+    samplers=_SAMPLERS,
     push_constants=(
         ("VEC4", "sweep"),
         ("VEC2", "spread"),
+        ("FLOAT", "cell"),
         ("FLOAT", "weight"),
+        ("INT", "top"),
         ("INT", "sample_index"),
         ("INT", "count"),
     ),
@@ -25,19 +33,36 @@ _INFO = ShaderInfo(
 _IN_WAVELENGTHS = chromatic.declared(_INFO, (("VEC4", "gain"), ("VEC4", "tint")))
 
 
-def blur(fullscreen, textures, *, sweep, spread, weight, index, count, gain=None, wavelength=None):
+def blur(
+    fullscreen,
+    textures,
+    *,
+    sweep,
+    spread,
+    cell,
+    top,
+    weight,
+    index,
+    count,
+    gain=None,
+    wavelength=None,
+):
     """Blur a lens sample and add it to the bound frame buffer.
 
     Parameters
     ----------
     fullscreen : GPUBatch
-    textures : sequence of 4 GPUTexture
+    textures : sequence of 6 GPUTexture
         Colour and depth of the sample; bounds of the depths that reach each pixel; offsets, one row
-        a sample.
+        a sample; means and ranges of the sample's pyramid.
     sweep : sequence of 4 float
         See ``lib/sweep_lib.glsl``.
     spread : sequence of 2 float
         Largest offset of any sample along x and y, m.
+    cell : float
+        Side of the part of the lens that a ray stands for, m.
+    top : int
+        Levels of the pyramid; 0 uses none.
     weight : float
     index, count : int
         Row of the offsets, and how many there are in it.
@@ -49,11 +74,13 @@ def blur(fullscreen, textures, *, sweep, spread, weight, index, count, gain=None
     state.additive()
     shader = compile_shader(_INFO if wavelength is None else _IN_WAVELENGTHS)
     shader.bind()
-    for name, texture in zip(_SAMPLERS, textures, strict=True):
+    for (_, name), texture in zip(_SAMPLERS, textures, strict=True):
         shader.uniform_sampler(name, texture)
     shader.uniform_float("sweep", tuple(sweep))
     shader.uniform_float("spread", tuple(spread))
+    shader.uniform_float("cell", cell)
     shader.uniform_float("weight", weight)
+    shader.uniform_int("top", top)
     shader.uniform_int("sample_index", index)
     shader.uniform_int("count", count)
     if wavelength is not None:

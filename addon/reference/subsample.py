@@ -1,4 +1,4 @@
-"""Numpy twins of N-buffers, blur bounds and subsample blur."""
+"""Numpy twins of N-buffers, blur bounds, pyramid and subsample blur."""
 
 import numpy as np
 
@@ -66,17 +66,45 @@ def blur_bounds(depth, sweep, opening, depth_range, iterations=3):
     return bounds
 
 
-def subsample_sum(color, depth, bounds, offsets, sweep, tolerance=1.0):
-    """Sum of a lens sample's picture and of those seen from places beside its own.
+def pyramid(color, depth, count):
+    """Means of colour and extremes of depth over ever larger squares.
 
     Parameters
     ----------
     color : ndarray of shape (height, width, 4)
     depth : ndarray of shape (height, width)
+    count : int
+
+    Returns
+    -------
+    list of (ndarray of shape (h, w, 4), ndarray of shape (h, w, 2))
+        Level i has squares of 2^i texels; the last texel of an odd row or column counts twice.
+    """
+    levels = [(color, np.stack([depth, depth], axis=-1))]
+    for _ in range(count):
+        means, ranges = (np.pad(a, [(0, s % 2) for s in a.shape[:2]] + [(0, 0)], "edge")
+                         for a in levels[-1])  # fmt: skip
+        squares = [(slice(i, None, 2), slice(j, None, 2)) for i in (0, 1) for j in (0, 1)]
+        least = np.min([ranges[square][..., 0] for square in squares], axis=0)
+        most = np.max([ranges[square][..., 1] for square in squares], axis=0)
+        mean = np.mean([means[square] for square in squares], axis=0)
+        levels.append((mean, np.stack([least, most], axis=-1)))
+    return levels
+
+
+def subsample_sum(levels, bounds, offsets, sweep, cell, tolerance=1.0):
+    """Sum of a lens sample's picture and of those seen from places beside its own.
+
+    Parameters
+    ----------
+    levels : list of (ndarray, ndarray)
+        See `pyramid`.
     bounds : ndarray of shape (height, width, 2)
     offsets : ndarray of shape (K, 2)
         In m.
     sweep : ndarray of shape (4,)
+    cell : float
+        Side of the part of the lens that a place stands for, m.
     tolerance : float
         In texels.
 
@@ -86,9 +114,9 @@ def subsample_sum(color, depth, bounds, offsets, sweep, tolerance=1.0):
     margin : ndarray of shape (height, width)
         How far the nearest decision was from turning out otherwise, in texels.
     """
-    height, width = depth.shape
-    total = np.zeros((height, width, 4))
-    margin = np.full((height, width), np.inf)
+    color, depth = levels[0][0], levels[0][1][..., 0]
+    total = np.zeros(color.shape)
+    margin = np.full(depth.shape, np.inf)
     spread = np.abs(offsets).max(axis=0)
     for y, x in np.ndindex(depth.shape):
         ends = bounds[y, x]
@@ -97,12 +125,37 @@ def subsample_sum(color, depth, bounds, offsets, sweep, tolerance=1.0):
         if reach <= 0.5:
             total[y, x] = color[y, x] * (len(offsets) + 1)
             continue
-        total[y, x] = color[y, x]
+        total[y, x], sure = _cell_color(levels, (y, x), sweep, cell)
+        margin[y, x] = min(margin[y, x], sure)
         for move in offsets:
             place, sure = _cast(np.array([x, y]) + 0.5, depth, ends, move, sweep, tolerance)
-            total[y, x] += color[place]
-            margin[y, x] = min(margin[y, x], sure)
+            seen, sure_of_color = _cell_color(levels, place, sweep, cell)
+            total[y, x] += seen
+            margin[y, x] = min(margin[y, x], sure, sure_of_color)
     return total, margin
+
+
+def _cell_color(levels, texel, sweep, cell, alike=1.0, width_of_cell=0.85):
+    """Return the mean of the colours round a texel that a cell brings to one pixel; the margin."""
+    depth = levels[0][1][texel][0]
+    width = width_of_cell * np.abs(sweep_px([cell, cell], sweep, depth)).min()
+    wanted = np.log2(max(width, 1.0)) + 0.5
+    sure = min(wanted % 1.0, -wanted % 1.0) if wanted > 0.5 else np.inf
+    for level in range(min(int(wanted), len(levels) - 1), 0, -1):
+        means, ranges = levels[level]
+        last = np.array(means.shape[:2]) - 1
+        place = (np.array(texel) + 0.5) / 2**level - 0.5
+        low = np.clip(np.floor(place).astype(int), 0, last)
+        high = np.minimum(low + 1, last)
+        part = np.clip(place - low, 0.0, 1.0)
+        corners = np.ix_(*([a, b] for a, b in zip(low, high, strict=True)))
+        extent = np.ptp(ranges[corners])
+        moves = cell * np.abs(sweep[2:]).max() * extent
+        sure = min(sure, abs(moves - alike))
+        if moves <= alike:
+            weights = np.outer(*([1.0 - p, p] for p in part))
+            return np.einsum("ij,ijc->c", weights, means[corners]), sure
+    return levels[0][0][texel], sure
 
 
 def _cast(center, depth, bounds, move, sweep, tolerance):

@@ -1,4 +1,4 @@
-"""N-buffers, the bounds of the blur and the blur itself, each against its numpy twin."""
+"""N-buffers, bounds of the blur, pyramid and the blur itself, each against its numpy twin."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 from addon.device import geometry, readback
 from addon.device.targets import Targets, TargetSpec
 from addon.device.textures import texture_2d
-from addon.passes import nbuffer, subsample
+from addon.passes import nbuffer, pyramid, subsample
 from addon.reference import subsample as twin
 
 pytestmark = pytest.mark.usefixtures("gpu_context")
@@ -86,8 +86,38 @@ def test_bounds_are_those_of_the_twin_or_a_little_wider():
     assert (found == expected.astype(np.float32)).all(axis=-1)[inner].mean() > 0.9
 
 
-@pytest.mark.parametrize("places", [1, 5])
-def test_subsample_blur_equals_its_twin(places):
+LEVELS = 3
+
+
+def pyramid_on_device(targets, color, depth):
+    sample = texture_2d(color), texture_2d(depth[..., None], "R32F")
+    targets.add(TargetSpec("means", "RGBA32F", LEVELS, 0.5))
+    targets.add(TargetSpec("ranges", "RG32F", LEVELS, 0.5))
+    pyramid.build(*sample, targets["means"], targets["ranges"], LEVELS)
+    return sample
+
+
+def test_pyramid_equals_its_twin():
+    import gpu
+
+    depth = stepped_depth()
+    color = np.random.default_rng(3).random((HEIGHT, WIDTH, 4)).astype(np.float32)
+    with Targets(WIDTH, HEIGHT, []) as targets:
+        pyramid_on_device(targets, color, depth)
+        for level, expected in enumerate(twin.pyramid(color, depth, LEVELS)[1:]):
+            for name, values in zip(("means", "ranges"), expected, strict=True):
+                framebuffer = gpu.types.GPUFrameBuffer(
+                    color_slots=({"texture": targets[name], "layer": level},)
+                )
+                height, width, channels = values.shape
+                found = readback.read_color(framebuffer, width, height, channels)
+                # float32 sums of four, in another order.
+                assert np.abs(found - values).max() < 1e-6
+
+
+# With the wide cell, means of up to 8 texels are taken.
+@pytest.mark.parametrize(("places", "cell"), [(1, 0.0), (5, 0.0), (4, 0.1)])
+def test_subsample_blur_equals_its_twin(places, cell):
     rng = np.random.default_rng(7)
     depth = stepped_depth()
     color = rng.random((HEIGHT, WIDTH, 4)).astype(np.float32)
@@ -95,13 +125,15 @@ def test_subsample_blur_equals_its_twin(places):
     targets, bounds = bounds_on_device(depth, (float(depth.min()), 1.0))
     targets.add(TargetSpec("sum", "RGBA32F"))
     targets.clear("sum", (0.0, 0.0, 0.0, 0.0))
+    sample = pyramid_on_device(targets, color, depth)
     table = np.zeros((1, places, 4), np.float32)
     table[0, :, :2] = offsets
     textures = (
-        texture_2d(color),
-        texture_2d(depth[..., None], "R32F"),
+        *sample,
         targets["bounds"],
         texture_2d(table),
+        targets["means"],
+        targets["ranges"],
     )
     with targets.framebuffer("sum").bind():
         subsample.blur(
@@ -109,13 +141,19 @@ def test_subsample_blur_equals_its_twin(places):
             textures,
             sweep=SWEEP,
             spread=np.abs(offsets).max(axis=0),
+            cell=cell,
+            top=LEVELS,
             weight=0.5,
             index=0,
             count=places,
         )
     found = readback.read_color(targets.framebuffer("sum"), WIDTH, HEIGHT)
-    total, margin = twin.subsample_sum(color, depth, bounds, offsets, SWEEP)
+    levels = twin.pyramid(color, depth, LEVELS)
+    total, margin = twin.subsample_sum(levels, bounds, offsets, SWEEP, cell)
     # Where a decision hangs on less than rounding, it may turn out otherwise.
     sure = margin > 1e-4
     assert sure.mean() > 0.8
     assert np.abs(found - 0.5 * total)[sure].max() < 1e-5
+    if cell:
+        plain, _ = twin.subsample_sum(levels, bounds, offsets, SWEEP, 0.0)
+        assert (np.abs(total - plain).max(axis=-1) > 0.1).mean() > 0.2
