@@ -40,6 +40,8 @@ _RGB_SAMPLES = 1536
 EVEN = FieldMap("CURVE", curve_f=(0.0, 0.0))
 # `k_l` in 1/um: violet 4 % larger than red in the corners, so that fringes are plain to see.
 _LATERAL = 0.1
+# Of the bars: fringes many times as wide as the bars.
+_WIDE = 0.4
 # Of the shared scenes, whose lens opens to f/0.25: fringes are then as wide as those of a single
 # lens at f/0.8, and no longer all there is to see.
 SCENE_AXIAL = 0.3
@@ -169,9 +171,9 @@ class _Study:
         counts = {}
         try:
             for name, chromatic in (
-                ("spectral", aberration(axial=0.2)),
-                ("rgb", aberration("RGB", axial=0.2)),
-                ("band", aberration(axial=0.2, equalizer=band(550.0, 40.0))),
+                ("spectral", aberration(axial=0.2, lateral=_WIDE)),
+                ("rgb", aberration("RGB", axial=0.2, lateral=_WIDE)),
+                ("band", aberration(axial=0.2, lateral=_WIDE, equalizer=band(550.0, 40.0))),
             ):
                 for samples in (_FEW, _TRUTH):
                     snapshot = with_aberration(bench.sampled("REFERENCE", samples), chromatic)
