@@ -22,6 +22,10 @@ LEAST_ALLOWANCE = 0.5
 _ALLOWANCE, _CONTRAST = 1.5, 0.25
 _MOST_ALLOWANCE = 4.5
 
+# Smaller objects that are partly in focus save less by being coarser where they blur than the draw
+# calls of their own that they need then.
+LEAST_GRADED_TRIANGLES = 10_000
+
 # Triangles are counted once a side: half of them face away.
 _FACING_SHARE = 0.5
 
@@ -172,19 +176,86 @@ def choose_levels(seen, triangles, plan, bias=0.0):
     """
     front = (seen.nearest > 0.0) | plan.orthographic
     depths = (np.where(front, depth, 1.0) for depth in (seen.nearest, seen.farthest))
-    near, far = coc_ends(*depths, plan, seen.inverse_focus)
-    smallest = np.where(near * far <= 0.0, 0.0, np.minimum(np.abs(near), np.abs(far)))
-    # An anamorphic opening is narrower than it is high.
-    narrowing = plan.lens_extent[0] / max(plan.lens_extent[1], 1e-30)
-    blur_area = np.pi * smallest**2 * narrowing
+    smallest = _smallest(*coc_ends(*depths, plan, seen.inverse_focus))
+    level = _level(smallest, seen, triangles, plan) - bias
+    return np.where(front, np.maximum(level, 0.0), 0.0)
+
+
+def may_grade(seen, triangles, plan):
+    """Return which instances may be drawn coarser where they are out of focus.
+
+    Parameters
+    ----------
+    seen : Extents
+    triangles : ndarray of shape (I,)
+        Of the mesh at full detail.
+    plan : FramePlan
+
+    Returns
+    -------
+    ndarray of shape (I,)
+        bool; large ones of which a part is blurred enough for another level of detail.
+    """
+    near = np.where(plan.orthographic, seen.nearest, np.maximum(seen.nearest, 1e-9))
+    ends = coc_ends(near, np.maximum(seen.farthest, near), plan, seen.inverse_focus)
+    level = _level(np.abs(ends).max(axis=0), seen, triangles, plan)
+    level -= plan.level_bias + LEAST_ALLOWANCE
+    reaches = plan.orthographic | (seen.farthest > 0.0)
+    return (triangles >= LEAST_GRADED_TRIANGLES) & reaches & (level >= 1.0)
+
+
+def _level(radius, seen, triangles, plan):
+    """Return the level whose triangles are as large as circles of confusion; it may be negative."""
+    blur_area = np.pi * radius**2 * _narrowing(plan)
     scale = plan.projection[1, 1] * plan.height / 2.0
     size = scale * seen.radius
     if not plan.orthographic:
         size = size / np.maximum(seen.center_depth, 1e-9)
     triangle_area = np.pi * size**2 / np.maximum(_FACING_SHARE * triangles, 1e-9)
     ratio = blur_area / np.maximum(triangle_area, 1e-30)
-    level = np.log2(np.maximum(ratio, 1e-30)) - bias
-    return np.where(front & (smallest > 0.0), np.maximum(level, 0.0), 0.0)
+    return np.log2(np.maximum(ratio, 1e-30))
+
+
+def blurred_area(depth, world, plan, bias):
+    """Return how large the triangles of an instance may be where it is blurred.
+
+    In the picture, a triangle that is seen at an average angle is then as large as the circle of
+    confusion, or smaller by the bias.
+
+    Parameters
+    ----------
+    depth : ndarray of shape (V,)
+        Of its vertices, m.
+    world : ndarray of shape (4, 4)
+        Object to world space.
+    plan : FramePlan
+    bias : float
+        Levels of detail.
+
+    Returns
+    -------
+    ndarray of shape (V,)
+        An area in object space; 0 in focus or behind the camera.
+    """
+    front = (depth > 0.0) | plan.orthographic
+    ahead = np.where(front, depth, 1.0)
+    focus = plan.chromatic.overall().inverse_focus[:, None] if plan.chromatic else None
+    circle = np.pi * _smallest(*coc_ends(ahead, ahead, plan, focus)) ** 2 * _narrowing(plan)
+    scale = plan.projection[1, 1] * plan.height / 2.0
+    pixels = np.full(len(depth), scale) if plan.orthographic else scale / ahead
+    # The mean over all directions of how an area is stretched and foreshortened.
+    stretch = np.abs(np.linalg.det(world[:3, :3])) ** (2.0 / 3.0) * 0.5
+    area = circle / np.maximum(pixels**2 * stretch, 1e-30)
+    return np.where(front, area * 2.0**-bias, 0.0)
+
+
+def _smallest(near, far):
+    return np.where(near * far <= 0.0, 0.0, np.minimum(np.abs(near), np.abs(far)))
+
+
+def _narrowing(plan):
+    # An anamorphic opening is narrower than it is high.
+    return plan.lens_extent[0] / max(plan.lens_extent[1], 1e-30)
 
 
 def level_for_sample(levels, sample, samples):
@@ -216,7 +287,7 @@ def allowances(content):
 
 
 def meshes_with_levels(content, plan):
-    """Return which meshes are drawn at a lower level of detail, if they have any.
+    """Return which meshes are drawn at a lower level of detail, if they have any, or in part.
 
     Parameters
     ----------
@@ -239,10 +310,11 @@ def meshes_with_levels(content, plan):
     for group, mesh in zip(content.groups, meshes, strict=True):
         full[group.first : group.first + group.count] = len(mesh.triangles)
     chosen = choose_levels(seen, full, plan, plan.level_bias + allowances(content))
+    coarser = (chosen > 0.0) | may_grade(seen, full, plan)
     wanted = {
         mesh.uid
         for group, mesh in zip(content.groups, meshes, strict=True)
         if len(mesh.triangles) >= 2 * plan.least_triangles
-        and (chosen[group.first : group.first + group.count] > 0.0).any()
+        and coarser[group.first : group.first + group.count].any()
     }
     return [uid for uid in content.meshes if uid in wanted | beside]

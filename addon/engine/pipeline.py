@@ -41,6 +41,7 @@ class FrameRenderer:
         self._fullscreen = geometry.fullscreen_batch()
         self._content = self._levels = self._drawing = self._blur = self._plain = None
         self._target = None
+        self._graded = {}
         self._targets = None
         self.restart(plan, snapshot)
 
@@ -63,7 +64,7 @@ class FrameRenderer:
             target = surface.in_wavelengths(target)
         if (snapshot.content, target, levels) != (self._content, self._target, self._levels):
             self._content, self._target, self._levels = snapshot.content, target, levels
-            self._drawing = SceneDrawing(snapshot.content, self._buffers, target)
+            self._drawing = SceneDrawing(snapshot.content, self._buffers, target, self._graded)
         self._field = _chromatic_resources(plan.chromatic) if plan.chromatic else None
         wavelengths = self._wavelength if plan.chromatic else None
         self._drawing.aim(plan, wavelengths)
@@ -382,14 +383,14 @@ class FrameRenderer:
 
     def geometry_bytes(self):
         """Return how many bytes the meshes hold on the device."""
-        return self._buffers.geometry_bytes()
+        return self._buffers.geometry_bytes() + self._drawing.geometry_bytes()
 
     def release(self):
         """Give back to the device what nobody else holds; the renderer is of no use after it."""
         self._release_targets()
         if self._plain:
             self._plain.release()
-        self._plain = self._buffers = self._drawing = self._blur = None
+        self._plain = self._buffers = self._drawing = self._blur = self._graded = None
 
     def _release_targets(self):
         if self._targets is not None:

@@ -60,6 +60,8 @@ class FramePlan:
         No level of detail has fewer.
     reuse_grid : int
         Cells along a pixel in which samples share a drawing; 0 shares none.
+    progressive : bool
+        The frame may be given up before all its samples are drawn.
     lens_extent : ndarray of shape (2,)
         Half the width and height of the opening, in m.
     coc_scale : float
@@ -95,6 +97,7 @@ class FramePlan:
     level_bias: float | None
     least_triangles: int
     reuse_grid: int
+    progressive: bool
     lens_extent: np.ndarray
     coc_scale: float
     sharp_radius: float
@@ -350,6 +353,7 @@ def _plan(snapshot, sampling):
         level_bias=sampling.level_bias if adaptive and sampling.uses_levels else None,
         least_triangles=sampling.least_triangles,
         reuse_grid=sampling.reuse_grid if adaptive else 0,
+        progressive=sampling.progressive,
         lens_extent=extent,
         coc_scale=scale,
         sharp_radius=sharp_radius(film.width, film.height),

@@ -94,6 +94,11 @@ class SharedDrawings:
             copied[list(found)] += 1.0
         return copied / plan.samples
 
+    def drawings_of(self, row, samples):
+        """Return how often a row is drawn for so many lens samples, sprites counted once each."""
+        sprites = [found[row] for found in self._members.values() if row in found]
+        return samples - len(sprites) + len({id(sprite) for sprite in sprites})
+
     def specs(self):
         """Return the targets that it needs beside the sample's."""
         if not self.rows:

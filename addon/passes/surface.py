@@ -115,6 +115,8 @@ class Draw:
         Which of the content's groups is drawn.
     level : int
         Its level of detail.
+    slot : int
+        The material slot of its mesh.
     """
 
     shader: object
@@ -129,6 +131,7 @@ class Draw:
     material_id: float | None = None
     group: int = 0
     level: int = 0
+    slot: int = 0
 
 
 def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, glow=False):
@@ -271,6 +274,7 @@ def _list_draws(content, buffers, target, glow):
                 ),
                 group=number,
                 level=level,
+                slot=slot,
             )
             draws.append(((order, material.uid, group.mesh, slot, level), draw))
     draws.sort(key=lambda item: item[0])

@@ -2,7 +2,8 @@
 
 Colours and normals are those that come nearest, in the mean square over the surface, to the old
 ones: the old vertices are projected to the new triangles, and the values there fitted by least
-squares. What was not negative is light: it stays so, and keeps its integral over the surface.
+squares. What was not negative is light: it stays so, keeps its integral over the surface,
+and stays on its side.
 UVs are read where a new vertex lies nearest to the old triangles, so that they stay inside their
 part of the texture.
 
@@ -28,6 +29,8 @@ _LUCY_STEPS = 2
 # How far values make up for surface that a level gains or loses: light of a lost twig belongs to
 # the tree, but a tree must not glow.
 _MOST_AREA_CHANGE = 1.02
+# How much values change at most to keep light on its side.
+_MOST_GAIN = 1.2
 # Pairs of a point and a triangle that are looked at together; their numbers stay in a cache.
 _BLOCK = 1 << 15
 
@@ -86,10 +89,12 @@ class _Fit:
         members = np.flatnonzero(vertex_of >= 0)
         members = members[stable_order(vertex_of[members])]
         owner = vertex_of[members]
-        self._old_areas = _vertex_areas(surface.size, mesh.triangles, len(mesh.positions))
-        across = np.sqrt(np.square(facets(positions, triangles)).sum(axis=0))
-        self._new_areas = _vertex_areas(across, triangles, self._count)
-        area = self._old_areas[members]
+        self._old = _vertex_areas(surface.normal, mesh.triangles, len(mesh.positions))
+        self._new = _vertex_areas(facets(positions, triangles), triangles, self._count)
+        length = np.sqrt(np.square(self._new[:3]).sum(axis=0))
+        self._slopes = np.ones((4, self._count))
+        self._slopes[:3] = self._new[:3] / np.maximum(length, 1e-300)
+        area = self._old[3][members]
         self._members, self._area = members, area
         self._first = np.flatnonzero(np.append(True, owner[1:] != owner[:-1])[: len(owner)])
         self._mass = np.add.reduceat(area, self._first) if len(area) else np.zeros(0)
@@ -134,7 +139,7 @@ class _Fit:
                 continue
             positive = least >= 0.0 and not direction
             x = self._least_squares(every[self._members], positive)
-            channel[:] = self._with_total(x, every) if positive else x
+            channel[:] = self._with_light(x, every) if positive else x
         return result
 
     def _least_squares(self, old, positive):
@@ -178,12 +183,22 @@ class _Fit:
         hold = _MEAN_WEIGHT * self._mass + self._still_mass
         return self._gather(self._at(x)) + hold * x
 
-    def _with_total(self, x, every):
-        """Scale values to the integral of the old ones over the surface."""
-        old, new = self._old_areas.sum(), self._new_areas.sum()
+    def _with_light(self, x, every):
+        """Scale values to their old integral over the surface, also weighted by its direction.
+
+        A blur of colours carries light from the lit side of a surface to the other one, and each
+        side that is seen would change.
+        """
+        wanted, found = (self._old * every).sum(axis=1), self._new * x
+        old, new = self._old[3].sum(), self._new[3].sum()
         change = min(max(old / new, 1.0 / _MOST_AREA_CHANGE), _MOST_AREA_CHANGE)
-        wanted, found = (self._old_areas * every).sum() / old, (self._new_areas * x).sum() / new
-        return x * (change * wanted / max(found, 1e-300))
+        wanted *= change * new / old
+        system = (found[:, None] * self._slopes).sum(axis=2)
+        gain = np.linalg.lstsq(system / new, (wanted - found.sum(axis=1)) / new, rcond=1e-6)[0]
+        factor = 1.0 + sum(g * slope for g, slope in zip(gain, self._slopes, strict=True))
+        x = x * np.clip(factor, 1.0 / _MOST_GAIN, _MOST_GAIN)
+        # What clipping left.
+        return x * (wanted[3] / max((self._new[3] * x).sum(), 1e-300))
 
     def _at(self, x):
         """Return values at the samples that moved."""
@@ -312,12 +327,30 @@ def _nearest_weights(a, b, c):
     return v, w, distance
 
 
-def _vertex_areas(sizes, triangles, count):
-    """Return a third of the area of the triangles round each vertex, never quite 0."""
-    areas = np.zeros(count)
-    for corner in triangles.T:
-        areas += np.bincount(corner, sizes / 6.0, count)
-    return areas + max(float(areas.mean()) if count else 0.0, 1e-30) * 1e-6
+def _vertex_areas(normal, triangles, count):
+    """Return a third of the area of the triangles round each vertex.
+
+    Parameters
+    ----------
+    normal : ndarray of shape (3, T)
+        Of the triangles, twice their area long.
+    triangles : ndarray of shape (T, 3)
+    count : int
+        Of the vertices.
+
+    Returns
+    -------
+    ndarray of shape (4, count)
+        As a vector, and without its direction; the latter is never quite 0.
+    """
+    size = np.sqrt(np.square(normal).sum(axis=0))
+    areas = np.zeros((4, count))
+    for total, values in zip(areas, (*normal, size), strict=True):
+        share = values / 6.0
+        for corner in triangles.T:
+            total += np.bincount(corner, share, count)
+    areas[3] += max(float(areas[3].mean()) if count else 0.0, 1e-30) * 1e-6
+    return areas
 
 
 def _upright_facets(normals, positions, triangles):

@@ -137,6 +137,22 @@ def test_highlights_of_many_times_white_keep_their_light_on_every_level(sharpnes
         assert (level.attributes["color:"][:, 3] == 1.0).all(), "what is constant stays so"
 
 
+def test_light_stays_on_its_side_of_the_surface():
+    mesh = cube_sphere(64)
+    lit = 0.02 + 4.0 * np.maximum(mesh.positions @ np.array([0.6, 0.48, 0.64]), 0.0) ** 8
+    mesh = mesh_of(mesh.positions, mesh.triangles, **{"color:": np.tile(lit[:, None], (1, 4))})
+
+    def along(level):
+        a, b, c = (level.positions[corner].astype(float) for corner in level.triangles.T)
+        values = level.attributes["color:"][level.triangles, 0].mean(axis=1)
+        return (np.cross(b - a, c - a) * values[:, None]).sum(axis=0) / 2.0
+
+    levels, _ = simplify(mesh, 300)
+    for level in levels:
+        # Where the gain is limited, a little stays on the wrong side.
+        assert along(level) == pytest.approx(along(mesh), rel=0.01)
+
+
 def test_a_mesh_of_several_patches_stays_closed_and_its_rims_get_coarser(monkeypatch):
     monkeypatch.setattr("addon.scene.level_collapses._PATCH", 2000)
     mesh = cube_sphere(64)
