@@ -5,6 +5,11 @@ from .engine import render_engine
 from .ui import (
     background,
     blender_panels,
+    chromatic_curves,
+    chromatic_operators,
+    chromatic_panel,
+    chromatic_presets,
+    chromatic_previews,
     lens_import,
     lens_operators,
     lens_panel,
@@ -27,6 +32,11 @@ _MODULES = (
     lens_operators,
     lens_import,
     lens_panel,
+    chromatic_curves,
+    chromatic_previews,
+    chromatic_presets,
+    chromatic_operators,
+    chromatic_panel,
     blender_command,
 )
 

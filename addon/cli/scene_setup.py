@@ -104,6 +104,8 @@ def apply_frame(scene, frame, arguments):
     check_camera(scene)
     if arguments.lens is not None:
         use_lens(scene.camera, arguments.lens)
+    if arguments.no_chromatic:
+        _leave_out_chromatic(scene.camera.data)
     if arguments.fstop or arguments.focus is not None:
         _use_lens_options(scene, arguments)
         _check_lens_options(scene, arguments)
@@ -197,6 +199,11 @@ def use_lens(camera, word):
     else:
         lens_id = found.id
     camera.data.aplanat.lens = lens_id
+
+
+def _leave_out_chromatic(data):
+    _stop_animation(data, "aplanat.chromatic.use")
+    data.aplanat.chromatic.use = False
 
 
 def _use_lens_options(scene, arguments):

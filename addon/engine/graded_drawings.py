@@ -172,6 +172,8 @@ class GradedDrawings:
         """Return what a graded mesh depends on; levels that were made again are other objects."""
         plan = self._plan
         lens = (plan.focus_distance, plan.coc_scale, *plan.lens_extent.tolist())
+        if plan.chromatic:
+            lens += tuple(plan.chromatic.overall().inverse_focus.tolist())
         shown = (plan.projection[1, 1], plan.height, plan.orthographic, plan.level_bias)
         place = (found.depth.tobytes(), found.world[:3, :3].tobytes())
         return found.mesh.uid, levels, place, lens, shown

@@ -6,12 +6,17 @@ import numpy as np
 
 from ..sampling.pixel_filter import subpixel_weights
 from ..sampling.sequence import lens_samples, pixel_offsets
+from ..sampling.spectral_samples import wavelengths_for
 from ..sampling.subsamples import subsample_offsets
+from .chromatic import ChromaticPlan, plan_chromatic
 from .quality import settle
 
 # Diagonals of the picture over the diameter of the largest circle of confusion that counts as
 # sharp: the usual criterion of depth-of-field tables (0.029 mm for 36 x 24 mm).
 _SHARP_CIRCLES_PER_DIAGONAL = 1500.0
+
+# Their wavelengths reach as far as those of many.
+_TYPICAL_SAMPLES = 64
 
 # Sub-pixels along a side of a pixel: as many as two vectors of weights hold.
 _MOST_SUBPIXELS = 4
@@ -70,6 +75,10 @@ class FramePlan:
         Opacity below which a surface is left out of the data passes.
     previous, next : ndarray of shape (4, 4)
         World to clip space of the region in the neighbouring frames.
+    chromatic : ChromaticPlan or None
+        None: every sample stands for all wavelengths.
+    plain : FramePlan or None
+        The same frame without chromatic aberration, where Fringe needs it.
     """
 
     width: int
@@ -97,6 +106,8 @@ class FramePlan:
     alpha_threshold: float
     previous: np.ndarray
     next: np.ndarray
+    chromatic: ChromaticPlan | None = None
+    plain: "FramePlan | None" = None
 
     @property
     def samples(self):
@@ -104,9 +115,22 @@ class FramePlan:
         return len(self.lens_positions)
 
     def weight(self, samples):
-        """Return the summed weight of the first `samples` lens samples."""
+        """Return the summed weight of the first `samples` lens samples.
+
+        Parameters
+        ----------
+        samples : int
+
+        Returns
+        -------
+        float or tuple of 4 float
+            With chromatic aberration that of red, green, blue and alpha.
+        """
         own = self.subpixel_weights[:samples].sum(axis=2).prod(axis=1)
-        return float((own * (1 + self.subsample_counts[:samples])).sum())
+        own = own * (1 + self.subsample_counts[:samples])
+        if self.chromatic is None:
+            return float(own.sum())
+        return tuple((own @ self.chromatic.weights[:samples]).tolist())
 
     def lens_sample(self, index):
         """Return a sample's place on the lens in m and its jitter in clip units, 4 numbers."""
@@ -135,6 +159,24 @@ class FramePlan:
         else:
             constant, linear = 1.0 / focus - (slope - 1.0) / offset, -2.0 / offset
         return np.concatenate([scale * constant, scale * linear])
+
+    @property
+    def sweep_parts(self):
+        """The `sweep` in two parts, for a focus that varies over the field.
+
+        Returns
+        -------
+        base, gain : ndarray of shape (4,)
+            The sweep is ``base + gain / focus_distance``.
+        """
+        size = np.array([self.width, self.height]) * self.subpixels
+        scale = np.diag(self.projection)[:2] * size / 2.0
+        slope, offset = self.projection[2, 2:]
+        if self.orthographic:
+            base, gain = (-1.0, 0.0), ((offset + 1.0) / slope, -2.0 / slope)
+        else:
+            base, gain = (-(slope - 1.0) / offset, -2.0 / offset), (1.0, 0.0)
+        return tuple(np.outer(part, scale).ravel() for part in (base, gain))
 
 
 def region_projection(projection, film):
@@ -241,9 +283,16 @@ def plan_frame(snapshot):
     """
     sampling = snapshot.sampling
     if sampling.method == "ADAPTIVE" and sampling.target_error is not None:
-        first = _plan(snapshot, replace(sampling, lens_samples=1, subsamples=0))
+        # Of wavelengths, several tell how far they reach.
+        count = 1 if snapshot.camera.chromatic is None else _TYPICAL_SAMPLES
+        first = _plan(snapshot, replace(sampling, lens_samples=count, subsamples=0))
         sampling = settle(sampling, snapshot, first)
-    return _plan(snapshot, sampling)
+    plan = _plan(snapshot, sampling)
+    if plan.chromatic is None or "Fringe" not in snapshot.passes:
+        return plan
+    camera = replace(snapshot.camera, chromatic=None)
+    plain = _plan(replace(snapshot, camera=camera, passes=("Combined",)), sampling)
+    return replace(plan, plain=plain)
 
 
 def _plan(snapshot, sampling):
@@ -252,20 +301,32 @@ def _plan(snapshot, sampling):
     count = sampling.lens_samples
     lens = camera.lens
     adaptive = sampling.method == "ADAPTIVE"
-    if lens is None or lens.aperture_radius == 0.0:
+    is_pinhole = lens is None or lens.aperture_radius == 0.0
+    aberration = camera.chromatic
+    if aberration is not None and not aberration.lateral and (is_pinhole or not aberration.axial):
+        aberration = None
+    colors = wavelengths_for(aberration, count, sampling.seed) if aberration else None
+    # Samples of several wavelengths may look from the same place.
+    taken = colors.lens_indices if aberration else np.arange(count)
+    different = int(taken.max()) + 1
+    if is_pinhole:
         positions, focus, extent = np.zeros((count, 2)), 1.0, np.zeros(2)
         offsets_on_lens, places = np.zeros((count, 0, 2)), np.zeros(count, int)
     else:
         subsamples = sampling.subsamples if adaptive else 0
-        points = lens_samples(0, count * (1 + subsamples), lens.iris, sampling.seed)
+        points = lens_samples(0, different * (1 + subsamples), lens.iris, sampling.seed)
         points = points * lens.aperture_radius
-        positions, focus = points[:count], lens.focus_distance
-        offsets_on_lens, places = subsample_offsets(positions, points[count:], sampling.progressive)
+        focus = lens.focus_distance
+        offsets_on_lens, places = subsample_offsets(
+            points[:different], points[different:], sampling.progressive
+        )
+        positions = points[taken]
+        offsets_on_lens, places = offsets_on_lens[taken], places[taken]
         extent = lens.aperture_radius * np.array([1.0 / lens.iris.ratio, 1.0])
     # Subsamples and levels of detail take the place of a finer raster.
     fine = 1 if adaptive else subpixels(snapshot.content, width, height)
     filter_kind, filter_size = film.filter_kind, film.filter_size_px
-    offsets = pixel_offsets(0, count, filter_kind, filter_size, sampling.seed, fine)
+    offsets = pixel_offsets(0, different, filter_kind, filter_size, sampling.seed, fine)[taken]
     weights = [subpixel_weights(axis, filter_kind, filter_size, fine) for axis in offsets.T]
     projection = region_projection(camera.projection, film)
     current = (camera.view, camera.projection)
@@ -301,6 +362,7 @@ def _plan(snapshot, sampling):
         alpha_threshold=snapshot.alpha_threshold,
         previous=previous,
         next=following,
+        chromatic=plan_chromatic(aberration, colors, camera, film, focus) if aberration else None,
     )
 
 

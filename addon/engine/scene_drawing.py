@@ -4,7 +4,7 @@ Decides, from the plan, at which level of detail each instance is drawn for each
 samples share a drawing.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
@@ -34,6 +34,10 @@ class DrawingCounts:
     triangles_full_detail: int = 0
     sprites_drawn: int = 0
     sprites_copied: int = 0
+
+    def __add__(self, other):
+        """Return the work of both."""
+        return DrawingCounts(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
 
 
 class SceneDrawing:
@@ -87,17 +91,21 @@ class SceneDrawing:
         self._shared = SharedDrawings("MATTES" in target.defines)
         self._graded = GradedDrawings(content, buffers, graded)
 
-    def aim(self, plan):
+    def aim(self, plan, wavelengths=None):
         """Prepare a frame: levels, shared drawings, order of the instances.
 
         Parameters
         ----------
         plan : FramePlan
+        wavelengths : callable, optional
+            From a sample, or None for the reference wavelength, to its
+            `passes.chromatic.ChromaticSample`; for a target of `surface.in_wavelengths`.
         """
         self._plan = plan
+        self._wavelengths = wavelengths or (lambda _sample: None)
         self.counts = DrawingCounts()
         self._visible = culling.seen(self._spheres, plan)
-        seen = extents(self._corners, plan.view)
+        seen = extents(self._corners, plan.view, plan.chromatic)
         self.nearest = float(seen.nearest[self._visible].min(initial=np.inf))
         self.levels = self._choose_levels(seen)
         self._find_graded()
@@ -206,11 +214,11 @@ class SceneDrawing:
                 listed += self._of_row(draws, row, level, index)
         return listed
 
-    def _draw(self, listed, view, lens_sample, index):
+    def _draw(self, listed, view, lens_sample, index, wavelength):
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         state.opaque()
-        surface.draw_sample(listed, view, self._table, lens_sample, index)
+        surface.draw_sample(listed, view, self._table, lens_sample, index, wavelength=wavelength)
 
     def draw(self, index, framebuffer, view, targets):
         """Draw the opaque surfaces for a lens sample.
@@ -227,11 +235,14 @@ class SceneDrawing:
         plan, shared = self._plan, self._shared
         listed = self._list(self._draws, index) + self._of_single(self._by_level, index)
         with framebuffer.bind():
-            self._draw(listed, view, plan.lens_sample(index), index)
+            wavelength = self._wavelengths(index)
+            self._draw(listed, view, plan.lens_sample(index), index, wavelength)
 
         def draw_parent(sprite):
             drawn = self._of_row(self._by_level, sprite.row, sprite.level, index)
-            self._draw(drawn, view, plan.lens_sample(sprite.parent), sprite.parent)
+            parent = sprite.parent
+            wavelength = self._wavelengths(parent)
+            self._draw(drawn, view, plan.lens_sample(parent), parent, wavelength)
 
         before = shared.drawn + shared.copied
         shared.copy(index, framebuffer, targets, draw_parent)
@@ -245,7 +256,8 @@ class SceneDrawing:
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         with framebuffer.bind():
-            surface.draw_glows(listed, view, self._table, self._plan.lens_sample(index))
+            lens_sample, wavelength = self._plan.lens_sample(index), self._wavelengths(index)
+            surface.draw_glows(listed, view, self._table, lens_sample, wavelength)
 
     def draw_coarsest(self, framebuffer, view):
         """Draw everything at its coarsest level, from the lens' centre, for its depth alone."""
@@ -259,7 +271,7 @@ class SceneDrawing:
             deepest = len(self._triangles_of(row)) - 1
             coarsest += self._of_row(self._by_level, row, deepest, 0)
         with framebuffer.bind():
-            self._draw(coarsest, view, (0.0, 0.0, 0.0, 0.0), 0)
+            self._draw(coarsest, view, (0.0, 0.0, 0.0, 0.0), 0, self._wavelengths(None))
 
     def specs(self):
         """Return the targets that drawing needs beside the sample's."""

@@ -4,14 +4,14 @@ One shader a shape of node tree and set of mesh attributes; draws are sorted by 
 material, so that a frame changes state as rarely as it can.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..device import shader_source, state
 from ..device.geometry import attribute_identifier, attribute_type
 from ..device.shaders import ShaderInfo, compile_shader
 from ..device.uniform_block import UniformStruct
 from ..device.uniforms import bind_resource
-from . import environment, surface_code
+from . import chromatic, environment, surface_code
 
 # Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and what
 # a lobe reflects of white surroundings.
@@ -47,6 +47,8 @@ class SurfaceTarget:
         Declarations of its own uniform blocks.
     uniforms, samplers : tuple of (str, str)
         Its own ones, bound once a shader through `draw_sample`'s `bindings`.
+    push_constants : tuple of (str, str)
+        Its own ones.
     names_material : bool
         Its fragment shader reads the push constant `material_id`.
     shades : bool
@@ -61,6 +63,7 @@ class SurfaceTarget:
     structs: str = ""
     uniforms: tuple[tuple[str, str], ...] = ()
     samplers: tuple[tuple[str, str], ...] = ()
+    push_constants: tuple[tuple[str, str], ...] = ()
     names_material: bool = False
     shades: bool = True
 
@@ -74,6 +77,18 @@ COLOR_AND_MATTES = SurfaceTarget(
     defines=("MATTES",),
     names_material=True,
 )
+
+
+def in_wavelengths(target):
+    """Return a target whose surfaces are drawn at one wavelength a lens sample."""
+    return replace(
+        target,
+        defines=(*target.defines, *(name for name, _ in chromatic.DEFINES)),
+        structs=target.structs + chromatic.CHROMATIC_PARAMS.source,
+        uniforms=(*target.uniforms, *chromatic.UNIFORMS),
+        samplers=(*target.samplers, *chromatic.SAMPLERS),
+        push_constants=(*target.push_constants, *chromatic.PUSH_CONSTANTS),
+    )
 
 
 @dataclass(frozen=True)
@@ -167,6 +182,7 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
     uniforms = [("ViewParams", "view_buf"), *target.uniforms]
     samplers = [("FLOAT_2D", "instances_tx"), *target.samplers]
     push_constants = [("VEC4", "lens_sample"), ("INT", "instance_base"), ("INT", "sample_index")]
+    push_constants += target.push_constants
     generated = ""
     if shades:
         generated = code.source
@@ -271,7 +287,7 @@ def _levels_of_groups(content, buffers):
             yield number, level, group, buffer
 
 
-def draw_glows(draws, view_buffer, instances, lens_sample):
+def draw_glows(draws, view_buffer, instances, lens_sample, wavelength=None):
     """Add the light of surfaces that glow to what the frame buffer shows behind them.
 
     Unlike opacity, which is decided by chance, their light is added wherever no surface of this
@@ -281,15 +297,17 @@ def draw_glows(draws, view_buffer, instances, lens_sample):
     ----------
     draws : list of Draw
         Of `build_glow_draws`; the same depth buffer as `draw_sample`'s must be bound.
-    view_buffer, instances, lens_sample
+    view_buffer, instances, lens_sample, wavelength
         As for `draw_sample`.
     """
     if draws:
         state.glow()
-        draw_sample(draws, view_buffer, instances, lens_sample, 0)
+        draw_sample(draws, view_buffer, instances, lens_sample, 0, wavelength=wavelength)
 
 
-def draw_sample(draws, view_buffer, instances, lens_sample, sample_index, bindings=()):
+def draw_sample(
+    draws, view_buffer, instances, lens_sample, sample_index, bindings=(), wavelength=None
+):
     """Draw one lens sample into the bound frame buffer.
 
     Parameters
@@ -304,6 +322,8 @@ def draw_sample(draws, view_buffer, instances, lens_sample, sample_index, bindin
     sample_index : int
     bindings : iterable of (str, GPUUniformBuf or GPUTexture)
         Of the target's own uniform blocks and samplers.
+    wavelength : chromatic.ChromaticSample, optional
+        Of a target `in_wavelengths`.
     """
     current = None
     for draw in draws:
@@ -318,6 +338,8 @@ def draw_sample(draws, view_buffer, instances, lens_sample, sample_index, bindin
                 shader.uniform_int("sample_index", sample_index)
             for name, resource in (*draw.lighting, *bindings):
                 bind_resource(shader, name, resource)
+            if wavelength is not None:
+                wavelength.bind(shader)
         if draw.material_id is not None:
             shader.uniform_float("material_id", draw.material_id)
         if draw.constants is not None:

@@ -7,6 +7,7 @@ import numpy as np
 from ..errors import CameraError, FocusError
 from ..sampling.iris import Iris
 from ..sampling.thin_lens import ThinLens, aperture_radius
+from .chromatic import read_chromatic
 from .lenses import read_real_lens
 from .snapshot import Camera
 
@@ -45,13 +46,19 @@ def read_camera(depsgraph, camera, film):
     )
     world = camera.matrix_world.normalized()
     real_lens, problems = read_real_lens(data)
+    lens = read_lens(depsgraph, camera, real_lens) if data.dof.use_dof else None
+    focus = lens.focus_distance if lens else None
+    chromatic, chromatic_problems = read_chromatic(data, real_lens, focus)
     return Camera(
         view=np.array(world.inverted(), np.float64),
         projection=np.array(projection, np.float64),
-        lens=read_lens(depsgraph, camera, real_lens) if data.dof.use_dof else None,
+        lens=lens,
         orthographic=data.type == "ORTHO",
         real_lens=real_lens,
-        report=tuple(f"camera '{camera.name}': {problem}" for problem in problems),
+        report=tuple(
+            f"camera '{camera.name}': {problem}" for problem in (*problems, *chromatic_problems)
+        ),
+        chromatic=chromatic,
     )
 
 

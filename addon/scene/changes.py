@@ -116,6 +116,7 @@ def same_camera(old, new):
         _same_array(old.view, new.view)
         and _same_array(old.projection, new.projection)
         and (old.lens, old.orthographic) == (new.lens, new.orthographic)
+        and (old.chromatic, old.field_radius) == (new.chromatic, new.field_radius)
         and _same_pose(old.previous, new.previous)
         and _same_pose(old.next, new.next)
     )

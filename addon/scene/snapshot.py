@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from ..optics.prescription import Prescription
+from ..sampling.chromatic import ChromaticAberration
 from ..sampling.thin_lens import ThinLens
 from .surface_graph import SurfaceGraph
 
@@ -259,6 +260,11 @@ class Camera:
         None: the camera names no lens that can be used.
     report : tuple of str
         What the camera asks for and does not get, one line each.
+    chromatic : ChromaticAberration or None
+        None: all wavelengths are seen alike.
+    field_radius : float or None
+        Distance of the outermost corner of the camera's own picture from the optical axis: as a
+        tangent, for a parallel projection in m. None: that of `projection`.
     """
 
     view: np.ndarray
@@ -269,6 +275,8 @@ class Camera:
     next: tuple[np.ndarray, np.ndarray] | None = None
     real_lens: LensSettings | None = None
     report: tuple[str, ...] = ()
+    chromatic: ChromaticAberration | None = None
+    field_radius: float | None = None
 
 
 @dataclass(frozen=True)

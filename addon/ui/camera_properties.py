@@ -1,10 +1,11 @@
-"""What Aplanat adds to a camera: which real lens it has, and at which zoom position."""
+"""What Aplanat adds to a camera: its real lens and zoom position, and its chromatic aberration."""
 
 import bpy
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import EnumProperty, PointerProperty, StringProperty
 
 from ..scene.lenses import shelf
 from . import lens_thumbnails
+from .chromatic_properties import AplanatChromaticSettings, remember_for_lens
 
 _LONGEST_TEXT = 255
 _THIN = "thin"
@@ -101,6 +102,7 @@ def _lens_changed(camera, _context):
     labels = _labels(camera)
     if camera.zoom_label and labels and camera.zoom_label not in labels:
         camera.zoom_label = ""
+    remember_for_lens(camera)
     camera.id_data.update_tag()
 
 
@@ -110,7 +112,7 @@ def _zoom_changed(camera, _context):
 
 
 class AplanatCameraSettings(bpy.types.PropertyGroup):
-    """The real lens of a camera."""
+    """The real lens of a camera, and how it parts the colours."""
 
     lens: StringProperty(
         name="Lens",
@@ -145,4 +147,22 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
         get=_chosen_zoom,
         set=_choose_zoom,
         options=set(),
+    )
+    chromatic: PointerProperty(
+        type=AplanatChromaticSettings,
+        name="Chromatic Aberration",
+        description="How colours part in the camera",
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    chromatic_lens: StringProperty(
+        name="Lens of the Chromatic Settings",
+        description="Lens for which the chromatic settings were made",
+        options={"HIDDEN"},
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    chromatic_memory: StringProperty(
+        name="Chromatic Settings of Other Lenses",
+        description="What was set for lenses that were used before, as JSON",
+        options={"HIDDEN"},
+        override={"LIBRARY_OVERRIDABLE"},
     )

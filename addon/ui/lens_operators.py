@@ -50,7 +50,9 @@ def refresh_cameras(lens_ids=None):
             camera.update_tag()
 
 
-class _CameraOperator:
+class CameraOperator:
+    """Needs a camera that may be changed."""
+
     @classmethod
     def poll(cls, context):
         """Whether there is a camera that may be changed."""
@@ -64,7 +66,7 @@ class _CameraOperator:
         return True
 
 
-class _LensOperator(_CameraOperator):
+class _LensOperator(CameraOperator):
     @classmethod
     def poll(cls, context):
         """Whether the camera has a lens that can be used."""
@@ -77,7 +79,7 @@ class _LensOperator(_CameraOperator):
         return True
 
 
-class APLANAT_OT_choose_lens(_CameraOperator, bpy.types.Operator):
+class APLANAT_OT_choose_lens(CameraOperator, bpy.types.Operator):
     """Give the camera a lens."""
 
     bl_idname = "camera.aplanat_choose_lens"

@@ -1,7 +1,6 @@
 """Camera > Lens > Real Lens: the lens chooser, what the lens does, and what it is."""
 
 import math
-import textwrap
 
 import bpy
 
@@ -21,6 +20,7 @@ from .lens_operators import (
     APLANAT_OT_use_iris,
 )
 from .panels import EnginePanel
+from .sentences import draw_alert, draw_sentences, letters_across
 
 # In units of Blender's buttons.
 _CHOSEN_SCALE, _POPUP_SCALE, _BOKEH_SCALE = 9.0, 6.0, 10.0
@@ -29,7 +29,6 @@ _SAME_LENGTH = 0.05
 # Part of an f-number that a photographer calls the same.
 _SAME_F_NUMBER = 0.005
 _MOST_FINDINGS = 8
-_PIXELS_PER_LETTER = 6.5
 
 
 class APLANAT_MT_lens(bpy.types.Menu):
@@ -79,7 +78,7 @@ class APLANAT_CAMERA_PT_lens(_LensPanel, bpy.types.Panel):
         row.prop(settings, "lens", text="", placeholder="Thin Lens")
         row.operator(APLANAT_OT_import_lens.bl_idname, text="", icon="FILE_FOLDER")
         row.menu("APLANAT_MT_lens", text="", icon="DOWNARROW_HLT")
-        letters = _letters(context)
+        letters = letters_across(context)
         if settings.lens:
             _draw_state(column, camera, letters)
         _draw_work(column)
@@ -97,14 +96,14 @@ def _draw_state(column, camera, letters):
     elif found.lens is None:
         _draw_findings(column, found, letters)
     elif camera.type != "PERSP":
-        _alert(column, "A real lens needs a perspective camera.", letters)
+        draw_alert(column, "A real lens needs a perspective camera.", letters)
     else:
         _draw_use(column, camera, letters)
 
 
 def _draw_missing(column, lens_id, letters):
-    _alert(column, f"'{lens_id}' is not in the library: a thin lens is drawn.", letters)
-    _sentences(column, "Import its file, or choose another lens.", letters)
+    draw_alert(column, f"'{lens_id}' is not in the library: a thin lens is drawn.", letters)
+    draw_sentences(column, "Import its file, or choose another lens.", letters)
     for near in shelf().near_ids(lens_id):
         operator = column.operator(
             APLANAT_OT_choose_lens.bl_idname, text=f"Use '{near}'", icon="VIEWZOOM"
@@ -113,14 +112,14 @@ def _draw_missing(column, lens_id, letters):
 
 
 def _draw_findings(column, found, letters):
-    _alert(column, f"{found.path.name} cannot be used: a thin lens is drawn.", letters)
+    draw_alert(column, f"{found.path.name} cannot be used: a thin lens is drawn.", letters)
     findings = found.error.findings
     box = column.box().column(align=True)
     for finding in findings[:_MOST_FINDINGS]:
         row = box.row()
         row.alert = True
         row.label(text=f"{finding.code}  {finding.path}")
-        _sentences(box, finding.message, letters - 4)
+        draw_sentences(box, finding.message, letters - 4)
     if len(findings) > _MOST_FINDINGS:
         box.label(text=f"and {len(findings) - _MOST_FINDINGS} more")
     column.operator(APLANAT_OT_edit_lens.bl_idname, icon="TEXT")
@@ -135,7 +134,9 @@ def _draw_use(column, camera, letters):
         row.prop(settings, "zoom")
         row.operator(APLANAT_OT_match_zoom.bl_idname, text="", icon="ZOOM_SELECTED")
         if settings.zoom_label not in ("", lens.label):
-            _alert(column, f"No position '{settings.zoom_label}': '{lens.label}' is used.", letters)
+            draw_alert(
+                column, f"No position '{settings.zoom_label}': '{lens.label}' is used.", letters
+            )
     asked = camera.dof.aperture_fstop
     if camera.dof.use_dof and asked < lens.f_number * (1.0 - _SAME_F_NUMBER):
         column.label(
@@ -179,11 +180,11 @@ class APLANAT_CAMERA_PT_lens_bokeh(_LensPanel, bpy.types.Panel):
         camera = context.camera
         lens, _ = read_real_lens(camera)
         column = self.layout.column(align=True)
-        letters = _letters(context)
+        letters = letters_across(context)
         icon = lens_thumbnails.bokeh_icon_id(camera, lens)
         error = lens_thumbnails.bokeh_error(camera, lens)
         if error:
-            _alert(column, error, letters)
+            draw_alert(column, error, letters)
             return
         column.template_icon(icon_value=icon, scale=_BOKEH_SCALE)
         text = (
@@ -191,7 +192,7 @@ class APLANAT_CAMERA_PT_lens_bokeh(_LensPanel, bpy.types.Panel):
             " front of the focus, behind it and far away; from top to bottom: in the middle of the"
             " picture, at 60 % of the way to its corner and in the corner."
         )
-        _sentences(column, text, letters)
+        draw_sentences(column, text, letters)
 
 
 class APLANAT_CAMERA_PT_lens_facts(_LensPanel, bpy.types.Panel):
@@ -209,7 +210,7 @@ class APLANAT_CAMERA_PT_lens_facts(_LensPanel, bpy.types.Panel):
         """Draw facts and warnings."""
         camera = context.camera
         lens, _ = read_real_lens(camera)
-        letters = _letters(context)
+        letters = letters_across(context)
         column = self.layout.column(align=True)
         for name, value in _facts(lens, camera, context.scene):
             _draw_fact(column, name, value, letters)
@@ -227,7 +228,7 @@ class APLANAT_CAMERA_PT_lens_facts(_LensPanel, bpy.types.Panel):
             return
         column = body.column(align=True)
         for warning in warnings:
-            _sentences(column, f"{warning.code}  {warning.message}", letters)
+            draw_sentences(column, f"{warning.code}  {warning.message}", letters)
 
 
 def _facts(lens, camera, scene):
@@ -271,26 +272,7 @@ def _draw_fact(column, name, value, letters):
     left.alignment = "RIGHT"
     left.active = False
     left.label(text=name)
-    _sentences(split.column(align=True), value, int(0.7 * letters))
-
-
-def _letters(context):
-    """Return how many letters fit into a line of the editor."""
-    scale = _PIXELS_PER_LETTER * context.preferences.system.ui_scale
-    return max(24, int(context.region.width / scale) - 7)
-
-
-def _sentences(column, text, letters):
-    for line in textwrap.wrap(text, max(letters, 12)) or [""]:
-        column.label(text=line)
-
-
-def _alert(column, text, letters):
-    lines = textwrap.wrap(text, max(letters - 3, 12))
-    for i, line in enumerate(lines):
-        row = column.row()
-        row.alert = True
-        row.label(text=line, icon="BLANK1" if i else "ERROR")
+    draw_sentences(split.column(align=True), value, int(0.7 * letters))
 
 
 def _draw_clamp(panel, context):

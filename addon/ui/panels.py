@@ -174,6 +174,7 @@ class APLANAT_VIEWLAYER_PT_data(EnginePanel, bpy.types.Panel):
         lens = column.column(heading="Lens")
         lens.prop(layer.aplanat, "use_pass_coc")
         lens.prop(layer.aplanat, "use_pass_focus_matte")
+        lens.prop(layer.aplanat, "use_pass_fringe")
         diagnosis = column.column(heading="Diagnosis")
         diagnosis.prop(layer.aplanat, "use_pass_detail")
 

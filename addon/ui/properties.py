@@ -10,6 +10,8 @@ from bpy.props import (
 )
 
 from .camera_properties import AplanatCameraSettings
+from .chromatic_properties import AplanatChromaticSettings
+from .spectrum_bar import AplanatSpectrumBar
 
 # Also what the command line accepts.
 MAX_SAMPLES = 65536
@@ -182,9 +184,22 @@ class AplanatViewLayerSettings(bpy.types.PropertyGroup):
         default=False,
         update=_update_passes,
     )
+    use_pass_fringe: BoolProperty(
+        name="Fringe",
+        description="What chromatic aberration adds and takes away: Combined less the same picture"
+        " without it, which is rendered beside it",
+        default=False,
+        update=_update_passes,
+    )
 
 
-CLASSES = (AplanatSceneSettings, AplanatViewLayerSettings, AplanatCameraSettings)
+CLASSES = (
+    AplanatSceneSettings,
+    AplanatViewLayerSettings,
+    AplanatSpectrumBar,
+    AplanatChromaticSettings,
+    AplanatCameraSettings,
+)
 
 _register, _unregister = bpy.utils.register_classes_factory(CLASSES)
 

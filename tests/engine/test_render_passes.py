@@ -20,6 +20,7 @@ def view_layer(depth=6, **switches):
         use_pass_coc=switches.get("coc", False),
         use_pass_focus_matte=switches.get("focus_matte", False),
         use_pass_detail=switches.get("detail", False),
+        use_pass_fringe=switches.get("fringe", False),
     )
     return Record(pass_cryptomatte_depth=depth, aplanat=own, **values)
 
@@ -48,6 +49,7 @@ def test_every_name_that_can_be_asked_for_is_in_the_table():
             vector=True,
             coc=True,
             focus_matte=True,
+            fringe=True,
             cryptomatte_object=True,
             cryptomatte_material=True,
         )
