@@ -95,7 +95,8 @@ def test_few_samples_of_the_spectrum_are_near_many(bench, shared):
     chromatic = aberration("SPECTRAL", scene.camera.data.lens / 1000.0, SCENE_AXIAL)
     few, many = (
         read.draw(with_aberration(read.sampled("REFERENCE", samples), chromatic)).picture
-        for samples in (128, 1024)
+        # With more, the two are closer still; the benchmark takes 4096.
+        for samples in (128, 512)
     )
     assert compare(few, many)["ssim_srgb"] >= 0.98
 
