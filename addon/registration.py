@@ -8,6 +8,11 @@ from .ui import (
     bokeh_panel,
     bokeh_presets,
     bokeh_previews,
+    chromatic_curves,
+    chromatic_operators,
+    chromatic_panel,
+    chromatic_presets,
+    chromatic_previews,
     lens_import,
     lens_operators,
     lens_panel,
@@ -33,6 +38,11 @@ _MODULES = (
     bokeh_previews,
     bokeh_presets,
     bokeh_panel,
+    chromatic_curves,
+    chromatic_previews,
+    chromatic_presets,
+    chromatic_operators,
+    chromatic_panel,
     blender_command,
 )
 

@@ -110,6 +110,8 @@ def _check_bench(arguments):
     for option in ("focus_pull", "peers"):
         if getattr(arguments, option) and (arguments.method != "adaptive" or arguments.lens):
             raise InputError(f"--{option.replace('_', '-')} belongs to --method adaptive")
+    if arguments.chromatic and (arguments.method != "reference" or arguments.lens):
+        raise InputError("--chromatic measures both methods; give neither --method nor --lens")
 
 
 _frame = whole_number(-MAX_FRAME, MAX_FRAME)
@@ -266,6 +268,11 @@ def _add_bench(commands):
         action="store_true",
         help="adaptive method: compare with EEVEE and Cycles at equal quality instead; takes long",
     )
+    also.add_argument(
+        "--chromatic",
+        action="store_true",
+        help="measure chromatic aberration instead: against its model and Cycles, noise, cost",
+    )
     add(
         "--samples",
         metavar="N",
@@ -276,7 +283,7 @@ def _add_bench(commands):
         "--resolution",
         metavar="WxH",
         type=_resolution,
-        help="default 480x270; 1024x576 with --method adaptive",
+        help="default 480x270; 1024x576 with --method adaptive, 320x180 with --chromatic",
     )
     add(
         "--reference",

@@ -121,7 +121,7 @@ class BenchScene:
                     self._buffers.add_levels(uid, self._store.ready(uid))
         return {**seconds, "meshes": len(uids)}
 
-    def draw(self, snapshot, samples=None, progress=None):
+    def draw(self, snapshot, samples=None, progress=None, plan=None):
         """Draw a frame.
 
         Parameters
@@ -131,13 +131,15 @@ class BenchScene:
             Only so many of the plan's.
         progress : callable, optional
             Called with the number of samples done.
+        plan : FramePlan, optional
+            To carry out instead of the snapshot's.
 
         Returns
         -------
         Drawn
         """
         stages = {}
-        with self._prepared(snapshot, stages) as renderer:
+        with self._prepared(snapshot, stages, plan) as renderer:
             with timed(stages, "draw"):
                 end = samples or renderer.plan.samples
                 while renderer.samples_done < end:
@@ -194,9 +196,9 @@ class BenchScene:
         return seconds
 
     @contextmanager
-    def _prepared(self, snapshot, stages):
+    def _prepared(self, snapshot, stages, plan=None):
         with timed(stages, "plan"):
-            plan = plan_frame(snapshot)
+            plan = plan or plan_frame(snapshot)
         with timed(stages, "prepare"):
             renderer = FrameRenderer(plan, snapshot, self._buffers)
             renderer.wait()

@@ -3,8 +3,9 @@
 All three render the scene through Blender's render operator, and all of that call is timed. The
 adaptive method is measured at the least of a ladder of settings that is as similar to the reference
 picture as is asked for. Cycles takes a number of samples that reaches the same: doubled until it
-does, then the interpolated one if that does, too. EEVEE has one best setting. Our method is
-timed again beside each of them, because the machine may have other work.
+does, then the interpolated one if that does, too. Our method is timed again beside each render of
+Cycles, because the machine may have other work. EEVEE has one best setting, which takes a minute
+and more: beside it stands the first setting of our ladder that is as similar to the reference.
 """
 
 import os
@@ -151,7 +152,27 @@ class _Study:
         self._use_eevee()
         # Compiles.
         self._render("eevee", 1)
-        return self._beside("eevee", _EEVEE_SAMPLES, 1)
+        found = self._render("eevee", _EEVEE_SAMPLES)
+        # EEVEE has one best setting: ours is the next of the ladder that is as good or better.
+        wanted = found["compared"]["ssim_srgb"]
+        for setting in _LADDER[_LADDER.index(self._setting) :]:
+            self._setting = setting
+            ours = self._ours()
+            if ours["compared"]["ssim_srgb"] >= wanted:
+                break
+        times = [self._ours() for _ in range(_TIMES)]
+        ours = _middle(times)
+        return {
+            "samples": _EEVEE_SAMPLES,
+            **found,
+            "adaptive": {
+                "samples": setting[0],
+                "subsamples": setting[1],
+                "reached": ours["compared"]["ssim_srgb"] >= wanted,
+                **ours,
+            },
+            "speedup": found["seconds"] / ours["seconds"],
+        }
 
     def _use_eevee(self):
         scene = self._scene
@@ -233,5 +254,14 @@ def peers_lines(found):
         yield (
             f"{found['scene']}: {name}, {result['samples']} samples: {result['seconds']:.2f} s,"
             f" SSIM {result['compared']['ssim_srgb']:.4f}: {result['speedup']:.2f} times as long as"
-            " the adaptive method"
+            f" the adaptive method{_as_good_as(result)}"
         )
+
+
+def _as_good_as(result):
+    if "adaptive" not in result:
+        return ""
+    ours = result["adaptive"]
+    return (
+        f" ({ours['samples']}, {ours['subsamples']}) with SSIM {ours['compared']['ssim_srgb']:.4f}"
+    )

@@ -115,6 +115,8 @@ def _runner(arguments, prepare):
         prepare()
         if arguments.command == "render":
             from .render import render as run
+        elif arguments.chromatic:
+            from .bench_chromatic import bench_chromatic as run
         elif arguments.method == "adaptive":
             from .bench_adaptive import bench_adaptive as run
         else:

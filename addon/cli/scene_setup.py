@@ -106,6 +106,8 @@ def apply_frame(scene, frame, arguments):
         use_lens(scene.camera, arguments.lens)
     if arguments.no_bokeh:
         _leave_out_bokeh(scene.camera.data)
+    if arguments.no_chromatic:
+        _leave_out_chromatic(scene.camera.data)
     if arguments.fstop or arguments.focus is not None:
         _use_lens_options(scene, arguments)
         _check_lens_options(scene, arguments)
@@ -204,6 +206,11 @@ def use_lens(camera, word):
 def _leave_out_bokeh(data):
     _stop_animation(data, "aplanat.bokeh.use")
     data.aplanat.bokeh.use = False
+
+
+def _leave_out_chromatic(data):
+    _stop_animation(data, "aplanat.chromatic.use")
+    data.aplanat.chromatic.use = False
 
 
 def _use_lens_options(scene, arguments):

@@ -10,7 +10,7 @@ from ..errors import InputError
 
 _REPOSITORY = Path(__file__).resolve().parents[2]
 _SHARED = _REPOSITORY.parent / "shared"
-_BUILT = _REPOSITORY / "build" / "scenes"
+BUILT_FOLDER = _REPOSITORY / "build" / "scenes"
 
 _NAMES = ("toys", "balls", "dragons", "fishes", "christmas_tree", "street", "toy_dinosaurs")
 
@@ -34,7 +34,7 @@ def shared_scene(name, look, console):
     InputError
         If the shared folder is not there or the scene cannot be built.
     """
-    file = _BUILT / f"{name}_{look}.blend"
+    file = BUILT_FOLDER / f"{name}_{look}.blend"
     if file.is_file():
         return file
     builder = _SHARED / "scenes" / "build_scenes.py"
@@ -46,7 +46,7 @@ def shared_scene(name, look, console):
     if bpy.app.binary_path:
         raise InputError(f"scene '{name}' is built with scripts/aplanat only; give a .blend file")
     console.say(f"building scene {name} ({look})")
-    _BUILT.mkdir(parents=True, exist_ok=True)
+    BUILT_FOLDER.mkdir(parents=True, exist_ok=True)
     part = file.with_name(f"part-{file.name}")
     words = [sys.executable, builder, "--scene", name, "--look", look, "--out", part]
     # -B: nothing is written into the shared folder.

@@ -6,8 +6,10 @@ import bpy
 
 from ..bokeh.iris_mask import PictureIris
 from ..device.context import device_name
+from ..sampling.chromatic import RGB_WAVELENGTHS_NM
 from ..scene.bokeh import corner_tangent, read_bokeh
 from ..scene.camera import focus_distance
+from ..scene.chromatic import read_chromatic
 from ..scene.lenses import read_real_lens
 from .version import version
 
@@ -79,6 +81,7 @@ def settings_in_force(scene, arguments=None):
         "aperture_rotation": dof.aperture_rotation,
         "aperture_ratio": dof.aperture_ratio,
         "bokeh": _bokeh(scene, data, lens),
+        "chromatic": _chromatic(data, lens),
         "view_transform": scene.view_settings.view_transform,
         "no_bokeh": bool(arguments and arguments.no_bokeh),
         "no_chromatic": bool(arguments and arguments.no_chromatic),
@@ -115,6 +118,29 @@ def _bokeh(scene, data, lens):
         "dust": look.grain.dust if look.grain else 0,
         "diffraction": look.diffraction.strength if look.diffraction else 0.0,
         "onion": look.onion.contrast if look.onion else 0.0,
+    }
+
+
+def _chromatic(data, lens):
+    found, _ = read_chromatic(data, lens)
+    if found is None:
+        return None
+    shortest, longest = found.wavelength_range
+    return {
+        "mode": found.mode.lower(),
+        "axial": found.axial,
+        "lateral_per_um": found.lateral,
+        "axial_map": found.axial_map.text,
+        "lateral_map": found.lateral_map.text,
+        "wavelengths_nm": RGB_WAVELENGTHS_NM if found.mode == "RGB" else [shortest, longest],
+        "focal_length_m": found.focal_length,
+        # Of the shortest wavelength over the longest's, before the strength.
+        "focal_ratio": float(found.dispersion.ratio(shortest, found.reference_nm)),
+        "equalizer": (
+            None
+            if found.mode == "RGB" or found.equalizer.is_flat
+            else [found.equalizer.wavelengths_nm, found.equalizer.weights]
+        ),
     }
 
 

@@ -97,6 +97,13 @@ def device_name():
     return f"{gpu.platform.backend_type_get()}: {gpu.platform.renderer_get()}"
 
 
+def is_software():
+    """Return whether the processor draws in place of a graphics device."""
+    import gpu
+
+    return gpu.platform.device_type_get() == "SOFTWARE"
+
+
 def max_texture_size():
     """Return the largest width and height of a texture, in texels."""
     import gpu

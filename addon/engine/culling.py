@@ -56,6 +56,13 @@ def seen(spheres, plan):
     w_reach = np.linalg.norm(w_row[:3]) * spheres.radii
     # |R(d)| over the aperture radius, at its largest inside the sphere.
     shear = (np.abs(plan.focus_distance + eye[:, 2]) + spheres.radii) / plan.focus_distance
+    growth = np.zeros(len(eye))
+    if plan.chromatic is not None:
+        ranges = plan.chromatic.ranges(_boxes(eye, spheres.radii))
+        depths = -eye[:, 2] + np.array([[-1.0], [1.0]]) * spheres.radii
+        shear = np.abs(1.0 - depths[:, None] * ranges.inverse_focus).max(axis=(0, 1))
+        growth = np.abs(ranges.scale - 1.0).max(axis=0)
+        growth = growth * (np.linalg.norm(eye[:, :2], axis=1) + spheres.radii)
     jitter = np.abs(plan.jitter).max(axis=0, initial=0.0)
     visible = np.ones(len(eye), bool)
     for row, axis in ((x_row, 0), (y_row, 1), (z_row, None)):
@@ -64,9 +71,15 @@ def seen(spheres, plan):
             reach = np.linalg.norm(plane[:3]) * spheres.radii
             if axis is not None:
                 reach = reach + np.abs(plane[:2]) @ plan.lens_extent * shear
+                reach = reach + np.linalg.norm(plane[:2]) * growth
                 reach = reach + jitter[axis] * (np.abs(w) + w_reach)
             visible &= eye @ plane[:3] + plane[3] + reach >= 0.0
     return visible
+
+
+def _boxes(centers, radii):
+    corners = np.stack(np.meshgrid(*[(-1.0, 1.0)] * 3, indexing="ij"), axis=-1).reshape(8, 3)
+    return centers[:, None] + radii[:, None, None] * corners
 
 
 def runs(rows, triangles):

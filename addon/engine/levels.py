@@ -22,6 +22,10 @@ LEAST_ALLOWANCE = 0.5
 _ALLOWANCE, _CONTRAST = 1.5, 0.25
 _MOST_ALLOWANCE = 4.5
 
+# Smaller objects that are partly in focus save less by being coarser where they blur than the draw
+# calls of their own that they need then.
+LEAST_GRADED_TRIANGLES = 10_000
+
 # Triangles are counted once a side: half of them face away.
 _FACING_SHARE = 0.5
 
@@ -36,12 +40,16 @@ class Extents:
         Least and largest depth of the corners of the bounding box, m.
     center_depth, radius : ndarray of shape (I,)
         Of the sphere round those corners, m.
+    inverse_focus : ndarray of shape (2, I) or None
+        Least and largest inverse of the focus distance of any wavelength, 1/m; None without
+        chromatic aberration.
     """
 
     nearest: np.ndarray
     farthest: np.ndarray
     center_depth: np.ndarray
     radius: np.ndarray
+    inverse_focus: np.ndarray | None = None
 
 
 def world_corners(content, bounds):
@@ -69,7 +77,7 @@ def world_corners(content, bounds):
     return corners
 
 
-def extents(corners, view):
+def extents(corners, view, chromatic=None):
     """Measure the instances as a camera sees them.
 
     Parameters
@@ -78,6 +86,7 @@ def extents(corners, view):
         See `world_corners`.
     view : ndarray of shape (4, 4)
         World to camera space.
+    chromatic : ChromaticPlan or None
 
     Returns
     -------
@@ -85,11 +94,15 @@ def extents(corners, view):
     """
     depth = -(corners @ view[2, :3] + view[2, 3])
     center = corners.mean(axis=1)
+    focus = None
+    if chromatic is not None:
+        focus = chromatic.ranges(corners @ view[:3, :3].T + view[:3, 3]).inverse_focus
     return Extents(
         nearest=depth.min(axis=1),
         farthest=depth.max(axis=1),
         center_depth=-(center @ view[2, :3] + view[2, 3]),
         radius=np.linalg.norm(corners - center[:, None], axis=2).max(axis=1),
+        inverse_focus=focus,
     )
 
 
@@ -97,6 +110,33 @@ def coc_radius(depth, plan):
     """Return the signed radius of the circle of confusion in pixels, along the vertical."""
     defocus = plan.coc_scale * (depth - plan.focus_distance) / plan.focus_distance
     return defocus if plan.orthographic else defocus / np.maximum(depth, 1e-9)
+
+
+def coc_ends(near, far, plan, inverse_focus=None):
+    """Return the signed circles of confusion between which those of a range of depths lie.
+
+    Parameters
+    ----------
+    near, far : ndarray of shape (...)
+        In m.
+    plan : FramePlan
+    inverse_focus : ndarray of shape (2, ...) or None
+        As of `Extents`.
+
+    Returns
+    -------
+    near, far : ndarray of shape (...)
+        In pixels; with chromatic aberration the least and the largest of all wavelengths.
+    """
+    if inverse_focus is None:
+        return coc_radius(near, plan), coc_radius(far, plan)
+    depth = np.stack([near, far])[:, None]
+    if plan.orthographic:
+        radii = depth * inverse_focus - 1.0
+    else:
+        radii = inverse_focus - 1.0 / np.maximum(depth, 1e-9)
+    radii = plan.coc_scale * radii
+    return radii.min(axis=(0, 1)), radii.max(axis=(0, 1))
 
 
 def color_allowance(contrast):
@@ -135,19 +175,87 @@ def choose_levels(seen, triangles, plan, bias=0.0):
         Not negative; 0 where a part is in focus or behind the camera.
     """
     front = (seen.nearest > 0.0) | plan.orthographic
-    near, far = (coc_radius(np.where(front, d, 1.0), plan) for d in (seen.nearest, seen.farthest))
-    smallest = np.where(near * far <= 0.0, 0.0, np.minimum(np.abs(near), np.abs(far)))
-    # An anamorphic opening is narrower than it is high.
-    narrowing = plan.lens_extent[0] / max(plan.lens_extent[1], 1e-30)
-    blur_area = np.pi * smallest**2 * narrowing
+    depths = (np.where(front, depth, 1.0) for depth in (seen.nearest, seen.farthest))
+    smallest = _smallest(*coc_ends(*depths, plan, seen.inverse_focus))
+    level = _level(smallest, seen, triangles, plan) - bias
+    return np.where(front, np.maximum(level, 0.0), 0.0)
+
+
+def may_grade(seen, triangles, plan):
+    """Return which instances may be drawn coarser where they are out of focus.
+
+    Parameters
+    ----------
+    seen : Extents
+    triangles : ndarray of shape (I,)
+        Of the mesh at full detail.
+    plan : FramePlan
+
+    Returns
+    -------
+    ndarray of shape (I,)
+        bool; large ones of which a part is blurred enough for another level of detail.
+    """
+    near = np.where(plan.orthographic, seen.nearest, np.maximum(seen.nearest, 1e-9))
+    ends = coc_ends(near, np.maximum(seen.farthest, near), plan, seen.inverse_focus)
+    level = _level(np.abs(ends).max(axis=0), seen, triangles, plan)
+    level -= plan.level_bias + LEAST_ALLOWANCE
+    reaches = plan.orthographic | (seen.farthest > 0.0)
+    return (triangles >= LEAST_GRADED_TRIANGLES) & reaches & (level >= 1.0)
+
+
+def _level(radius, seen, triangles, plan):
+    """Return the level whose triangles are as large as circles of confusion; it may be negative."""
+    blur_area = np.pi * radius**2 * _narrowing(plan)
     scale = plan.projection[1, 1] * plan.height / 2.0
     size = scale * seen.radius
     if not plan.orthographic:
         size = size / np.maximum(seen.center_depth, 1e-9)
     triangle_area = np.pi * size**2 / np.maximum(_FACING_SHARE * triangles, 1e-9)
     ratio = blur_area / np.maximum(triangle_area, 1e-30)
-    level = np.log2(np.maximum(ratio, 1e-30)) - bias
-    return np.where(front & (smallest > 0.0), np.maximum(level, 0.0), 0.0)
+    return np.log2(np.maximum(ratio, 1e-30))
+
+
+def blurred_area(depth, world, plan, bias):
+    """Return how large the triangles of an instance may be where it is blurred.
+
+    In the picture, a triangle that is seen at an average angle is then as large as the circle of
+    confusion, or smaller by the bias.
+
+    Parameters
+    ----------
+    depth : ndarray of shape (V,)
+        Of its vertices, m.
+    world : ndarray of shape (4, 4)
+        Object to world space.
+    plan : FramePlan
+    bias : float
+        Levels of detail.
+
+    Returns
+    -------
+    ndarray of shape (V,)
+        An area in object space; 0 in focus or behind the camera.
+    """
+    front = (depth > 0.0) | plan.orthographic
+    ahead = np.where(front, depth, 1.0)
+    focus = plan.chromatic.overall().inverse_focus[:, None] if plan.chromatic else None
+    circle = np.pi * _smallest(*coc_ends(ahead, ahead, plan, focus)) ** 2 * _narrowing(plan)
+    scale = plan.projection[1, 1] * plan.height / 2.0
+    pixels = np.full(len(depth), scale) if plan.orthographic else scale / ahead
+    # The mean over all directions of how an area is stretched and foreshortened.
+    stretch = np.abs(np.linalg.det(world[:3, :3])) ** (2.0 / 3.0) * 0.5
+    area = circle / np.maximum(pixels**2 * stretch, 1e-30)
+    return np.where(front, area * 2.0**-bias, 0.0)
+
+
+def _smallest(near, far):
+    return np.where(near * far <= 0.0, 0.0, np.minimum(np.abs(near), np.abs(far)))
+
+
+def _narrowing(plan):
+    # An anamorphic opening is narrower than it is high.
+    return plan.lens_extent[0] / max(plan.lens_extent[1], 1e-30)
 
 
 def level_for_sample(levels, sample, samples):
@@ -179,7 +287,7 @@ def allowances(content):
 
 
 def meshes_with_levels(content, plan):
-    """Return which meshes are drawn at a lower level of detail, if they have any.
+    """Return which meshes are drawn at a lower level of detail, if they have any, or in part.
 
     Parameters
     ----------
@@ -193,17 +301,20 @@ def meshes_with_levels(content, plan):
     """
     if plan.level_bias is None or plan.coc_scale == 0.0:
         return []
+    # What Fringe compares with is drawn beside the frame.
+    beside = set(meshes_with_levels(content, plan.plain)) if plan.plain else set()
     meshes = [content.meshes[group.mesh] for group in content.groups]
     bounds = {mesh.uid: mesh.bounds for mesh in meshes}
-    seen = extents(world_corners(content, bounds), plan.view)
+    seen = extents(world_corners(content, bounds), plan.view, plan.chromatic)
     full = np.zeros(len(seen.radius))
     for group, mesh in zip(content.groups, meshes, strict=True):
         full[group.first : group.first + group.count] = len(mesh.triangles)
     chosen = choose_levels(seen, full, plan, plan.level_bias + allowances(content))
+    coarser = (chosen > 0.0) | may_grade(seen, full, plan)
     wanted = {
         mesh.uid
         for group, mesh in zip(content.groups, meshes, strict=True)
         if len(mesh.triangles) >= 2 * plan.least_triangles
-        and (chosen[group.first : group.first + group.count] > 0.0).any()
+        and coarser[group.first : group.first + group.count].any()
     }
-    return [uid for uid in content.meshes if uid in wanted]
+    return [uid for uid in content.meshes if uid in wanted | beside]

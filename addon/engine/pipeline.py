@@ -11,7 +11,8 @@ import numpy as np
 from ..device import geometry, readback, state
 from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
-from ..passes import accumulate, background, cryptomatte, data, resolve, surface
+from ..passes import accumulate, background, chromatic, cryptomatte, data, resolve, surface
+from ..sampling.chromatic import LEAST_SCALE
 from . import render_passes
 from .bokeh_stage import BokehStage, highlight_buffer
 from .bokeh_visibility import SceneOccluders
@@ -40,8 +41,9 @@ class FrameRenderer:
     def __init__(self, plan, snapshot, buffers):
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
-        self._content = self._levels = self._drawing = self._blur = self._bokeh = None
-        self._target = self._occluders = None
+        self._content = self._levels = self._drawing = self._blur = self._plain = None
+        self._target = self._bokeh = self._occluders = None
+        self._graded = {}
         self._targets = None
         self.restart(plan, snapshot)
 
@@ -63,28 +65,58 @@ class FrameRenderer:
         if plan.bokeh:
             target = surface.without_highlights(target)
             self._highlights = highlight_buffer(plan.bokeh)
+        if plan.chromatic:
+            target = surface.in_wavelengths(target)
         levels = self._buffers.levels_version
         if (snapshot.content, target, levels) != (self._content, self._target, self._levels):
             self._content, self._target, self._levels = snapshot.content, target, levels
-            self._drawing = SceneDrawing(snapshot.content, self._buffers, target)
+            self._drawing = SceneDrawing(snapshot.content, self._buffers, target, self._graded)
             self._occluders = SceneOccluders(snapshot.content, self._buffers)
-        self._drawing.aim(plan, self._highlights)
+        self._field = _chromatic_resources(plan.chromatic) if plan.chromatic else None
+        wavelengths = self._wavelength if plan.chromatic else None
+        self._drawing.aim(plan, wavelengths, self._highlights)
         self._view = uniform_buffer(_view_params(plan))
         world = snapshot.content.world
         self._background = (0.0,) * 4 if snapshot.film.transparent else (*world.color, 1.0)
         self._shows_image = bool(world.image) and not snapshot.film.transparent
-        self._blur = SubsampleBlur(plan, self._drawing.nearest) if plan.blurs else None
+        self._blur = None
+        if plan.blurs:
+            self._blur = SubsampleBlur(plan, self._drawing.nearest, wavelengths)
         self._bokeh = None
         if plan.bokeh:
             self._bokeh = BokehStage(
                 plan, self._drawing, self._buffers, self._occluders, self._highlights
             )
         self._prepare_targets()
+        self._restart_plain(plan, snapshot)
+
+    def _restart_plain(self, plan, snapshot):
+        """Begin the same frame without chromatic aberration, for Fringe."""
+        if plan.plain is None:
+            if self._plain:
+                self._plain.release()
+            self._plain = None
+        elif self._plain:
+            self._plain.restart(plan.plain, snapshot)
+        else:
+            self._plain = FrameRenderer(plan.plain, snapshot, self._buffers)
+
+    def _wavelength(self, index):
+        """Return a sample's `ChromaticSample`; that of the reference wavelength for None."""
+        if self.plan.chromatic is None:
+            return None
+        if index is None:
+            return chromatic.ChromaticSample((0.0, 0.0), (1.0,) * 4, self._field)
+        plan = self.plan.chromatic
+        tint = tuple(plan.weights[index].tolist())
+        return chromatic.ChromaticSample(plan.dispersion(index), tint, self._field)
 
     @property
     def counts(self):
         """Work done since the frame began, as `DrawingCounts`."""
-        return self._drawing.counts
+        if self._plain is None:
+            return self._drawing.counts
+        return self._drawing.counts + self._plain.counts
 
     @property
     def highlights(self):
@@ -144,6 +176,8 @@ class FrameRenderer:
         end = min(self.samples_done + samples, self.plan.samples)
         for index in range(self.samples_done, end):
             self._render_sample(index, stage)
+            if self._plain:
+                self._plain.advance(1, stage)
             if (index + 1) % _SAMPLES_IN_FLIGHT == 0:
                 self.wait()
         self.samples_done = end
@@ -164,10 +198,10 @@ class FrameRenderer:
             self._draw_sample(index)
         with stage("sum"):
             self._add_sample(index)
-        self.counts.triangles_full_detail += self._drawing.full_detail
+        self._drawing.counts.triangles_full_detail += self._drawing.full_detail
 
     def _draw_sample(self, index):
-        plan, targets = self.plan, self._targets
+        targets = self._targets
         framebuffer = targets.framebuffer("sample", depth="sample_depth")
         with framebuffer.bind():
             framebuffer.clear(color=self._background, depth=1.0)
@@ -178,7 +212,7 @@ class FrameRenderer:
         self._drawing.draw(index, framebuffer, self._view, targets)
         if self._shows_image:
             with targets.framebuffer("sample", depth="sample_depth").bind():
-                self._draw_background(plan.lens_sample(index))
+                self._draw_background(index)
         self._drawing.draw_glows(index, framebuffer, self._view)
 
     def _find_bounds(self):
@@ -189,16 +223,17 @@ class FrameRenderer:
         self._drawing.draw_coarsest(framebuffer, self._view)
         self._blur.find_bounds(self._fullscreen, targets)
 
-    def _draw_background(self, lens_sample):
+    def _draw_background(self, index):
         background.draw(
             self._fullscreen,
             self._view,
             self._buffers.environment_buffer,
             self._buffers.environment_image,
-            lens_sample,
+            self.plan.lens_sample(index),
             self._highlights,
+            self._wavelength(index),
         )
-        self.counts.draw_calls += 1
+        self._drawing.counts.draw_calls += 1
 
     def _add_sample(self, index):
         plan, targets = self.plan, self._targets
@@ -207,9 +242,13 @@ class FrameRenderer:
             if self._blur:
                 self._blur.add(self._fullscreen, targets, index)
             else:
-                accumulate.accumulate(self._fullscreen, targets["sample"], weights)
+                tint = self._wavelength(index).tint if plan.chromatic else None
+                accumulate.accumulate(self._fullscreen, targets["sample"], weights, tint)
         # The mattes are those of the sample's own place, with the weight of all it stands for.
         places = np.array([[1.0 + plan.subsample_counts[index]], [1.0]])
+        if plan.chromatic:
+            # As its alpha.
+            places[0] *= plan.chromatic.weights[index, 3]
         if "focus_sum" in targets:
             with targets.framebuffer("focus_sum").bind():
                 accumulate.accumulate_focus(self._fullscreen, targets["mattes"], weights * places)
@@ -217,7 +256,7 @@ class FrameRenderer:
             cryptomatte.count(
                 targets["mattes"], targets["tables"], self._cryptomattes, weights * places
             )
-        self.counts.draw_calls += 1 + ("focus_sum" in targets)
+        self._drawing.counts.draw_calls += 1 + ("focus_sum" in targets)
 
     def _empty_focus(self):
         sharp = self.plan.sharp_radius
@@ -241,14 +280,20 @@ class FrameRenderer:
 
     def _resolve(self, total, origin=(0, 0), pixel_size=1, with_bokeh=False):
         state.overwrite()
+        weight = self._weight() if total == "sum" else self._mean_weight()
         bokeh = self._targets["bokeh"] if self._bokeh and with_bokeh else None
-        resolve.resolve(
-            self._fullscreen, self._targets[total], self._weight(), origin, pixel_size, bokeh
-        )
+        resolve.resolve(self._fullscreen, self._targets[total], weight, origin, pixel_size, bokeh)
 
     def _weight(self):
         # A first sample whose places all lie outside a narrow box filter weighs nothing.
-        return self.plan.weight(self.samples_done) or 1.0
+        weight = self.plan.weight(self.samples_done)
+        if isinstance(weight, tuple):
+            return tuple(w or 1.0 for w in weight)
+        return weight or 1.0
+
+    def _mean_weight(self):
+        weight = self._weight()
+        return weight[3] if isinstance(weight, tuple) else weight
 
     def read_image(self):
         """Return the picture so far, shape (height, width, 4), bottom row first."""
@@ -303,9 +348,17 @@ class FrameRenderer:
             elif name == "Focus Matte":
                 focus = self._read_sum("focus_sum", "image")
                 pictures[name] = np.ascontiguousarray(focus[..., :1])
+            elif name == "Fringe":
+                pictures[name] = self._read_fringe()
             elif name not in pictures:
                 pictures[name] = self._read_cryptomatte(name[:-2], int(name[-2:]))
         return {name: pictures[name] for name in names}
+
+    def _read_fringe(self):
+        picture = np.ascontiguousarray(self._read_sum("sum", "image")[..., :3])
+        if self._plain is None:
+            return np.zeros_like(picture)
+        return picture - self._plain.read_image()[..., :3]
 
     def _read_sum(self, total, image):
         framebuffer = self._targets.framebuffer(image)
@@ -323,7 +376,7 @@ class FrameRenderer:
                 self._cryptomattes,
                 kind,
                 index,
-                self._weight(),
+                self._mean_weight(),
             )
         return readback.read_color(framebuffer, self.plan.width, self.plan.height)
 
@@ -353,7 +406,7 @@ class FrameRenderer:
                 framebuffer.clear(depth=1.0)
                 state.opaque()
                 data.draw(draws, self._view, instances, tuple(bindings))
-            self.counts.draw_calls += len(draws)
+            self._drawing.counts.draw_calls += len(draws)
             pictures = {
                 name: readback.read_color(targets.framebuffer(name), plan.width, plan.height)
                 for name in {data.PLACES[name][0] for name in names}
@@ -363,16 +416,22 @@ class FrameRenderer:
     def texture_bytes(self):
         """Return how many bytes targets, images and instances hold on the device."""
         targets = self._targets.bytes if self._targets else 0
-        return targets + self._buffers.texture_bytes() + self._drawing.texture_bytes()
+        own = targets + self._drawing.texture_bytes()
+        if self._plain:
+            own += self._plain.texture_bytes() - self._buffers.texture_bytes()
+        return own + self._buffers.texture_bytes()
 
     def geometry_bytes(self):
         """Return how many bytes the meshes hold on the device."""
-        return self._buffers.geometry_bytes()
+        return self._buffers.geometry_bytes() + self._drawing.geometry_bytes()
 
     def release(self):
         """Give back to the device what nobody else holds; the renderer is of no use after it."""
         self._release_targets()
-        self._buffers = self._drawing = self._blur = self._bokeh = self._occluders = None
+        if self._plain:
+            self._plain.release()
+        self._plain = self._buffers = self._drawing = self._blur = self._graded = None
+        self._bokeh = self._occluders = None
 
     def _release_targets(self):
         if self._targets is not None:
@@ -382,6 +441,23 @@ class FrameRenderer:
 
 def _channels(pictures, target, first, count):
     return np.ascontiguousarray(pictures[target][..., first : first + count])
+
+
+def _chromatic_resources(plan):
+    strengths = plan.lateral_strengths
+    return chromatic.resources(
+        table=plan.table,
+        radius=plan.radius,
+        parallel=plan.parallel,
+        focus=(
+            plan.inverse_focus,
+            1.0 / plan.focal_length,
+            plan.least_inverse_focus,
+            LEAST_SCALE,
+        ),
+        raster=plan.raster,
+        extremes=(plan.focal_errors.min(), plan.focal_errors.max(), np.abs(strengths).max()),
+    )
 
 
 def _view_params(plan):

@@ -6,13 +6,18 @@ import numpy as np
 
 from ..sampling.pixel_filter import subpixel_weights
 from ..sampling.sequence import lens_samples, pixel_offsets
+from ..sampling.spectral_samples import wavelengths_for
 from ..sampling.subsamples import subsample_offsets
 from .bokeh_plan import BokehPlan, plan_bokeh
+from .chromatic import ChromaticPlan, plan_chromatic
 from .quality import settle
 
 # Diagonals of the picture over the diameter of the largest circle of confusion that counts as
 # sharp: the usual criterion of depth-of-field tables (0.029 mm for 36 x 24 mm).
 _SHARP_CIRCLES_PER_DIAGONAL = 1500.0
+
+# Their wavelengths reach as far as those of many.
+_TYPICAL_SAMPLES = 64
 
 # Sub-pixels along a side of a pixel: as many as two vectors of weights hold.
 _MOST_SUBPIXELS = 4
@@ -56,6 +61,8 @@ class FramePlan:
         No level of detail has fewer.
     reuse_grid : int
         Cells along a pixel in which samples share a drawing; 0 shares none.
+    progressive : bool
+        The frame may be given up before all its samples are drawn.
     lens_extent : ndarray of shape (2,)
         Half the width and height of the opening, in m.
     coc_scale : float
@@ -71,6 +78,10 @@ class FramePlan:
         World to clip space of the region in the neighbouring frames.
     bokeh : BokehPlan or None
         None draws highlights as everything else.
+    chromatic : ChromaticPlan or None
+        None: every sample stands for all wavelengths.
+    plain : FramePlan or None
+        The same frame without chromatic aberration, where Fringe needs it.
     """
 
     width: int
@@ -89,6 +100,7 @@ class FramePlan:
     level_bias: float | None
     least_triangles: int
     reuse_grid: int
+    progressive: bool
     lens_extent: np.ndarray
     coc_scale: float
     sharp_radius: float
@@ -98,6 +110,8 @@ class FramePlan:
     previous: np.ndarray
     next: np.ndarray
     bokeh: BokehPlan | None = None
+    chromatic: ChromaticPlan | None = None
+    plain: "FramePlan | None" = None
 
     @property
     def samples(self):
@@ -105,9 +119,22 @@ class FramePlan:
         return len(self.lens_positions)
 
     def weight(self, samples):
-        """Return the summed weight of the first `samples` lens samples."""
+        """Return the summed weight of the first `samples` lens samples.
+
+        Parameters
+        ----------
+        samples : int
+
+        Returns
+        -------
+        float or tuple of 4 float
+            With chromatic aberration that of red, green, blue and alpha.
+        """
         own = self.subpixel_weights[:samples].sum(axis=2).prod(axis=1)
-        return float((own * (1 + self.subsample_counts[:samples])).sum())
+        own = own * (1 + self.subsample_counts[:samples])
+        if self.chromatic is None:
+            return float(own.sum())
+        return tuple((own @ self.chromatic.weights[:samples]).tolist())
 
     def lens_sample(self, index):
         """Return a sample's place on the lens in m and its jitter in clip units, 4 numbers."""
@@ -136,6 +163,24 @@ class FramePlan:
         else:
             constant, linear = 1.0 / focus - (slope - 1.0) / offset, -2.0 / offset
         return np.concatenate([scale * constant, scale * linear])
+
+    @property
+    def sweep_parts(self):
+        """The `sweep` in two parts, for a focus that varies over the field.
+
+        Returns
+        -------
+        base, gain : ndarray of shape (4,)
+            The sweep is ``base + gain / focus_distance``.
+        """
+        size = np.array([self.width, self.height]) * self.subpixels
+        scale = np.diag(self.projection)[:2] * size / 2.0
+        slope, offset = self.projection[2, 2:]
+        if self.orthographic:
+            base, gain = (-1.0, 0.0), ((offset + 1.0) / slope, -2.0 / slope)
+        else:
+            base, gain = (-(slope - 1.0) / offset, -2.0 / offset), (1.0, 0.0)
+        return tuple(np.outer(part, scale).ravel() for part in (base, gain))
 
 
 def region_projection(projection, film):
@@ -242,10 +287,18 @@ def plan_frame(snapshot):
     """
     sampling = snapshot.sampling
     if sampling.method == "ADAPTIVE" and sampling.target_error is not None:
-        first = _plan(snapshot, replace(sampling, lens_samples=1, subsamples=0))
+        # Of wavelengths, several tell how far they reach.
+        count = 1 if snapshot.camera.chromatic is None else _TYPICAL_SAMPLES
+        first = _plan(snapshot, replace(sampling, lens_samples=count, subsamples=0))
         sampling = settle(sampling, snapshot, first)
     plan = _plan(snapshot, sampling)
-    return replace(plan, bokeh=plan_bokeh(snapshot, plan))
+    plan = replace(plan, bokeh=plan_bokeh(snapshot, plan))
+    if plan.chromatic is None or "Fringe" not in snapshot.passes:
+        return plan
+    camera = replace(snapshot.camera, chromatic=None)
+    achromatic = replace(snapshot, camera=camera, passes=("Combined",))
+    plain = _plan(achromatic, sampling)
+    return replace(plan, plain=replace(plain, bokeh=plan_bokeh(achromatic, plain)))
 
 
 def _plan(snapshot, sampling):
@@ -254,20 +307,32 @@ def _plan(snapshot, sampling):
     count = sampling.lens_samples
     lens = camera.lens
     adaptive = sampling.method == "ADAPTIVE"
-    if lens is None or lens.aperture_radius == 0.0:
+    is_pinhole = lens is None or lens.aperture_radius == 0.0
+    aberration = camera.chromatic
+    if aberration is not None and not aberration.lateral and (is_pinhole or not aberration.axial):
+        aberration = None
+    colors = wavelengths_for(aberration, count, sampling.seed) if aberration else None
+    # Samples of several wavelengths may look from the same place.
+    taken = colors.lens_indices if aberration else np.arange(count)
+    different = int(taken.max()) + 1
+    if is_pinhole:
         positions, focus, extent = np.zeros((count, 2)), 1.0, np.zeros(2)
         offsets_on_lens, places = np.zeros((count, 0, 2)), np.zeros(count, int)
     else:
         subsamples = sampling.subsamples if adaptive else 0
-        points = lens_samples(0, count * (1 + subsamples), lens.iris, sampling.seed)
+        points = lens_samples(0, different * (1 + subsamples), lens.iris, sampling.seed)
         points = points * lens.aperture_radius
-        positions, focus = points[:count], lens.focus_distance
-        offsets_on_lens, places = subsample_offsets(positions, points[count:], sampling.progressive)
+        focus = lens.focus_distance
+        offsets_on_lens, places = subsample_offsets(
+            points[:different], points[different:], sampling.progressive
+        )
+        positions = points[taken]
+        offsets_on_lens, places = offsets_on_lens[taken], places[taken]
         extent = lens.aperture_radius * np.array([1.0 / lens.iris.ratio, 1.0])
     # Subsamples and levels of detail take the place of a finer raster.
     fine = 1 if adaptive else subpixels(snapshot.content, width, height)
     filter_kind, filter_size = film.filter_kind, film.filter_size_px
-    offsets = pixel_offsets(0, count, filter_kind, filter_size, sampling.seed, fine)
+    offsets = pixel_offsets(0, different, filter_kind, filter_size, sampling.seed, fine)[taken]
     weights = [subpixel_weights(axis, filter_kind, filter_size, fine) for axis in offsets.T]
     projection = region_projection(camera.projection, film)
     current = (camera.view, camera.projection)
@@ -294,6 +359,7 @@ def _plan(snapshot, sampling):
         level_bias=sampling.level_bias if adaptive and sampling.uses_levels else None,
         least_triangles=sampling.least_triangles,
         reuse_grid=sampling.reuse_grid if adaptive else 0,
+        progressive=sampling.progressive,
         lens_extent=extent,
         coc_scale=scale,
         sharp_radius=sharp_radius(film.width, film.height),
@@ -302,6 +368,7 @@ def _plan(snapshot, sampling):
         alpha_threshold=snapshot.alpha_threshold,
         previous=previous,
         next=following,
+        chromatic=plan_chromatic(aberration, colors, camera, film, focus) if aberration else None,
     )
 
 

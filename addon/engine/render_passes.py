@@ -15,7 +15,9 @@ after this table, and asks for the passes of a view layer through `register`.
   the lens samples that copy a drawing of it, and 1 where there is an object.
 - **Focus Matte** and the **Cryptomattes** are seen through the lens, so that they fit the blurred
   edges of Combined. Focus Matte is the share of a pixel that sharp surfaces fill; see
-  `plan.sharp_radius`.
+  `plan.sharp_radius`. It knows one focus, as CoC does: that of the reference wavelength.
+- **Fringe** is Combined less the same picture without chromatic aberration; it may be negative, and
+  costs a second picture.
 """
 
 import json
@@ -63,6 +65,7 @@ _TABLE = {
         RenderPass("CoC", "X", "VALUE", "DATA"),
         RenderPass("Detail", "XYZ", "VECTOR", "DATA"),
         RenderPass("Focus Matte", "X", "VALUE", "MATTE"),
+        RenderPass("Fringe", "RGB", "COLOR", "COLOR"),
     )
 }
 

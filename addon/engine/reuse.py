@@ -53,7 +53,7 @@ class Sprite:
         return self.rectangle[2] * self.rectangle[3]
 
 
-def find_sprites(row, coc, levels, triangles, rectangle, plan):
+def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
     """Find the lens samples that may share drawings of one object.
 
     Parameters
@@ -69,13 +69,19 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan):
         x, y, width, height of what it may cover in the raster of any sample.
     plan : FramePlan
         Its `reuse_grid` tells the cells along a pixel; half as many where there is blur.
+    corners : ndarray of shape (8, 3), optional
+        Of its bounding box, in camera space. With chromatic aberration samples share a drawing only
+        where they agree on the places of all corners.
 
     Returns
     -------
     list of Sprite
         Empty where drawing every sample costs less.
     """
-    moves, shifts = raster_moves(coc, plan)
+    if plan.chromatic is None:
+        moves, shifts = raster_moves(coc, plan)
+    else:
+        moves, shifts = corner_moves(corners, plan)
     grid = plan.reuse_grid if abs(coc) < _BLUR_HIDES_PX else max(1, plan.reuse_grid // 2)
     cells = np.round(moves * grid)
     distance = np.square(moves * grid - cells).sum(axis=1)
@@ -132,3 +138,30 @@ def raster_moves(coc, plan):
     shifts = np.round(jitter)
     height = max(plan.lens_extent[1], 1e-30)
     return plan.lens_positions / height * coc + jitter - shifts, shifts.astype(np.int64)
+
+
+def corner_moves(corners, plan):
+    """Return where lens samples of any wavelength put the corners of a box.
+
+    Parameters
+    ----------
+    corners : ndarray of shape (8, 3)
+        In camera space, in front of the camera.
+    plan : FramePlan
+
+    Returns
+    -------
+    moves : ndarray of shape (N, 16)
+        From the pinhole's picture, in pixels, without whole pixels of the movement for the pixel
+        filter.
+    shifts : ndarray of shape (N, 2)
+        int64; those whole pixels.
+    """
+    jitter = plan.jitter * np.array([plan.width, plan.height]) / 2.0
+    shifts = np.round(jitter)
+    moved = plan.chromatic.displaced(corners, plan.lens_positions)[..., :2] - corners[:, :2]
+    scale = np.diag(plan.projection)[:2] * np.array([plan.width, plan.height]) / 2.0
+    if not plan.orthographic:
+        scale = scale / -corners[:, 2:]
+    moves = moved * scale + (jitter - shifts)[:, None]
+    return moves.reshape(len(moves), -1), shifts.astype(np.int64)

@@ -13,6 +13,7 @@ from ..device.geometry import MeshBuffers
 from ..device.textures import image_texture, texture_2d
 from ..device.uniforms import uniform_buffer
 from ..passes import environment, light_table
+from ..scene.graded_levels import MergeTree
 from .occluders import ShapeCache
 
 # Must agree with lib/instance_lib.glsl.
@@ -56,6 +57,8 @@ class SceneBuffers:
         self.uploads = dict.fromkeys(
             ("meshes", "images", "materials", "instance_tables", "light_tables", "environments"), 0
         )
+        self._level_meshes = {}
+        self._merge_trees = {}
         self._lights = None
         self._world = None
         self._levels = None
@@ -76,8 +79,8 @@ class SceneBuffers:
         self._content = None
         for uid in self.meshes.keys() - content.meshes.keys():
             del self.meshes[uid]
-            self.levels.pop(uid, None)
-            self._level_meshes.pop(uid, None)
+            for kept in (self.levels, self._level_meshes, self._merge_trees):
+                kept.pop(uid, None)
         levels = (level.uid for levels in self._level_meshes.values() for level in levels)
         self.shapes.keep({*content.meshes, *levels})
         for uid in self.images.keys() - content.images.keys():
@@ -152,17 +155,30 @@ class SceneBuffers:
         ----------
         uid : int
             Of a mesh of the content.
-        levels : sequence of MeshSnapshot
+        levels : sequence of MeshLevel
             From level 1 up.
         """
         self.levels[uid] = tuple(MeshBuffers(level) for level in levels)
         self._level_meshes[uid] = tuple(levels)
+        self._merge_trees.pop(uid, None)
         self.levels_version += 1
+
+    def has_merge_tree(self, uid):
+        """Return whether `merge_tree` returns at once."""
+        return uid in self._merge_trees
+
+    def merge_tree(self, uid):
+        """Return the `MergeTree` of a mesh whose levels are here, made at its first use."""
+        tree = self._merge_trees.get(uid)
+        if tree is None:
+            tree = MergeTree(self._content.meshes[uid], self._level_meshes[uid])
+            self._merge_trees[uid] = tree
+        return tree
 
     def drop_levels(self):
         """Give the levels of detail back; full detail is drawn until new ones come."""
-        self.levels.clear()
-        self._level_meshes.clear()
+        for kept in (self.levels, self._level_meshes, self._merge_trees):
+            kept.clear()
         self.levels_version += 1
 
     def texture_bytes(self):

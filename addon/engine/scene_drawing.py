@@ -4,7 +4,7 @@ Decides, from the plan, at which level of detail each instance is drawn for each
 samples share a drawing.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from ..device import state
 from ..device.textures import texture_2d
 from ..passes import surface
 from . import culling
+from .graded_drawings import GradedDrawings
 from .levels import allowances, choose_levels, extents, level_for_sample, world_corners
 from .scene_buffers import instance_texels
 from .shared_drawings import SharedDrawings
@@ -34,6 +35,10 @@ class DrawingCounts:
     sprites_drawn: int = 0
     sprites_copied: int = 0
 
+    def __add__(self, other):
+        """Return the work of both."""
+        return DrawingCounts(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
+
 
 class SceneDrawing:
     """Draws a content's surfaces.
@@ -44,6 +49,8 @@ class SceneDrawing:
     buffers : SceneBuffers
         Updated to it.
     target : passes.surface.SurfaceTarget
+    graded : dict
+        Graded meshes of earlier frames; see `GradedDrawings`.
 
     Attributes
     ----------
@@ -57,7 +64,7 @@ class SceneDrawing:
         Triangles of everything at full detail, once.
     """
 
-    def __init__(self, content, buffers, target):
+    def __init__(self, content, buffers, target, graded):
         self._content = content
         self._buffers = buffers
         self._draws = surface.build_draws(content, buffers, target)
@@ -76,30 +83,35 @@ class SceneDrawing:
             for group in content.groups
         ]
         self._allowances = allowances(content)
-        self._by_level = {}
-        for draw in self._draws:
-            self._by_level.setdefault((draw.group, draw.level), []).append(draw)
+        self._by_level = _by_level(self._draws)
+        self._glows_by_level = _by_level(self._glows)
         # Decided by chance a sample, or added to what is behind: such surfaces share nothing.
         self._unshared = {d.group for d in self._draws if d.transparent}
         self._unshared |= {d.group for d in self._glows}
         self._shared = SharedDrawings("MATTES" in target.defines)
+        self._graded = GradedDrawings(content, buffers, graded)
 
-    def aim(self, plan, highlights=None):
+    def aim(self, plan, wavelengths=None, highlights=None):
         """Prepare a frame: levels, shared drawings, order of the instances.
 
         Parameters
         ----------
         plan : FramePlan
+        wavelengths : callable, optional
+            From a sample, or None for the reference wavelength, to its
+            `passes.chromatic.ChromaticSample`; for a target of `surface.in_wavelengths`.
         highlights : GPUUniformBuf or None
             `HighlightParams`, for a target that splits light.
         """
         self._plan = plan
+        self._wavelengths = wavelengths or (lambda _sample: None)
         self._highlights = highlights
         self.counts = DrawingCounts()
         self._visible = culling.seen(self._spheres, plan)
-        seen = extents(self._corners, plan.view)
+        seen = extents(self._corners, plan.view, plan.chromatic)
         self.nearest = float(seen.nearest[self._visible].min(initial=np.inf))
         self.levels = self._choose_levels(seen)
+        self._find_graded()
         self._shared.forget()
         if plan.reuse_grid:
             candidates = [
@@ -110,10 +122,19 @@ class SceneDrawing:
             self._shared.find(
                 candidates, self._corners, seen, self.levels, self._triangles_of, plan
             )
+        self._graded.settle(self._shared.drawings_of)
+        # What is not drawn together with its neighbours.
+        self._single = sorted({*self._shared.rows, *self._graded.rows})
         self._order_rows()
 
     def _triangles_of(self, row):
-        return self._triangles[self._group_of[row]]
+        return self._graded.triangles(row, self._triangles[self._group_of[row]])
+
+    def _find_graded(self):
+        plan = self._plan
+        wanted = plan.level_bias is not None and plan.coc_scale != 0.0
+        rows = np.flatnonzero(self._visible & (self.levels == 0.0)) if wanted else ()
+        self._graded.find([int(row) for row in rows], self._group_of, plan)
 
     def _choose_levels(self, seen):
         plan = self._plan
@@ -128,7 +149,7 @@ class SceneDrawing:
         """Put rows in an order in which those of one level are neighbours, where levels differ."""
         count = len(self._visible)
         drawn = self._visible.copy()
-        drawn[self._shared.rows] = False
+        drawn[self._single] = False
         lower = np.floor(self.levels)
         change = self.levels - lower
         order = np.arange(count)
@@ -173,18 +194,35 @@ class SceneDrawing:
             for first, count in culling.runs(places[chosen], passing)
         ]
 
-    def _of_row(self, row, level):
+    def _of_row(self, draws, row, level, index):
+        """List the draw calls of one row at a level, from those of all by group and level."""
         place = int(self._place[row])
-        draws = self._by_level.get((int(self._group_of[row]), int(level)), ())
-        return [replace(draw, first=place, count=1) for draw in draws]
+        found = draws.get((int(self._group_of[row]), int(level)), ())
+        graded = self._graded.mesh(row, index) if level == 0 else None
+        if graded is None:
+            return [replace(draw, first=place, count=1) for draw in found]
+        own = [(draw, *graded.batches[draw.slot]) for draw in found if draw.slot in graded.batches]
+        return [
+            replace(draw, batch=batch, triangles=triangles, first=place, count=1)
+            for draw, batch, triangles in own
+        ]
 
-    def _draw(self, listed, view, lens_sample, index):
+    def _of_single(self, draws, index):
+        """List the draw calls for a sample of what is not drawn together with its neighbours."""
+        copied = self._shared.rows_of(index)
+        listed = []
+        for row in self._single:
+            if row not in copied:
+                level = level_for_sample(self.levels[row], index, self._plan.samples)
+                listed += self._of_row(draws, row, level, index)
+        return listed
+
+    def _draw(self, listed, view, lens_sample, index, wavelength):
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         state.opaque()
-        surface.draw_sample(
-            listed, view, self._table, lens_sample, index, highlights=self._highlights
-        )
+        resources = {"highlights": self._highlights, "wavelength": wavelength}
+        surface.draw_sample(listed, view, self._table, lens_sample, index, **resources)
 
     def draw(self, index, framebuffer, view, targets):
         """Draw the opaque surfaces for a lens sample.
@@ -199,17 +237,16 @@ class SceneDrawing:
             With those of `specs`.
         """
         plan, shared = self._plan, self._shared
-        listed = self._list(self._draws, index)
-        for row in shared.rows:
-            if row not in shared.rows_of(index):
-                level = level_for_sample(self.levels[row], index, plan.samples)
-                listed += self._of_row(row, level)
+        listed = self._list(self._draws, index) + self._of_single(self._by_level, index)
         with framebuffer.bind():
-            self._draw(listed, view, plan.lens_sample(index), index)
+            wavelength = self._wavelengths(index)
+            self._draw(listed, view, plan.lens_sample(index), index, wavelength)
 
         def draw_parent(sprite):
-            drawn = self._of_row(sprite.row, sprite.level)
-            self._draw(drawn, view, plan.lens_sample(sprite.parent), sprite.parent)
+            drawn = self._of_row(self._by_level, sprite.row, sprite.level, index)
+            parent = sprite.parent
+            wavelength = self._wavelengths(parent)
+            self._draw(drawn, view, plan.lens_sample(parent), parent, wavelength)
 
         before = shared.drawn + shared.copied
         shared.copy(index, framebuffer, targets, draw_parent)
@@ -219,12 +256,13 @@ class SceneDrawing:
 
     def draw_glows(self, index, framebuffer, view):
         """Add the light of surfaces that glow to what a lens sample shows behind them."""
-        listed = self._list(self._glows, index)
+        listed = self._list(self._glows, index) + self._of_single(self._glows_by_level, index)
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         with framebuffer.bind():
-            sample = self._plan.lens_sample(index)
-            surface.draw_glows(listed, view, self._table, sample, self._highlights)
+            lens_sample = self._plan.lens_sample(index)
+            resources = {"highlights": self._highlights, "wavelength": self._wavelengths(index)}
+            surface.draw_glows(listed, view, self._table, lens_sample, **resources)
 
     def draw_coarsest(self, framebuffer, view):
         """Draw everything at its coarsest level, from the lens' centre, for its depth alone."""
@@ -234,10 +272,11 @@ class SceneDrawing:
             if draw.level == len(self._triangles[draw.group]) - 1
             for run in self._runs(draw, np.ones(len(self._rows[draw.group][0]), bool))
         ]
-        for row in self._shared.rows:
-            coarsest += self._of_row(row, len(self._triangles_of(row)) - 1)
+        for row in self._single:
+            deepest = len(self._triangles_of(row)) - 1
+            coarsest += self._of_row(self._by_level, row, deepest, 0)
         with framebuffer.bind():
-            self._draw(coarsest, view, (0.0, 0.0, 0.0, 0.0), 0)
+            self._draw(coarsest, view, (0.0, 0.0, 0.0, 0.0), 0, self._wavelengths(None))
 
     def specs(self):
         """Return the targets that drawing needs beside the sample's."""
@@ -279,6 +318,17 @@ class SceneDrawing:
         detail = np.column_stack([self.levels, self._shared.shares(len(self.levels), self._plan)])
         return texture_2d(instance_texels(self._content.instances, detail))
 
+    def geometry_bytes(self):
+        """Return how many bytes graded meshes take on the device."""
+        return self._graded.bytes
+
     def texture_bytes(self):
         """Return how many bytes shared drawings take on the device."""
         return self._shared.bytes()
+
+
+def _by_level(draws):
+    found = {}
+    for draw in draws:
+        found.setdefault((draw.group, draw.level), []).append(draw)
+    return found

@@ -5,7 +5,7 @@ import numpy as np
 from ..device import geometry, state
 from ..device.targets import Targets, TargetSpec
 from ..passes import sprite
-from .levels import coc_radius, level_for_sample
+from .levels import coc_ends, level_for_sample
 from .reuse import find_sprites
 
 # On the device, for sprites that wait for their next lens sample.
@@ -59,7 +59,7 @@ class SharedDrawings:
         plan : FramePlan
         """
         self.forget()
-        near, far = coc_radius(seen.nearest, plan), coc_radius(seen.farthest, plan)
+        near, far = coc_ends(seen.nearest, seen.farthest, plan, seen.inverse_focus)
         largest = np.where(np.abs(near) > np.abs(far), near, far)
         # With many more cells than samples, hardly any two share one.
         limit = np.sqrt(plan.samples) + 1.0
@@ -73,7 +73,8 @@ class SharedDrawings:
             own = np.full(plan.samples, levels[row])
             chosen = level_for_sample(own, np.arange(plan.samples), plan.samples)
             coc = float(largest[row])
-            for found in find_sprites(row, coc, chosen, triangles(row), rectangle, plan):
+            eye = corners[row] @ plan.view[:3, :3].T + plan.view[:3, 3]
+            for found in find_sprites(row, coc, chosen, triangles(row), rectangle, plan, eye):
                 size = found.pixels * _TEXEL_BYTES
                 if size > budget:
                     continue
@@ -92,6 +93,11 @@ class SharedDrawings:
         for found in self._members.values():
             copied[list(found)] += 1.0
         return copied / plan.samples
+
+    def drawings_of(self, row, samples):
+        """Return how often a row is drawn for so many lens samples, sprites counted once each."""
+        sprites = [found[row] for found in self._members.values() if row in found]
+        return samples - len(sprites) + len({id(sprite) for sprite in sprites})
 
     def specs(self):
         """Return the targets that it needs beside the sample's."""
@@ -186,11 +192,20 @@ def raster_rectangle(corners, plan):
     size = np.array([plan.width, plan.height])
     places = (clip[:, :2] / clip[:, 3:] + 1.0) / 2.0 * size
     narrowing = plan.lens_extent / max(plan.lens_extent[1], 1e-30)
-    blur = np.abs(coc_radius(-eye[:, 2], plan))[:, None] * narrowing
+    focus = None
+    if plan.chromatic is not None:
+        ranges = plan.chromatic.ranges(eye[None])
+        focus = np.repeat(ranges.inverse_focus, 8, axis=1)
+        grown = np.repeat(eye[None], 2, axis=0)
+        grown[..., :2] *= ranges.scale[:, :, None]
+        clip = np.concatenate([grown, np.ones((2, 8, 1))], axis=-1) @ plan.projection.T
+        places = (clip[..., :2] / clip[..., 3:] + 1.0) / 2.0 * size
+    blur = np.abs(coc_ends(-eye[:, 2], -eye[:, 2], plan, focus)).max(axis=0)
+    blur = blur[:, None] * narrowing
     # Rounding of the rasteriser, and of the samples' whole pixels.
     margin = np.abs(plan.jitter).max(axis=0, initial=0.0) * size / 2.0 + 2.0
-    low = np.clip(np.floor((places - blur).min(axis=0) - margin), 0, size)
-    high = np.clip(np.ceil((places + blur).max(axis=0) + margin), 0, size)
+    low = np.clip(np.floor((places - blur).reshape(-1, 2).min(axis=0) - margin), 0, size)
+    high = np.clip(np.ceil((places + blur).reshape(-1, 2).max(axis=0) + margin), 0, size)
     if (high <= low).any():
         return None
     return (*low.astype(int).tolist(), *(high - low).astype(int).tolist())

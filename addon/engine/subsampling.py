@@ -10,6 +10,7 @@ import numpy as np
 from ..device.targets import TargetSpec
 from ..device.textures import texture_2d
 from ..passes import nbuffer, pyramid, subsample
+from ..sampling.spectral_samples import GROUP
 
 # Of the pyramid: footprints wider than 64 texels are sampled too coarsely for any mean to help.
 _MOST_LEVELS = 6
@@ -23,10 +24,16 @@ class SubsampleBlur:
     plan : FramePlan
     nearest : float
         Least depth of anything that can be seen, m.
+    wavelengths : callable, optional
+        From a sample to its `passes.chromatic.ChromaticSample`, with chromatic aberration.
     """
 
-    def __init__(self, plan, nearest):
+    def __init__(self, plan, nearest, wavelengths=None):
         self._plan = plan
+        self._wavelengths = wavelengths
+        self._sweep, self._gain = plan.sweep, None
+        if wavelengths:
+            self._sweep, self._gain = plan.sweep_parts
         self._nearest = float(self._window_depth(max(nearest, 0.0)))
         offsets = np.zeros((*plan.subsample_offsets.shape[:2], 4))
         offsets[..., :2] = plan.subsample_offsets
@@ -34,10 +41,15 @@ class SubsampleBlur:
         self._spread = np.abs(plan.subsample_offsets).max(axis=(0, 1))
         blur = max(abs(self._coc(self._nearest)), abs(self._coc(1.0)))
         places = plan.samples + int(plan.subsample_counts.sum())
+        if wavelengths:
+            # Those of the samples that share their places count once.
+            places /= GROUP
         self._cell = float(np.sqrt(np.pi * plan.lens_extent.prod() / places))
         # As many levels as the widest footprint of a cell asks for.
         widest = self._cell / plan.lens_extent.max() * blur
         self._top = min(max(0, int(np.ceil(np.log2(max(widest, 1.0))))), _MOST_LEVELS)
+        if wavelengths:
+            blur += self._largest_growth()
         self._layers = nbuffer.layers(min(blur + 1.0, max(plan.width, plan.height)))
 
     def _window_depth(self, depth):
@@ -46,8 +58,21 @@ class SubsampleBlur:
         return np.clip(clip[2] / max(clip[3], 1e-9) * 0.5 + 0.5, 0.0, 1.0)
 
     def _coc(self, window_depth):
-        sweep = self._plan.sweep
-        return np.abs(self._plan.lens_extent * (sweep[:2] + sweep[2:] * window_depth)).max()
+        sweeps = [self._sweep]
+        if self._wavelengths:
+            sweeps = [
+                self._sweep + self._gain * focus
+                for focus in self._plan.chromatic.overall().inverse_focus
+            ]
+        return max(
+            np.abs(self._plan.lens_extent * (sweep[:2] + sweep[2:] * window_depth)).max()
+            for sweep in sweeps
+        )
+
+    def _largest_growth(self):
+        chromatic = self._plan.chromatic
+        share = np.abs(chromatic.overall().scale - 1.0).max()
+        return share * chromatic.radius / np.abs(chromatic.raster[:2]).min()
 
     def specs(self):
         """Return the targets that it needs beside the sample's."""
@@ -74,9 +99,11 @@ class SubsampleBlur:
             nbuffer.draw_bounds(
                 fullscreen,
                 targets["depth_levels"],
-                plan.sweep,
+                self._sweep,
                 plan.lens_extent,
                 (self._nearest, 1.0),
+                self._gain,
+                self._wavelengths and self._wavelengths(0),
             )
 
     def add(self, fullscreen, targets, index):
@@ -95,11 +122,13 @@ class SubsampleBlur:
         subsample.blur(
             fullscreen,
             (*sample, targets["blur_bounds"], self._offsets, *levels),
-            sweep=plan.sweep,
+            sweep=self._sweep,
             spread=self._spread,
             cell=self._cell,
             top=self._top,
             weight=float(plan.subpixel_weights[index].prod()),
             index=index,
             count=int(plan.subsample_counts[index]),
+            gain=self._gain,
+            wavelength=self._wavelengths and self._wavelengths(index),
         )

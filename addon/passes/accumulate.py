@@ -6,9 +6,10 @@ pixel filter (see `sampling.pixel_filter`).
 
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
+from . import chromatic
 
 
-def _info(name, fragment, output, sampler, subpixels):
+def _info(name, fragment, output, sampler, subpixels, tinted=False):
     return ShaderInfo(
         name=name,
         vertex=shader_source.load("passes/fullscreen_vert.glsl"),
@@ -16,8 +17,8 @@ def _info(name, fragment, output, sampler, subpixels):
         attributes=(("VEC2", "pos"),),
         outputs=(output,),
         samplers=(("FLOAT_2D", sampler),),
-        push_constants=(("VEC4", "columns"), ("VEC4", "rows")),
-        defines=(("SUBPIXELS", str(subpixels)),),
+        push_constants=(("VEC4", "columns"), ("VEC4", "rows"), *[("VEC4", "tint")] * tinted),
+        defines=(("SUBPIXELS", str(subpixels)), *chromatic.DEFINES * tinted),
     )
 
 
@@ -26,7 +27,7 @@ def padded(weights):
     return (*map(float, weights), 0.0, 0.0, 0.0)[:4]
 
 
-def accumulate(fullscreen, sample, weights):
+def accumulate(fullscreen, sample, weights, tint=None):
     """Add a colour texture to the bound frame buffer.
 
     Parameters
@@ -36,10 +37,12 @@ def accumulate(fullscreen, sample, weights):
         ``k`` times as large as the frame buffer, along each side.
     weights : ndarray of shape (2, k)
         Of the columns and the rows of a pixel's sub-pixels.
+    tint : tuple of 4 float, optional
+        Of the channels; without it all have weight 1.
     """
     output = ("VEC4", "out_color")
     info = ("aplanat_accumulate", "passes/accumulate_frag.glsl", output, "sample_tx")
-    _add(fullscreen, info, sample, weights)
+    _add(fullscreen, info, sample, weights, tint)
 
 
 def accumulate_focus(fullscreen, mattes, weights):
@@ -57,11 +60,13 @@ def accumulate_focus(fullscreen, mattes, weights):
     _add(fullscreen, info, mattes, weights)
 
 
-def _add(fullscreen, info, texture, weights):
+def _add(fullscreen, info, texture, weights, tint=None):
     state.additive()
-    shader = compile_shader(_info(*info, len(weights[0])))
+    shader = compile_shader(_info(*info, len(weights[0]), tint is not None))
     shader.bind()
     shader.uniform_sampler(info[-1], texture)
     shader.uniform_float("columns", padded(weights[0]))
     shader.uniform_float("rows", padded(weights[1]))
+    if tint is not None:
+        shader.uniform_float("tint", tint)
     fullscreen.draw(shader)

@@ -2,16 +2,17 @@
 
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
+from . import chromatic
 from .environment import ENVIRONMENT_PARAMS
 from .surface import HIGHLIGHT_PARAMS, VIEW_PARAMS
 
 
-def _info(define):
+def _info(define, in_wavelengths=False):
     split = define is not None
     uniforms = [("ViewParams", "view_buf"), ("EnvironmentParams", "environment_buf")]
     uniforms += [("HighlightParams", "highlight_buf")] * split
     structs = VIEW_PARAMS.source + ENVIRONMENT_PARAMS.source
-    return ShaderInfo(
+    info = ShaderInfo(
         name="aplanat_background",
         vertex=shader_source.load("passes/fullscreen_vert.glsl"),
         fragment=shader_source.load("passes/background_frag.glsl"),
@@ -23,9 +24,18 @@ def _info(define):
         push_constants=(("VEC4", "lens_sample"),),
         defines=((define, "1"),) if split else (),
     )
+    return chromatic.declared(info) if in_wavelengths else info
 
 
-def draw(fullscreen, view_buffer, environment_buffer, image, lens_sample, highlights=None):
+def draw(
+    fullscreen,
+    view_buffer,
+    environment_buffer,
+    image,
+    lens_sample,
+    highlights=None,
+    wavelength=None,
+):
     """Draw the world's image where no surface is; needs the surfaces' depth.
 
     Parameters
@@ -39,10 +49,12 @@ def draw(fullscreen, view_buffer, environment_buffer, image, lens_sample, highli
         Place on the lens in m, jitter in clip units.
     highlights : GPUUniformBuf or None
         `HighlightParams`: without the light that is splatted.
+    wavelength : chromatic.ChromaticSample, optional
     """
     state.behind()
     define = None if highlights is None else "HIGHLIGHTS"
-    _draw(fullscreen, define, view_buffer, environment_buffer, image, lens_sample, highlights)
+    world = (view_buffer, environment_buffer, image)
+    _draw(fullscreen, define, *world, lens_sample, highlights, wavelength)
 
 
 def draw_excess(fullscreen, view_buffer, environment_buffer, image, highlights):
@@ -60,8 +72,17 @@ def draw_excess(fullscreen, view_buffer, environment_buffer, image, highlights):
     _draw(fullscreen, "EXCESS", view_buffer, environment_buffer, image, center, highlights)
 
 
-def _draw(fullscreen, define, view_buffer, environment_buffer, image, lens_sample, highlights):
-    shader = compile_shader(_info(define))
+def _draw(
+    fullscreen,
+    define,
+    view_buffer,
+    environment_buffer,
+    image,
+    lens_sample,
+    highlights,
+    wavelength=None,
+):
+    shader = compile_shader(_info(define, wavelength is not None))
     shader.bind()
     shader.uniform_block("view_buf", view_buffer)
     shader.uniform_block("environment_buf", environment_buffer)
@@ -69,4 +90,6 @@ def _draw(fullscreen, define, view_buffer, environment_buffer, image, lens_sampl
         shader.uniform_block("highlight_buf", highlights)
     shader.uniform_sampler("environment_tx", image)
     shader.uniform_float("lens_sample", lens_sample)
+    if wavelength is not None:
+        wavelength.bind(shader)
     fullscreen.draw(shader)

@@ -7,6 +7,7 @@ Decoret, *N-buffers for efficient depth map query*, Eurographics 2005.
 
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
+from . import chromatic
 
 _GROUP = 8
 
@@ -28,6 +29,7 @@ _BOUNDS = ShaderInfo(
     samplers=(("FLOAT_2D_ARRAY", "levels_tx"),),
     push_constants=(("VEC4", "sweep"), ("VEC4", "opening")),
 )
+_BOUNDS_IN_WAVELENGTHS = chromatic.declared(_BOUNDS, (("VEC4", "gain"),))
 
 
 def layers(reach):
@@ -54,7 +56,7 @@ def build(depth, levels, count):
         dispatch(shader, -(-depth.width // _GROUP), -(-depth.height // _GROUP))
 
 
-def draw_bounds(fullscreen, levels, sweep, opening, depth_range):
+def draw_bounds(fullscreen, levels, sweep, opening, depth_range, gain=None, wavelength=None):
     """Draw, into the bound frame buffer, the depths that can reach each pixel through the lens.
 
     Parameters
@@ -68,11 +70,18 @@ def draw_bounds(fullscreen, levels, sweep, opening, depth_range):
         Half width and height of the opening, m.
     depth_range : sequence of 2 float
         Least and largest value that the depth buffer may have.
+    gain : sequence of 4 float, optional
+        With chromatic aberration: of the sweep, by the inverse of the focus distance.
+    wavelength : chromatic.ChromaticSample, optional
+        Any one of the frame's.
     """
     state.overwrite()
-    shader = compile_shader(_BOUNDS)
+    shader = compile_shader(_BOUNDS if wavelength is None else _BOUNDS_IN_WAVELENGTHS)
     shader.bind()
     shader.uniform_sampler("levels_tx", levels)
     shader.uniform_float("sweep", tuple(sweep))
     shader.uniform_float("opening", (*opening, *depth_range))
+    if wavelength is not None:
+        wavelength.bind_resources(shader)
+        shader.uniform_float("gain", tuple(gain))
     fullscreen.draw(shader)

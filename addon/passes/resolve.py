@@ -4,7 +4,7 @@ from ..device import shader_source
 from ..device.shaders import ShaderInfo, compile_shader
 
 
-def _info(with_bokeh):
+def _info(with_bokeh, by_channel):
     return ShaderInfo(
         name="aplanat_resolve",
         vertex=shader_source.load("passes/fullscreen_vert.glsl"),
@@ -12,7 +12,11 @@ def _info(with_bokeh):
         attributes=(("VEC2", "pos"),),
         outputs=(("VEC4", "out_color"),),
         samplers=(("FLOAT_2D", "sum_tx"),) + (("FLOAT_2D", "bokeh_tx"),) * with_bokeh,
-        push_constants=(("FLOAT", "scale"), ("IVEC2", "origin"), ("INT", "pixel_size")),
+        push_constants=(
+            ("VEC4" if by_channel else "FLOAT", "scale"),
+            ("IVEC2", "origin"),
+            ("INT", "pixel_size"),
+        ),
         defines=(("BOKEH", "1"),) * with_bokeh,
     )
 
@@ -25,8 +29,8 @@ def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1, bokeh=None):
     fullscreen : GPUBatch
     total : GPUTexture
         Sum of the samples.
-    weight : float
-        Summed weight of the samples.
+    weight : float or tuple of 4 float
+        Summed weight of the samples; of each channel, where they differ.
     origin : tuple of 2 int
         Where the picture's lower left pixel goes, in pixels of the frame buffer.
     pixel_size : int
@@ -34,12 +38,14 @@ def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1, bokeh=None):
     bokeh : GPUTexture or None
         Added to the mean.
     """
-    shader = compile_shader(_info(bokeh is not None))
+    by_channel = isinstance(weight, tuple)
+    shader = compile_shader(_info(bokeh is not None, by_channel))
     shader.bind()
     shader.uniform_sampler("sum_tx", total)
     if bokeh is not None:
         shader.uniform_sampler("bokeh_tx", bokeh)
-    shader.uniform_float("scale", 1.0 / weight)
+    scale = tuple(1.0 / w for w in weight) if by_channel else 1.0 / weight
+    shader.uniform_float("scale", scale)
     shader.uniform_int("origin", origin)
     shader.uniform_int("pixel_size", pixel_size)
     fullscreen.draw(shader)

@@ -2,6 +2,7 @@
 
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
+from . import chromatic
 
 _SAMPLERS = (
     ("FLOAT_2D", "sample_tx"),
@@ -29,9 +30,23 @@ _INFO = ShaderInfo(
         ("INT", "count"),
     ),
 )
+_IN_WAVELENGTHS = chromatic.declared(_INFO, (("VEC4", "gain"), ("VEC4", "tint")))
 
 
-def blur(fullscreen, textures, *, sweep, spread, cell, top, weight, index, count):
+def blur(
+    fullscreen,
+    textures,
+    *,
+    sweep,
+    spread,
+    cell,
+    top,
+    weight,
+    index,
+    count,
+    gain=None,
+    wavelength=None,
+):
     """Blur a lens sample and add it to the bound frame buffer.
 
     Parameters
@@ -51,9 +66,13 @@ def blur(fullscreen, textures, *, sweep, spread, cell, top, weight, index, count
     weight : float
     index, count : int
         Row of the offsets, and how many there are in it.
+    gain : sequence of 4 float, optional
+        With chromatic aberration: of the sweep, by the inverse of the focus distance.
+    wavelength : chromatic.ChromaticSample, optional
+        The sample's; its subsamples have the same.
     """
     state.additive()
-    shader = compile_shader(_INFO)
+    shader = compile_shader(_INFO if wavelength is None else _IN_WAVELENGTHS)
     shader.bind()
     for (_, name), texture in zip(_SAMPLERS, textures, strict=True):
         shader.uniform_sampler(name, texture)
@@ -64,4 +83,8 @@ def blur(fullscreen, textures, *, sweep, spread, cell, top, weight, index, count
     shader.uniform_int("top", top)
     shader.uniform_int("sample_index", index)
     shader.uniform_int("count", count)
+    if wavelength is not None:
+        wavelength.bind(shader)
+        shader.uniform_float("gain", tuple(gain))
+        shader.uniform_float("tint", wavelength.tint)
     fullscreen.draw(shader)

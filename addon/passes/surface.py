@@ -11,7 +11,7 @@ from ..device.geometry import attribute_identifier, attribute_type
 from ..device.shaders import ShaderInfo, compile_shader
 from ..device.uniform_block import UniformStruct
 from ..device.uniforms import bind_resource
-from . import environment, surface_code
+from . import chromatic, environment, surface_code
 
 # Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and what
 # a lobe reflects of white surroundings.
@@ -48,6 +48,8 @@ class SurfaceTarget:
         Declarations of its own uniform blocks.
     uniforms, samplers : tuple of (str, str)
         Its own ones, bound once a shader through `draw_sample`'s `bindings`.
+    push_constants : tuple of (str, str)
+        Its own ones.
     names_material : bool
         Its fragment shader reads the push constant `material_id`.
     shades : bool
@@ -66,6 +68,7 @@ class SurfaceTarget:
     structs: str = ""
     uniforms: tuple[tuple[str, str], ...] = ()
     samplers: tuple[tuple[str, str], ...] = ()
+    push_constants: tuple[tuple[str, str], ...] = ()
     names_material: bool = False
     shades: bool = True
     splits: bool = False
@@ -99,6 +102,18 @@ def _whole(target):
     return replace(target, splits=False, defines=defines)
 
 
+def in_wavelengths(target):
+    """Return a target whose surfaces are drawn at one wavelength a lens sample."""
+    return replace(
+        target,
+        defines=(*target.defines, *(name for name, _ in chromatic.DEFINES)),
+        structs=target.structs + chromatic.CHROMATIC_PARAMS.source,
+        uniforms=(*target.uniforms, *chromatic.UNIFORMS),
+        samplers=(*target.samplers, *chromatic.SAMPLERS),
+        push_constants=(*target.push_constants, *chromatic.PUSH_CONSTANTS),
+    )
+
+
 @dataclass(frozen=True)
 class Draw:
     """One draw call.
@@ -125,6 +140,8 @@ class Draw:
         Its level of detail.
     splits : bool
         The shader reads ``highlight_buf``.
+    slot : int
+        The material slot of its mesh.
     """
 
     shader: object
@@ -140,6 +157,7 @@ class Draw:
     group: int = 0
     level: int = 0
     splits: bool = False
+    slot: int = 0
 
 
 def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, glow=False):
@@ -190,6 +208,7 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
     uniforms = [("ViewParams", "view_buf"), *target.uniforms]
     samplers = [("FLOAT_2D", "instances_tx"), *target.samplers]
     push_constants = [("VEC4", "lens_sample"), ("INT", "instance_base"), ("INT", "sample_index")]
+    push_constants += target.push_constants
     generated = ""
     if shades:
         generated = code.source
@@ -290,6 +309,7 @@ def _list_draws(content, buffers, target, glow, wanted=None):
                 group=number,
                 level=level,
                 splits=drawn.splits and shaded,
+                slot=slot,
             )
             draws.append(((order, material.uid, group.mesh, slot, level), draw))
     draws.sort(key=lambda item: item[0])
@@ -302,7 +322,7 @@ def _levels_of_groups(content, buffers):
             yield number, level, group, buffer
 
 
-def draw_glows(draws, view_buffer, instances, lens_sample, highlights=None):
+def draw_glows(draws, view_buffer, instances, lens_sample, highlights=None, wavelength=None):
     """Add the light of surfaces that glow to what the frame buffer shows behind them.
 
     Unlike opacity, which is decided by chance, their light is added wherever no surface of this
@@ -312,16 +332,24 @@ def draw_glows(draws, view_buffer, instances, lens_sample, highlights=None):
     ----------
     draws : list of Draw
         Of `build_glow_draws`; the same depth buffer as `draw_sample`'s must be bound.
-    view_buffer, instances, lens_sample, highlights
+    view_buffer, instances, lens_sample, highlights, wavelength
         As for `draw_sample`.
     """
     if draws:
         state.glow()
-        draw_sample(draws, view_buffer, instances, lens_sample, 0, highlights=highlights)
+        resources = {"highlights": highlights, "wavelength": wavelength}
+        draw_sample(draws, view_buffer, instances, lens_sample, 0, **resources)
 
 
 def draw_sample(
-    draws, view_buffer, instances, lens_sample, sample_index, bindings=(), highlights=None
+    draws,
+    view_buffer,
+    instances,
+    lens_sample,
+    sample_index,
+    bindings=(),
+    highlights=None,
+    wavelength=None,
 ):
     """Draw one lens sample into the bound frame buffer.
 
@@ -339,6 +367,8 @@ def draw_sample(
         Of the target's own uniform blocks and samplers.
     highlights : GPUUniformBuf or None
         `HighlightParams`, for a target that splits light.
+    wavelength : chromatic.ChromaticSample, optional
+        Of a target `in_wavelengths`.
     """
     current = None
     for draw in draws:
@@ -355,6 +385,8 @@ def draw_sample(
                 bind_resource(shader, name, resource)
             if draw.splits:
                 shader.uniform_block("highlight_buf", highlights)
+            if wavelength is not None:
+                wavelength.bind(shader)
         if draw.material_id is not None:
             shader.uniform_float("material_id", draw.material_id)
         if draw.constants is not None:

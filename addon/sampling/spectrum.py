@@ -16,6 +16,12 @@ LINEAR_REC709 = "ITU-R BT.709"
 # Where the wavelengths of a chromatic lens table lie: beyond these the eye sees next to nothing.
 SPECTRUM_RANGE_NM = (440.0, 680.0)
 SPECTRUM_COUNT = 25
+# Names of scene-linear spaces in Blender's configuration, and what colour-science calls them.
+_WORKING_SPACES = {
+    "Linear Rec.709": LINEAR_REC709,
+    "Linear Rec.2020": "ITU-R BT.2020",
+    "ACEScg": "ACEScg",
+}
 
 
 def spectrum_wavelengths(count=SPECTRUM_COUNT):
@@ -75,8 +81,7 @@ def rgb_weights(wavelengths_nm, primaries=LINEAR_REC709):
     ----------
     CIE 015:2018, Colorimetry (1931 standard observer).
     """
-    matrix = _matrix(primaries) if isinstance(primaries, str) else np.asarray(primaries, float)
-    linear = np.maximum(color_matching(wavelengths_nm) @ matrix.T, 0.0)
+    linear = np.maximum(color_matching(wavelengths_nm) @ xyz_to_rgb(primaries).T, 0.0)
     total = linear.sum(axis=0)
     if not np.all(total > 0.0):
         channel = ["red", "green", "blue"][int(np.argmin(total))]
@@ -85,6 +90,42 @@ def rgb_weights(wavelengths_nm, primaries=LINEAR_REC709):
             f"have no {channel} in them; take some of the whole range from 440 to 680 nm"
         )
     return linear / total
+
+
+def xyz_to_rgb(primaries):
+    """Matrix from XYZ to linear RGB.
+
+    Parameters
+    ----------
+    primaries : str or array_like of shape (3, 3)
+        Name of a colour space in colour-science, or the matrix itself.
+
+    Returns
+    -------
+    ndarray of shape (3, 3)
+
+    Raises
+    ------
+    InputError
+        If the colour space is not known.
+    """
+    return _matrix(primaries) if isinstance(primaries, str) else np.asarray(primaries, float)
+
+
+def primaries_of(working_space):
+    """Return the colour space of colour-science that is a working space of Blender's.
+
+    Parameters
+    ----------
+    working_space : str
+        As Blender names it.
+
+    Returns
+    -------
+    str or None
+        None for a space that is not known.
+    """
+    return _WORKING_SPACES.get(working_space)
 
 
 @functools.cache

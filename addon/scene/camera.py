@@ -8,6 +8,7 @@ from ..errors import CameraError, FocusError
 from ..sampling.iris import Iris
 from ..sampling.thin_lens import ThinLens, aperture_radius
 from .bokeh import corner_tangent, read_bokeh
+from .chromatic import read_chromatic
 from .lenses import read_real_lens
 from .snapshot import Camera
 
@@ -46,18 +47,21 @@ def read_camera(depsgraph, camera, film):
     )
     world = camera.matrix_world.normalized()
     real_lens, problems = read_real_lens(data)
+    lens = read_lens(depsgraph, camera, real_lens) if data.dof.use_dof else None
+    focus = lens.focus_distance if lens else None
+    chromatic, chromatic_problems = read_chromatic(data, real_lens, focus)
     corner = corner_tangent(data, depsgraph.scene)
     bokeh, bokeh_problems = read_bokeh(data, real_lens, corner)
+    problems = (*problems, *chromatic_problems, *bokeh_problems)
     return Camera(
         view=np.array(world.inverted(), np.float64),
         projection=np.array(projection, np.float64),
-        lens=read_lens(depsgraph, camera, real_lens) if data.dof.use_dof else None,
+        lens=lens,
         orthographic=data.type == "ORTHO",
         real_lens=real_lens,
+        report=tuple(f"camera '{camera.name}': {problem}" for problem in problems),
+        chromatic=chromatic,
         bokeh=bokeh,
-        report=tuple(
-            f"camera '{camera.name}': {problem}" for problem in (*problems, *bokeh_problems)
-        ),
     )
 
 

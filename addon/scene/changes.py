@@ -119,6 +119,7 @@ def same_camera(old, new):
         and old.bokeh == new.bokeh
         # Only bokeh shows more of a real lens than its opening.
         and (new.bokeh is None or old.real_lens == new.real_lens)
+        and (old.chromatic, old.field_radius) == (new.chromatic, new.field_radius)
         and _same_pose(old.previous, new.previous)
         and _same_pose(old.next, new.next)
     )

@@ -7,6 +7,7 @@ import numpy as np
 from .camera import read_camera
 from .changes import Change, compare_content, same_instances
 from .cryptomatte import cryptomatte_id
+from .drawn_curves import is_curve_group
 from .instances import read_instances
 from .materials import MaterialReader
 from .meshes import MeshReading, read_mesh, same_content, used_slots
@@ -64,7 +65,7 @@ class SceneExtractor:
         changed = set()
         for update in depsgraph.updates:
             block = update.id.original
-            if _is_camera(block):
+            if _is_camera(block) or is_curve_group(block):
                 continue
             self._stale = True
             if update.is_updated_geometry:

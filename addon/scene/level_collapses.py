@@ -1,29 +1,27 @@
-"""Which places of a mesh merge into one in the next level of detail, and where they merge to.
+"""Which places of a mesh merge into one in the next level of detail.
 
-fast-simplification decides the collapses. It never moves a border's vertex inwards, so a mesh of
-many holes would stay as it is: holes are closed by cones for it, whose steep sides hold the border
-as Garland's perpendicular planes do, while a small hole may vanish.
-
-A group of places merges where the sum of its squared distances from the planes of the triangles
-round it, weighted by their area, is least.
+fast-simplification decides the collapses. It holds the interpreter while it works, so a large mesh
+is given to it in patches; their rims stay as they are, and lie elsewhere in the next level. It
+never moves a border's vertex inwards, so a mesh of many holes would stay as it is: holes are closed
+by cones for it, whose steep sides hold the border as Garland's perpendicular planes do, while a
+small hole may vanish.
 """
 
 import threading
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 # fast-simplification's thresholds begin at 2e-6 in squared lengths: the mesh is scaled so that its
 # edges are long against that, and the best collapses come first.
 _EDGE_LENGTH = 0.5
+# Triangles that the library gets at once: some 20 ms of work, and its data fit into a cache.
+_PATCH = 32_000
 # Of a triangle that takes part, in mean areas.
 _LEAST_AREA = 1e-9
 # Height of the cone over a hole, in radii of the hole.
 _CONE_HEIGHT = 3.0
-# Weight of a border's perpendicular plane against the triangle at the border.
-_BORDER_WEIGHT = 10.0
-# How much of the quadric's trace, without borders, pulls a merged place to the mean of its group.
-_PULL = 0.1
 
 # The library keeps its mesh in global variables.
 _library = threading.Lock()
@@ -45,6 +43,41 @@ class Halving:
     groups: np.ndarray
 
 
+class Surface:
+    """The places of a mesh and its triangles between them: what collapses depend on.
+
+    Parameters
+    ----------
+    mesh : MeshSnapshot
+    places : ndarray of shape (V,)
+        Of its vertices.
+
+    Attributes
+    ----------
+    places : ndarray of shape (V,)
+    points : ndarray of shape (P, 3)
+        float64; positions of the places.
+    faces : ndarray of shape (T, 3)
+        Places.
+    normal : ndarray of shape (3, T)
+        See `facets`.
+    size : ndarray of shape (T,)
+        Length of the normals: twice the areas.
+    """
+
+    def __init__(self, mesh, places):
+        self.places = places
+        self.points = _points(mesh.positions, places).astype(np.float64)
+        self.faces = places[mesh.triangles]
+        self.normal = facets(self.points, self.faces)
+        self.size = np.sqrt(np.square(self.normal).sum(axis=0))
+
+    @cached_property
+    def borders(self):
+        """The edges that one triangle has alone, and those triangles: see `_borders`."""
+        return _borders(self.faces, len(self.points))
+
+
 def weld(positions):
     """Give a number to each distinct position, bit by bit, in the order of their first vertices.
 
@@ -59,65 +92,132 @@ def weld(positions):
     """
     # 0.0 and -0.0 are one place.
     bits = (np.ascontiguousarray(positions, np.float32) + np.float32(0.0)).view(np.uint32)
-    columns = bits.T.astype(np.uint64)
-    order = np.lexsort((columns[2], (columns[0] << np.uint64(32)) | columns[1]))
+    order = np.arange(len(bits))
+    for column in bits.T:
+        order = order[stable_order(column[order])]
     ordered = bits[order]
     starts = np.ones(len(bits), bool)
-    starts[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
-    run = np.cumsum(starts) - 1
-    # The sort is stable, so a run's first is its least vertex.
-    first = order[starts]
-    rank = np.empty(len(first), np.int32)
-    rank[np.argsort(first, kind="stable")] = np.arange(len(first), dtype=np.int32)
-    result = np.empty(len(bits), np.int32)
-    result[order] = rank[run]
-    return result
+    starts[1:] = differ(ordered[1:], ordered[:-1])
+    # The order is stable, so a run's first is its least vertex.
+    first = np.empty(len(bits), np.int64)
+    first[order] = order[starts][np.cumsum(starts) - 1]
+    return _numbered(first)
 
 
-def decimate(mesh, places, triangles):
+def stable_order(keys):
+    """Return the order that sorts whole numbers of 32 bits, not negative; equal ones stay in order.
+
+    By 16 bits at a time, which numpy sorts by counting: four times faster than by comparing.
+    """
+    keys = np.asarray(keys).astype(np.uint32)
+    order = np.argsort(keys.astype(np.uint16), kind="stable")
+    if len(keys) and keys.max() > 0xFFFF:
+        high = (keys >> np.uint32(16)).astype(np.uint16)
+        order = order[np.argsort(high[order], kind="stable")]
+    return order
+
+
+def differ(a, b):
+    """Return where rows of three differ, shape (N,)."""
+    x, y, z = ((p != q) for p, q in zip(a.T, b.T, strict=True))
+    return x | y | z
+
+
+def _numbered(first):
+    """Give numbers to runs, from an array that holds each entry's first of its run."""
+    leads = np.zeros(len(first), bool)
+    leads[first] = True
+    return (np.cumsum(leads, dtype=np.int32) - 1)[first]
+
+
+def decimate(surface, triangles, check=None):
     """Decide which places merge.
 
     Parameters
     ----------
-    mesh : MeshSnapshot
-    places : ndarray of shape (V,)
-        Of its vertices.
+    surface : Surface
     triangles : int
         How many to leave.
+    check : callable, optional
+        Called before each patch; it may raise to end the work.
 
     Returns
     -------
     Halving
     """
+    points, faces, normal = surface.points, surface.faces, surface.normal
+    # A triangle without area has no plane, and none of its errors would be a number.
+    proper = surface.size > _LEAST_AREA * surface.size.mean()
+    if proper.all():
+        borders = surface.borders
+    else:
+        faces, normal = faces[proper], normal[:, proper]
+        borders = _borders(faces, len(points))
+    if len(faces) == 0:
+        return Halving(surface.places, np.arange(len(points), dtype=np.int32))
+    along = (points[faces[:, 0]] - points[faces[:, 1]]).T
+    edge = np.sqrt(np.square(along).sum(axis=0)).mean()
+    scaled = (points - points.mean(axis=0)) * (_EDGE_LENGTH / max(edge, 1e-30))
+    apexes, cones = _cones(scaled, *borders, normal)
+    faces = np.concatenate([faces, cones]).astype(np.int32, copy=False)
+    scaled = np.concatenate([scaled, apexes])
+    share = min((triangles + len(cones) // 2) / len(faces), 1.0)
+    collapses = []
+    for patch in _patches(scaled, faces):
+        if check is not None:
+            check()
+        collapses.append(_collapse(scaled, faces[patch], share, len(patch) < len(faces)))
+    return Halving(surface.places, _groups(np.concatenate(collapses), len(points), len(apexes)))
+
+
+def _collapse(points, faces, share, in_part):
+    """Return the collapses, shape (C, 2), that leave a share of a patch's faces."""
     import fast_simplification
 
-    points = _points(mesh.positions, places).astype(np.float64)
-    faces = places[mesh.triangles]
-    a, b, c = faces.T
-    across = np.cross(points[b] - points[a], points[c] - points[a])
-    size = np.linalg.norm(across, axis=1)
-    # A triangle without area has no plane, and none of its errors would be a number.
-    faces = np.ascontiguousarray(faces[size > _LEAST_AREA * size.mean()])
-    groups = np.arange(len(points), dtype=np.int32)
-    if len(faces) == 0:
-        return Halving(places, groups)
-    edge = np.linalg.norm(points[faces[:, 0]] - points[faces[:, 1]], axis=1).mean()
-    scaled = (points - points.mean(axis=0)) * (_EDGE_LENGTH / max(edge, 1e-30))
-    apexes, cones = _cones(scaled, faces)
+    # An order without meaning: the library stops in the midst of a round.
+    corners = faces[np.random.default_rng(0).permutation(len(faces))].ravel()
+    number = np.empty(len(points), np.int32)
+    number[corners] = np.arange(len(corners), dtype=np.int32)
+    used = corners[number[corners] == np.arange(len(corners))]
+    number[used] = np.arange(len(used), dtype=np.int32)
     with _library:
         _, _, collapses = fast_simplification.simplify(
-            np.concatenate([scaled, apexes]),
-            _shuffled(np.concatenate([faces, cones])),
-            target_count=min(triangles + len(cones) // 2, len(faces) + len(cones)),
+            points[used],
+            number[corners].reshape(-1, 3),
+            target_count=round(share * len(faces)),
             return_collapses=True,
+            preserve_border=in_part,
         )
-    return Halving(places, _groups(np.asarray(collapses).reshape(-1, 2), len(points), len(apexes)))
+    return used[np.asarray(collapses).reshape(-1, 2)]
 
 
-def _shuffled(faces):
-    """Return faces in an order without meaning: the library stops in the midst of a round."""
-    order = np.random.default_rng(0).permutation(len(faces))
-    return np.ascontiguousarray(faces[order], np.int32)
+def _patches(points, faces):
+    """Split faces into patches of about equal number by planes; return the faces of each."""
+    if len(faces) <= _PATCH:
+        return [np.arange(len(faces))]
+    # Turned at random, level by level, so that no rim lies where one was in the level before.
+    turn, _ = np.linalg.qr(np.random.default_rng(len(faces)).normal(size=(3, 3)))
+    columns = [np.ascontiguousarray(corner) for corner in faces.T]
+    centers = []
+    for row in turn:
+        along = sum(
+            np.float32(x) * axis.astype(np.float32) for x, axis in zip(row, points.T, strict=True)
+        )
+        centers.append(sum(along[corner] for corner in columns))
+    return _split(centers, np.arange(len(faces)), -(-len(faces) // _PATCH))
+
+
+def _split(centers, chosen, parts):
+    if parts <= 1 or len(chosen) == 0:
+        return [chosen] if len(chosen) else []
+    axis = max(centers, key=np.ptp)
+    # A sample tells well enough where the middle is.
+    sample = np.sort(axis[:: max(len(axis) // 4096, 1)])
+    low = axis < sample[len(sample) * (parts // 2) // parts]
+    result = []
+    for side, count in ((low, parts // 2), (~low, parts - parts // 2)):
+        result += _split([center[side] for center in centers], chosen[side], count)
+    return result
 
 
 def _points(positions, places):
@@ -136,15 +236,60 @@ def _groups(collapses, count, apexes):
             break
         target = following
     # Numbered by the first place of each group, which is no apex.
-    _, first, inverse = np.unique(target[:count], return_index=True, return_inverse=True)
-    rank = np.empty(len(first), np.int32)
-    rank[np.argsort(first, kind="stable")] = np.arange(len(first), dtype=np.int32)
-    return rank[inverse.ravel()]
+    target = target[:count]
+    first = np.empty(count + apexes, np.int64)
+    first[target[::-1]] = np.arange(count)[::-1]
+    return _numbered(first[target])
 
 
-def _borders(faces):
-    """Return the edges that one triangle has alone, shape (E, 2), and those triangles."""
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+def facets(points, faces):
+    """Return the normals of triangles, twice their area long, shape (3, T), float64.
+
+    Parameters
+    ----------
+    points : ndarray of shape (P, 3)
+    faces : ndarray of shape (T, 3)
+    """
+    result = np.empty((3, len(faces)))
+    # In blocks that stay in a cache.
+    for start in range(0, len(faces), 1 << 15):
+        block = slice(start, start + (1 << 15))
+        a, b, c = (points[corner].astype(np.float64) for corner in faces[block].T)
+        (ux, uy, uz), (vx, vy, vz) = (b - a).T, (c - a).T
+        result[0, block] = uy * vz - uz * vy
+        result[1, block] = uz * vx - ux * vz
+        result[2, block] = ux * vy - uy * vx
+    return result
+
+
+def _borders(faces, count):
+    """Return the edges that one triangle has alone, shape (E, 2), and those triangles.
+
+    Parameters
+    ----------
+    faces : ndarray of shape (T, 3)
+    count : int
+        Of the places.
+    """
+    # Triangles that face the same way have the edge between them in both directions. The numbers
+    # of its ends, signed by the direction, then cancel at its first; they are replaced by random
+    # ones, so that others do not.
+    label = np.random.default_rng(0).integers(1, 1 << 40, count).astype(np.float64)
+    balance = np.zeros(count)
+    columns = [np.ascontiguousarray(corner) for corner in faces.T]
+    for k in range(3):
+        a, b = columns[k], columns[(k + 1) % 3]
+        low, high = np.minimum(a, b), np.maximum(a, b)
+        # Whole numbers below 2**53 add up exactly for up to 2**13 edges.
+        balance += np.bincount(low, np.where(a < b, label[high], -label[high]), count)
+    odd = balance != 0.0
+    edges, owners = [], []
+    for k in range(3):
+        a, b = columns[k], columns[(k + 1) % 3]
+        found = np.flatnonzero(odd[np.minimum(a, b)])
+        edges.append(np.stack([a[found], b[found]], axis=1))
+        owners.append(found)
+    edges, owners = np.concatenate(edges), np.concatenate(owners)
     low, high = edges.min(axis=1).astype(np.int64), edges.max(axis=1)
     keys = (low << 32) | high
     order = np.argsort(keys, kind="stable")
@@ -154,12 +299,11 @@ def _borders(faces):
     alone[1:] &= differs
     alone[:-1] &= differs
     single = np.sort(order[alone])
-    return edges[single], single % len(faces)
+    return edges[single], owners[single]
 
 
-def _cones(points, faces):
+def _cones(points, border, owner, normal):
     """Return apexes over the holes, shape (K, 3), and triangles from the borders to them."""
-    border, owner = _borders(faces)
     if len(border) == 0:
         return np.empty((0, 3)), np.empty((0, 3), np.int32)
     used, local = np.unique(border, return_inverse=True)
@@ -174,8 +318,7 @@ def _cones(points, faces):
 
     center = mean(points[used], hole)
     radius = np.sqrt(mean(np.square(points[used] - center[hole]).sum(axis=1)[:, None], hole))
-    a, b, c = (points[corner] for corner in faces[owner].T)
-    normal = mean(np.cross(b - a, c - a), hole[local[:, 0]])
+    normal = mean(normal[:, owner].T, hole[local[:, 0]])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-30)
     apexes = center + _CONE_HEIGHT * radius * normal
     cones = np.column_stack([border[:, 1], border[:, 0], len(points) + hole[local[:, 0]]])
@@ -208,63 +351,3 @@ def connected(edges, count):
         if np.array_equal(following, label):
             return label
         label = following
-
-
-def merged_places(mesh, halving):
-    """Return where the groups of places merge to.
-
-    Parameters
-    ----------
-    mesh : MeshSnapshot
-    halving : Halving
-
-    Returns
-    -------
-    ndarray of shape (G, 3)
-    """
-    points = _points(mesh.positions, halving.places).astype(np.float64)
-    groups = halving.groups
-    count = int(groups.max(initial=-1)) + 1
-    faces = halving.places[mesh.triangles]
-    sizes = np.bincount(groups, minlength=count)
-    mean = np.stack([np.bincount(groups, v, count) for v in points.T], axis=1)
-    mean /= np.maximum(sizes, 1)[:, None]
-    a, b, c = (points[corner] for corner in faces.T)
-    across = np.cross(b - a, c - a)
-    length = np.linalg.norm(across, axis=1)
-    normal = across / np.maximum(length, 1e-300)[:, None]
-    quadric = np.zeros((count, 3, 3))
-    pull = np.zeros((count, 3))
-    moving = sizes > 1
-    _add_planes(quadric, pull, mean, groups[faces], a, normal, length, moving)
-    trace = np.trace(quadric, axis1=1, axis2=2)
-    strength = np.where(trace > 0.0, _PULL * trace, 1.0)
-    quadric += strength[:, None, None] * np.eye(3)
-    border, owner = _borders(faces)
-    if len(border):
-        start, end = points[border[:, 0]], points[border[:, 1]]
-        outward = np.cross(end - start, normal[owner])
-        strength = np.linalg.norm(outward, axis=1)
-        outward /= np.maximum(strength, 1e-300)[:, None]
-        weight = _BORDER_WEIGHT * strength**2
-        _add_planes(quadric, pull, mean, groups[border], start, outward, weight, moving)
-    move = np.linalg.solve(quadric, pull[:, :, None])[:, :, 0]
-    return mean + move
-
-
-def _add_planes(quadric, pull, mean, corners, through, normal, weight, moving):
-    """Add the squared distances from planes, seen from each group's mean, once a group."""
-    for k in range(corners.shape[1]):
-        group = corners[:, k]
-        # A plane counts once for a group, however many of its corners are in it.
-        once = moving[group].copy()
-        for j in range(k):
-            once &= corners[:, j] != group
-        group, n, w = group[once], normal[once], weight[once]
-        distance = (n * (through[once] - mean[group])).sum(axis=1)
-        for i in range(3):
-            pull[:, i] += np.bincount(group, w * n[:, i] * distance, len(mean))
-            for j in range(i, 3):
-                quadric[:, i, j] += np.bincount(group, w * n[:, i] * n[:, j], len(mean))
-    for i, j in ((0, 1), (0, 2), (1, 2)):
-        quadric[:, j, i] = quadric[:, i, j]

@@ -12,11 +12,21 @@ collapses are those of fast-simplification.
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from .level_attributes import carry
-from .level_collapses import Halving, connected, decimate, merged_places, weld
+from .level_collapses import (
+    Halving,
+    Surface,
+    connected,
+    decimate,
+    differ,
+    stable_order,
+    weld,
+)
+from .level_places import merged_places
 from .snapshot import MeshSnapshot, next_uid
 
 __all__ = ["Halving", "MeshLevel", "available", "replay", "simplify", "slots_of", "surviving"]
@@ -61,8 +71,8 @@ def simplify(mesh, least_triangles, check=None):
     least_triangles : int
         No level has fewer, unless the mesh itself has.
     check : callable, optional
-        Called before each level with the triangles that the mesh has lost so far; it may raise to
-        end the work.
+        Called now and then with the triangles that the mesh has lost so far; it may raise to end
+        the work.
 
     Returns
     -------
@@ -77,11 +87,11 @@ def simplify(mesh, least_triangles, check=None):
     full = len(mesh.triangles)
     places = None
     while len(mesh.triangles) >= 2 * least_triangles:
-        if check is not None:
-            check(full - len(mesh.triangles))
-        places = weld(mesh.positions) if places is None else places
-        halving = decimate(mesh, places, len(mesh.triangles) // 2)
-        level, following = _merge(mesh, halving)
+        lost = full - len(mesh.triangles)
+        watch = None if check is None else partial(check, lost)
+        surface = Surface(mesh, weld(mesh.positions) if places is None else places)
+        halving = decimate(surface, len(mesh.triangles) // 2, watch)
+        level, following = _merge(mesh, surface, halving)
         if not 0 < len(level.triangles) <= _LEAST_REDUCTION * len(mesh.triangles):
             break
         levels.append(level)
@@ -105,21 +115,21 @@ def replay(mesh, halvings):
     """
     levels = []
     for halving in halvings:
-        mesh, _ = _merge(mesh, halving)
+        mesh, _ = _merge(mesh, Surface(mesh, halving.places), halving)
         levels.append(mesh)
     return tuple(levels)
 
 
-def _merge(mesh, halving):
+def _merge(mesh, surface, halving):
     """Return the next level, and the place of each of its vertices."""
     place = halving.groups[halving.places]
-    corners = place[mesh.triangles]
-    kept = surviving(halving.places[mesh.triangles], corners)
-    points = merged_places(mesh, halving)
-    vertex_of, vertex_places = _vertices(mesh, halving, place, kept)
-    triangles = np.ascontiguousarray(vertex_of[mesh.triangles[kept]], np.int32)
+    kept = surviving(surface.faces, halving.groups[surface.faces])
+    points = merged_places(surface, halving)
+    old = mesh.triangles[kept]
+    vertex_of, vertex_places = _vertices(mesh, halving, place, old)
+    triangles = np.ascontiguousarray(vertex_of[old], np.int32)
     positions = np.ascontiguousarray(points[vertex_places], np.float32)
-    attributes = carry(mesh, vertex_of, positions, triangles)
+    attributes = carry(mesh, surface, vertex_of, positions, triangles)
     # A side of a seam that has shrunk to nothing continues as another of its place.
     vertex_at = np.full(len(points), -1, np.int32)
     vertex_at[vertex_places] = np.arange(len(vertex_places), dtype=np.int32)
@@ -145,21 +155,21 @@ def surviving(before, corners):
     Parameters
     ----------
     before, corners : ndarray of shape (T, 3)
-        Places of their corners, before and after merging.
+        Places of their corners, before and after places merge.
 
     Returns
     -------
     ndarray of shape (K,)
-        Ascending numbers of triangles.
+        Indices, rising.
     """
-    proper = _proper(corners) & _proper(before)
-    kept = np.flatnonzero(proper)
-    faces = corners[kept]
-    order, starts = _runs(np.sort(faces, axis=1))
-    if starts.all():
+    kept = np.flatnonzero(_proper(corners) & _proper(before))
+    several = kept[_perhaps_several(corners[kept])]
+    if len(several) == 0:
         return kept
+    faces = corners[several]
+    order, starts = _runs(np.sort(faces, axis=1))
     run = np.cumsum(starts) - 1
-    faces, old = faces[order], np.sort(before[kept[order]], axis=1)
+    faces, old = faces[order], np.sort(before[several[order]], axis=1)
     a, b, c = faces.T
     # Cyclic order of the corners tells the side that a triangle faces.
     side = np.where((a < b) ^ (b < c) ^ (c < a), 1, -1)
@@ -168,7 +178,10 @@ def surviving(before, corners):
     balance = np.add.reduceat(side, first)
     count = np.diff(np.append(first, len(order)))
     goes = fresh & (balance == 0) & (count > 1)
-    return np.sort(kept[order[first[~goes]]])
+    stays = np.ones(len(before), bool)
+    stays[several] = False
+    stays[several[order[first[~goes]]]] = True
+    return kept[stays[kept]]
 
 
 def _proper(faces):
@@ -176,13 +189,23 @@ def _proper(faces):
     return (a != b) & (b != c) & (c != a)
 
 
+def _perhaps_several(faces):
+    """Return which triangles may have the same corners as another one, in any order."""
+    # Sums of random numbers do not depend on the order.
+    label = np.random.default_rng(0).integers(0, 1 << 24, int(faces.max(initial=-1)) + 1)
+    bits = min(int(4 * len(faces)).bit_length(), 24)
+    bucket = sum(label[corner] for corner in faces.T) & ((1 << bits) - 1)
+    return np.bincount(bucket)[bucket] > 1
+
+
 def _runs(rows):
     """Sort rows of three; return their order and where a row differs from the one before."""
-    keys = rows.astype(np.int64)
-    order = np.lexsort((keys[:, 2], (keys[:, 0] << 32) | keys[:, 1]))
+    order = np.arange(len(rows))
+    for column in rows.T[::-1]:
+        order = order[stable_order(column[order])]
     ordered = rows[order]
     starts = np.ones(len(rows), bool)
-    starts[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    starts[1:] = differ(ordered[1:], ordered[:-1])
     return order, starts
 
 
@@ -191,10 +214,10 @@ def slots_of(slots, kept):
 
     Parameters
     ----------
-    slots : tuple of (int, int, int)
-        As in `MeshSnapshot`.
+    slots : sequence of (int, int, int)
+        Material slot, first triangle and count, of all triangles.
     kept : ndarray of shape (K,)
-        Ascending numbers of triangles.
+        Indices of triangles, rising.
 
     Returns
     -------
@@ -211,6 +234,15 @@ def slots_of(slots, kept):
 def _vertices(mesh, halving, place, kept):
     """Find the new vertices: one for each place and side of a seam that a kept triangle touches.
 
+    Parameters
+    ----------
+    mesh : MeshSnapshot
+    halving : Halving
+    place : ndarray of shape (V,)
+        Merged place of each vertex.
+    kept : ndarray of shape (T, 3)
+        Vertices of the kept triangles.
+
     Returns
     -------
     vertex_of : ndarray of shape (V,)
@@ -218,16 +250,22 @@ def _vertices(mesh, halving, place, kept):
     vertex_places : ndarray of shape (W,)
         int32; the merged place of each new vertex.
     """
-    # The sides of a seam stay apart, also where the seam does not cut the mesh in two.
-    key = place.astype(np.int64)
-    count = len(mesh.positions)
-    if count > len(halving.groups):
-        key = key * count + _sides(mesh.triangles, halving.places, place)
-    used = np.unique(key[mesh.triangles[kept]])
-    index = np.minimum(np.searchsorted(used, key), max(len(used) - 1, 0))
-    found = used[index] == key if len(used) else np.zeros(count, bool)
-    vertex_of = np.where(found, index, -1)
-    vertex_places = np.empty(len(used), np.int32)
+    key = place
+    if len(mesh.positions) > len(halving.groups):
+        # The sides of a seam stay apart, also where the seam does not cut the mesh in two.
+        side = _sides(mesh.triangles, halving.places, place)
+        order = stable_order(side)
+        order = order[stable_order(place[order])]
+        starts = np.zeros(len(order), bool)
+        starts[1:] = (np.diff(place[order]) != 0) | (np.diff(side[order]) != 0)
+        key = np.empty(len(order), np.int32)
+        key[order] = np.cumsum(starts)
+    used = np.zeros(int(key.max(initial=-1)) + 1, bool)
+    used[key[kept]] = True
+    number = np.where(used, np.cumsum(used, dtype=np.int32) - 1, -1).astype(np.int32)
+    vertex_of = number[key]
+    found = vertex_of >= 0
+    vertex_places = np.empty(int(used.sum()), np.int32)
     vertex_places[vertex_of[found]] = place[found]
     return vertex_of, vertex_places
 

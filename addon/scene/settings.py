@@ -117,6 +117,7 @@ def read_passes(view_layer):
         ("CoC", own.use_pass_coc),
         ("Detail", own.use_pass_detail),
         ("Focus Matte", own.use_pass_focus_matte),
+        ("Fringe", own.use_pass_fringe),
     )
     names = ["Combined", *(name for name, wanted in switches if wanted)]
     # Two ranks a pass.

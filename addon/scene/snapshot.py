@@ -15,6 +15,7 @@ import numpy as np
 
 from ..bokeh.appearance import Appearance
 from ..optics.prescription import Prescription
+from ..sampling.chromatic import ChromaticAberration
 from ..sampling.thin_lens import ThinLens
 from .surface_graph import SurfaceGraph
 
@@ -345,6 +346,11 @@ class Camera:
         None: highlights are drawn as everything else.
     report : tuple of str
         What the camera asks for and does not get, one line each.
+    chromatic : ChromaticAberration or None
+        None: all wavelengths are seen alike.
+    field_radius : float or None
+        Distance of the outermost corner of the camera's own picture from the optical axis: as a
+        tangent, for a parallel projection in m. None: that of `projection`.
     """
 
     view: np.ndarray
@@ -356,6 +362,8 @@ class Camera:
     real_lens: LensSettings | None = None
     bokeh: BokehSettings | None = None
     report: tuple[str, ...] = ()
+    chromatic: ChromaticAberration | None = None
+    field_radius: float | None = None
 
 
 @dataclass(frozen=True)

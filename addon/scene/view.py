@@ -6,6 +6,7 @@ import numpy as np
 
 from .bokeh import corner_tangent, read_bokeh
 from .camera import evaluated_camera, read_lens
+from .chromatic import read_chromatic
 from .lenses import read_real_lens
 from .snapshot import Camera, Film
 
@@ -66,15 +67,17 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
     covered = np.array([region.width / width, region.height / height]) / pixel_size
     stretch = np.diag([*covered, 1.0, 1.0])
     stretch[:2, 3] = covered - 1.0
-    lens, real_lens, bokeh, frame = None, None, None, None
+    lens = real_lens = bokeh = frame = field_radius = chromatic = None
     through_camera = region_3d.view_perspective == "CAMERA" and space.camera is not None
     if through_camera and space.camera.type == "CAMERA":
         camera = evaluated_camera(depsgraph, space.camera)
         frame = _camera_frame(camera, scene, window @ view)
+        field_radius = _field_radius(camera, scene)
         real_lens, _ = read_real_lens(camera.data)
         if camera.data.dof.use_dof:
             lens = read_lens(depsgraph, camera, real_lens)
         bokeh, _ = read_bokeh(camera.data, real_lens, corner_tangent(camera.data, scene))
+        chromatic, _ = read_chromatic(camera.data, real_lens)
     if through_camera:
         border = _border_in_frame(scene.render, frame)
     else:
@@ -99,6 +102,8 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
         orthographic=bool(orthographic),
         real_lens=real_lens,
         bokeh=bokeh,
+        chromatic=chromatic,
+        field_radius=field_radius,
     )
     return View(camera, film, pixel_size)
 
@@ -115,6 +120,14 @@ def _camera_frame(camera, scene, view_to_clip):
     clip = corners @ view_to_clip.T
     shares = 0.5 * (clip[:, :2] / clip[:, 3:] + 1.0)
     return np.stack([shares.min(axis=0), shares.max(axis=0)])
+
+
+def _field_radius(camera, scene):
+    """Return `Camera.field_radius` of a camera's picture."""
+    corners = np.array(camera.data.view_frame(scene=scene), np.float64)
+    if camera.data.type != "ORTHO":
+        corners /= -corners[:, 2:]
+    return float(np.linalg.norm(corners[:, :2], axis=1).max())
 
 
 def _border_in_frame(render, frame):

@@ -1,4 +1,4 @@
-"""What Aplanat adds to a camera: its real lens and zoom position, and its bokeh."""
+"""What Aplanat adds to a camera: real lens and zoom position, chromatic aberration, bokeh."""
 
 import bpy
 from bpy.props import EnumProperty, PointerProperty, StringProperty
@@ -6,6 +6,7 @@ from bpy.props import EnumProperty, PointerProperty, StringProperty
 from ..scene.lenses import shelf
 from . import lens_thumbnails
 from .bokeh_properties import APPEARANCE_NAMES, AplanatBokehSettings
+from .chromatic_properties import AplanatChromaticSettings, remember_for_lens
 from .lens_memory import remember
 
 _LONGEST_TEXT = 255
@@ -104,6 +105,7 @@ def _lens_changed(camera, _context):
     if camera.zoom_label and labels and camera.zoom_label not in labels:
         camera.zoom_label = ""
     remember(camera, "bokeh", APPEARANCE_NAMES)
+    remember_for_lens(camera)
     camera.id_data.update_tag()
 
 
@@ -113,7 +115,7 @@ def _zoom_changed(camera, _context):
 
 
 class AplanatCameraSettings(bpy.types.PropertyGroup):
-    """The real lens of a camera, and its bokeh."""
+    """The real lens of a camera, how it parts the colours, and its bokeh."""
 
     lens: StringProperty(
         name="Lens",
@@ -163,6 +165,24 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
     )
     bokeh_memory: StringProperty(
         name="Bokeh of Other Lenses",
+        description="What was set for lenses that were used before, as JSON",
+        options={"HIDDEN"},
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    chromatic: PointerProperty(
+        type=AplanatChromaticSettings,
+        name="Chromatic Aberration",
+        description="How colours part in the camera",
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    chromatic_lens: StringProperty(
+        name="Lens of the Chromatic Settings",
+        description="Lens for which the chromatic settings were made",
+        options={"HIDDEN"},
+        override={"LIBRARY_OVERRIDABLE"},
+    )
+    chromatic_memory: StringProperty(
+        name="Chromatic Settings of Other Lenses",
         description="What was set for lenses that were used before, as JSON",
         options={"HIDDEN"},
         override={"LIBRARY_OVERRIDABLE"},

@@ -174,6 +174,7 @@ class APLANAT_VIEWLAYER_PT_data(EnginePanel, bpy.types.Panel):
         lens = column.column(heading="Lens")
         lens.prop(layer.aplanat, "use_pass_coc")
         lens.prop(layer.aplanat, "use_pass_focus_matte")
+        lens.prop(layer.aplanat, "use_pass_fringe")
         parts = column.column(heading="Combined")
         parts.prop(layer.aplanat, "use_pass_defocus")
         parts.prop(layer.aplanat, "use_pass_bokeh")

@@ -11,6 +11,8 @@ from bpy.props import (
 
 from .bokeh_properties import AplanatBokehSettings
 from .camera_properties import AplanatCameraSettings
+from .chromatic_properties import AplanatChromaticSettings
+from .spectrum_bar import AplanatSpectrumBar
 
 # Also what the command line accepts.
 MAX_SAMPLES = 65536
@@ -203,6 +205,13 @@ class AplanatViewLayerSettings(bpy.types.PropertyGroup):
         default=False,
         update=_update_passes,
     )
+    use_pass_fringe: BoolProperty(
+        name="Fringe",
+        description="What chromatic aberration adds and takes away: Combined less the same picture"
+        " without it, which is rendered beside it",
+        default=False,
+        update=_update_passes,
+    )
 
 
 def _material_changed(settings, _context):
@@ -231,6 +240,8 @@ CLASSES = (
     AplanatViewLayerSettings,
     AplanatMaterialSettings,
     AplanatBokehSettings,
+    AplanatSpectrumBar,
+    AplanatChromaticSettings,
     AplanatCameraSettings,
 )
 

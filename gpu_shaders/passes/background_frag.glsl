@@ -2,12 +2,19 @@
 // Inputs: view_buf; lens_sample (xy: place on the lens, m; zw: sub-pixel jitter in clip units);
 // environment_buf; environment_tx (equirectangular, scene linear); with HIGHLIGHTS, where the light
 // that is splatted is left out, and with EXCESS, the light that may be, highlight_buf.
+// CHROMATIC: as in surface_vert.
 // Outputs: opaque scene-linear colour; with EXCESS the light above the threshold.
 // Source: methods 1: the ray from the lens' place through the pixel's point of the focus plane.
 #include "lib/environment_lib.glsl"
 #include "lib/texture_lib.glsl"
 #if defined(HIGHLIGHTS) || defined(EXCESS)
 #include "lib/highlight_lib.glsl"
+#endif
+#ifdef CHROMATIC
+#include "lib/chromatic_lib.glsl"
+
+// Of the search for the place in the field that a wavelength moves to the pixel's.
+#define ITERATIONS 4
 #endif
 
 void main()
@@ -19,7 +26,28 @@ void main()
     direction.xy = (clip + vec2(view_buf.projection[2][0], view_buf.projection[2][1])) /
                    vec2(view_buf.projection[0][0], view_buf.projection[1][1]);
   }
+#ifdef CHROMATIC
+  vec2 pixel = direction.xy;
+  vec2 place = pixel;
+  if (view_buf.lens.y > 0.5) {
+    // All rays are parallel: the world has no size that a wavelength could change.
+    place = gl_FragCoord.xy * chromatic_buf.raster.xy + chromatic_buf.raster.zw;
+    vec2 strengths = field_strengths(field_tx, place, chromatic_buf);
+    float focus = chromatic_focus(dispersion.x, strengths.x, chromatic_buf);
+    direction.xy -= lens_sample.xy * focus;
+  }
+  else {
+    for (int i = 0; i < ITERATIONS; i++) {
+      vec2 strengths = field_strengths(field_tx, place, chromatic_buf);
+      float focus = chromatic_focus(dispersion.x, strengths.x, chromatic_buf);
+      float scale = lateral_scale(dispersion.y, strengths.y, chromatic_buf);
+      place = (pixel - lens_sample.xy * focus) / scale;
+    }
+    direction.xy = place;
+  }
+#else
   direction.xy -= lens_sample.xy / view_buf.lens.x;
+#endif
   direction = mat3(view_buf.view_inverse) * direction;
   vec3 local = vec3(dot(environment_buf.rotation_x.xyz, direction),
                     dot(environment_buf.rotation_y.xyz, direction),

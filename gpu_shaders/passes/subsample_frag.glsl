@@ -5,10 +5,20 @@
 // (row: sample; column: place on the lens relative to the sample's, m); means_tx, ranges_tx (pyramid
 // of the sample, `top` levels); sample_index, count; spread (largest offset, m); cell (side of a
 // cell of the lens, m); sweep; weight.
+// CHROMATIC: as in surface_vert, and gain (of the sweep, by 1 / focus distance), tint (weights of the
+// channels).
 // Outputs: the weighted sum of the sample and its subsamples.
 // Source: methods 6 (JKL13 section 6, algorithm 3).
 #include "lib/nbuffer_lib.glsl"
 #include "lib/sweep_lib.glsl"
+#ifdef CHROMATIC
+#include "lib/chromatic_lib.glsl"
+
+// The sweep where the pixel's place in the field puts the focus.
+vec4 focused_sweep;
+#else
+#define focused_sweep sweep
+#endif
 
 // A hit is a texel whose surface comes to lie within so many texels of the pixel.
 #define TOLERANCE 1.0
@@ -38,10 +48,11 @@ vec2 part_inside(vec2 start, vec2 way, vec2 size)
 vec4 cell_color(ivec2 texel, ivec2 size)
 {
   float depth = texelFetch(depth_tx, texel, 0).x;
-  vec2 span = abs(sweep_px(vec2(cell), sweep, depth));
+  vec2 span = abs(sweep_px(vec2(cell), focused_sweep, depth));
   float width = WIDTH_OF_CELL * min(span.x, span.y);
   int level = min(int(floor(log2(max(width, 1.0)) + 0.5)), top);
-  float alike = MOVES_ALIKE / max(cell * max(abs(sweep.z), abs(sweep.w)), 1e-30);
+  vec2 by_depth = abs(focused_sweep.zw);
+  float alike = MOVES_ALIKE / max(cell * max(by_depth.x, by_depth.y), 1e-30);
   for (; level > 0; level--) {
     ivec2 last = ((size + (1 << level) - 1) >> level) - 1;
     vec2 place = (vec2(texel) + 0.5) / float(1 << level) - 0.5;
@@ -63,8 +74,8 @@ vec4 cell_color(ivec2 texel, ivec2 size)
 
 vec4 cast_ray(ivec2 pixel, ivec2 size, vec2 move, vec2 bounds)
 {
-  vec2 near = sweep_px(move, sweep, bounds.x);
-  vec2 far = sweep_px(move, sweep, bounds.y);
+  vec2 near = sweep_px(move, focused_sweep, bounds.x);
+  vec2 far = sweep_px(move, focused_sweep, bounds.y);
   vec2 way = near - far;
   vec2 center = vec2(pixel) + 0.5;
   vec2 inside = part_inside(center - near, way, vec2(size));
@@ -78,7 +89,7 @@ vec4 cast_ray(ivec2 pixel, ivec2 size, vec2 move, vec2 bounds)
     vec2 place = start + way * (float(k) / float(max(steps, 1)));
     ivec2 texel = clamp(ivec2(floor(place)), ivec2(0), size - 1);
     float depth = texelFetch(depth_tx, texel, 0).x;
-    vec2 miss = abs(vec2(texel) + 0.5 + sweep_px(move, sweep, depth) - center);
+    vec2 miss = abs(vec2(texel) + 0.5 + sweep_px(move, focused_sweep, depth) - center);
     float distance = max(miss.x, miss.y);
     if (distance <= closest) {
       // The nearest surface that is hit, where it is hit best.
@@ -105,7 +116,14 @@ void main()
   ivec2 size = textureSize(sample_tx, 0);
   vec4 primary = texelFetch(sample_tx, pixel, 0);
   vec2 bounds = texelFetch(bounds_tx, pixel, 0).xy;
-  vec2 reach = max(abs(sweep_px(spread, sweep, bounds.x)), abs(sweep_px(spread, sweep, bounds.y)));
+#ifdef CHROMATIC
+  // The field changes so slowly that a surface has the focus of where its light arrives.
+  vec2 place = gl_FragCoord.xy * chromatic_buf.raster.xy + chromatic_buf.raster.zw;
+  float axial = field_strengths(field_tx, place, chromatic_buf).x;
+  focused_sweep = sweep + gain * chromatic_focus(dispersion.x, axial, chromatic_buf);
+#endif
+  vec2 reach = max(abs(sweep_px(spread, focused_sweep, bounds.x)),
+                   abs(sweep_px(spread, focused_sweep, bounds.y)));
   vec4 total = primary * float(count + 1);
   // What moves by less than half a texel stays in it.
   if (max(reach.x, reach.y) > 0.5) {
@@ -115,5 +133,8 @@ void main()
       total += cast_ray(pixel, size, move, bounds);
     }
   }
+#ifdef CHROMATIC
+  total *= tint;
+#endif
   out_color = total * weight;
 }

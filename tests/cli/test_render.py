@@ -241,6 +241,7 @@ def test_options_are_in_force_and_told(aplanat, small_blend, tmp_path):
     assert (settings["filter"], settings["filter_size_px"]) == ("box", 1.25)
     assert (settings["camera"], settings["fstop"], settings["focus_object"]) == ("Second", 2, "Far")
     assert settings["no_bokeh"] and settings["no_chromatic"]
+    assert settings["chromatic"] is None
     assert told["frames"][0]["frame"] == 9
 
 

@@ -86,6 +86,7 @@ def test_a_deforming_mesh_is_simplified_once_in_24_frames(store):
         store.finish()
         coarsest = store.ready(mesh.uid)[-1]
         assert np.abs(coarsest.bounds - mesh.bounds).max() < 0.03
+        assert len(store.ready(mesh.uid)[0].merged) == len(mesh.positions)
     assert (store.decimations, store.replays) == (1, 23)
 
 
@@ -112,6 +113,8 @@ def test_large_meshes_come_back_from_disk_bit_by_bit(store, tmp_path):
     for a, b in zip(store.ready(mesh.uid), again.ready(mesh.uid), strict=True):
         assert a.positions.tobytes() == b.positions.tobytes()
         assert a.triangles.tobytes() == b.triangles.tobytes()
+        assert a.places.tobytes() == b.places.tobytes()
+        assert a.merged.tobytes() == b.merged.tobytes()
 
 
 @pytest.mark.parametrize("damage", ["cut", "flipped", "text", "empty"])

@@ -56,6 +56,20 @@ def test_a_pinhole_has_no_levels():
     assert levels.choose_levels(seen_box(10.0), np.array([1e7]), plan)[0] == 0.0
 
 
+def test_triangles_of_the_blurred_area_cover_a_circle_of_confusion_in_the_picture():
+    plan = plan_for()
+    depth = np.array([FOCUS, 6.0, 10.0, 1.5, -2.0])
+    world = np.diag([2.0, 2.0, 2.0, 1.0])
+    area = levels.blurred_area(depth, world, plan, 0.0)
+    # Twice as large in the world, seen at an average angle.
+    scale = plan.projection[1, 1] * plan.height / 2.0
+    seen = 0.5 * area * 4.0 * (scale / depth) ** 2
+    circle = np.pi * levels.coc_radius(depth, plan) ** 2
+    assert seen[1:4] == pytest.approx(circle[1:4])
+    assert area[0] == area[4] == 0.0, "in focus, and behind the camera"
+    assert levels.blurred_area(depth, world, plan, 1.0) == pytest.approx(area / 2.0)
+
+
 def test_more_blur_never_means_more_detail():
     triangles = np.array([1e6])
     radii = (0.01, 0.02, 0.05, 0.1, 0.3)

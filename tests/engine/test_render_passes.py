@@ -22,6 +22,7 @@ def view_layer(depth=6, **switches):
         use_pass_defocus=switches.get("defocus", False),
         use_pass_bokeh=switches.get("bokeh", False),
         use_pass_detail=switches.get("detail", False),
+        use_pass_fringe=switches.get("fringe", False),
     )
     return Record(pass_cryptomatte_depth=depth, aplanat=own, **values)
 
@@ -52,6 +53,7 @@ def test_every_name_that_can_be_asked_for_is_in_the_table():
             bokeh=True,
             coc=True,
             focus_matte=True,
+            fringe=True,
             cryptomatte_object=True,
             cryptomatte_material=True,
         )

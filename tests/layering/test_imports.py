@@ -36,7 +36,10 @@ ROOMS = {
         *("scene", "scene.snapshot", "scene.surface_graph"),
     },
     "compositor": {"engine", "scene.snapshot"},
-    "ui": {"engine", "scene", "scene.snapshot", "files", "optics", "bokeh", "lens_io", "plots"},
+    "ui": {
+        *("files", "optics", "bokeh", "sampling", "lens_io", "plots"),
+        *("engine", "scene", "scene.snapshot"),
+    },
     "cli": {
         *("files", "optics", "bokeh", "sampling", "lens_io", "plots"),
         *("engine", "scene", "device", "ui"),

@@ -120,6 +120,57 @@ def test_a_small_highlight_keeps_its_light_and_its_place():
         assert level.attributes["color:"].min() >= 0.0
 
 
+@pytest.mark.parametrize("sharpness", [20.0, 200.0, 2000.0])
+def test_highlights_of_many_times_white_keep_their_light_on_every_level(sharpness):
+    # Beside dark places, where the best fit would be below black.
+    mesh = cube_sphere(64)
+    toward = np.random.default_rng(2).normal(size=(30, 3))
+    toward /= np.linalg.norm(toward, axis=1, keepdims=True)
+    spots = np.exp(-sharpness * (1.0 - mesh.positions @ toward.T)).max(axis=1)
+    color = np.stack([0.02 + 8.0 * spots, 0.3 + 3.0 * spots, spots, np.ones_like(spots)], axis=1)
+    mesh = mesh_of(mesh.positions, mesh.triangles, **{"color:": color})
+    levels, _ = simplify(mesh, 300)
+    assert len(levels) >= 7
+    for level in levels:
+        assert light(level)[:3] == pytest.approx(light(mesh)[:3], rel=0.002)
+        assert level.attributes["color:"][:, :3].min() >= 0.0
+        assert (level.attributes["color:"][:, 3] == 1.0).all(), "what is constant stays so"
+
+
+def test_light_stays_on_its_side_of_the_surface():
+    mesh = cube_sphere(64)
+    lit = 0.02 + 4.0 * np.maximum(mesh.positions @ np.array([0.6, 0.48, 0.64]), 0.0) ** 8
+    mesh = mesh_of(mesh.positions, mesh.triangles, **{"color:": np.tile(lit[:, None], (1, 4))})
+
+    def along(level):
+        a, b, c = (level.positions[corner].astype(float) for corner in level.triangles.T)
+        values = level.attributes["color:"][level.triangles, 0].mean(axis=1)
+        return (np.cross(b - a, c - a) * values[:, None]).sum(axis=0) / 2.0
+
+    levels, _ = simplify(mesh, 300)
+    for level in levels:
+        # Where the gain is limited, a little stays on the wrong side.
+        assert along(level) == pytest.approx(along(mesh), rel=0.01)
+
+
+def test_a_mesh_of_several_patches_stays_closed_and_its_rims_get_coarser(monkeypatch):
+    monkeypatch.setattr("addon.scene.level_collapses._PATCH", 2000)
+    mesh = cube_sphere(64)
+    levels, _ = simplify(mesh, 300)
+    counts = [len(level.triangles) for level in (mesh, *levels)]
+    assert all(0.4 <= b / a <= 0.55 for a, b in zip(counts, counts[1:], strict=False))
+    for level in levels:
+        assert_sound(level)
+        _, place = np.unique(level.positions, axis=0, return_inverse=True)
+        faces = place.ravel()[level.triangles]
+        edges = np.sort(np.concatenate([faces[:, :2], faces[:, 1:], faces[:, ::2]]), axis=1)
+        _, uses = np.unique(edges, axis=0, return_counts=True)
+        assert (uses == 2).all()
+    # A rim that no level merges would keep its small triangles.
+    size = areas(levels[-1])
+    assert size.min() > 0.1 * size.mean()
+
+
 def test_uvs_of_every_triangle_stay_in_one_chart_across_seams():
     mesh = cube_sphere()
     levels, _ = simplify(mesh, 300)

@@ -1,0 +1,129 @@
+"""Where the places that become one in the next level of detail merge to.
+
+That is where the sum of squared distances from the planes of the triangles round the group,
+weighted by their area, is least: Garland's quadrics, solved for the whole group at once.
+
+References
+----------
+Garland and Heckbert, *Surface simplification using quadric error metrics*, SIGGRAPH 1997.
+"""
+
+import numpy as np
+
+# Weight of a border's perpendicular plane against the triangle at the border.
+_BORDER_WEIGHT = 10.0
+# How much of the quadric's trace, without borders, pulls a merged place to the mean of its group.
+_PULL = 0.1
+
+
+def merged_places(surface, halving):
+    """Return where the groups of places merge to.
+
+    Parameters
+    ----------
+    surface : Surface
+    halving : Halving
+
+    Returns
+    -------
+    ndarray of shape (G, 3)
+    """
+    normal, length = surface.normal, surface.size
+    center = surface.points.mean(axis=0) if len(surface.points) else np.zeros(3)
+    points = surface.points - center
+    groups = halving.groups
+    count = int(groups.max(initial=-1)) + 1
+    sizes = np.bincount(groups, minlength=count)
+    mean = np.stack([np.bincount(groups, v, count) for v in points.T])
+    mean /= np.maximum(sizes, 1)
+    moving = sizes > 1
+    quadric = np.zeros((6, count))
+    pull = np.zeros((3, count))
+    _add_planes(quadric, pull, groups, moving, surface.faces, points, normal, length)
+    trace = quadric[0] + quadric[3] + quadric[5]
+    hold = np.where(trace > 0.0, _PULL * trace, 1.0)
+    border, owner = surface.borders
+    if len(border):
+        along = points[border[:, 1]] - points[border[:, 0]]
+        unit = normal[:, owner] / np.maximum(length[owner], 1e-300)
+        outward = np.cross(along, unit.T).T
+        weight = np.sqrt(np.square(outward).sum(axis=0))
+        # Weighted by its square, against a vector as long as itself.
+        outward *= _BORDER_WEIGHT * weight
+        _add_planes(
+            quadric, pull, groups, moving, border, points, outward, _BORDER_WEIGHT * weight**2
+        )
+    moved = mean + _move(quadric, pull, hold, mean)
+    return np.where(moving, moved, mean).T + center
+
+
+def _add_planes(quadric, pull, groups, moving, corners, points, normal, weight):
+    """Add the squared distances from planes to the groups at their corners, once a group.
+
+    Parameters
+    ----------
+    quadric : ndarray of shape (6, G)
+        Upper triangles of the matrices; changed.
+    pull : ndarray of shape (3, G)
+        Right sides; changed.
+    groups : ndarray of shape (P,)
+    moving : ndarray of shape (G,)
+        Which groups get planes.
+    corners : ndarray of shape (T, k)
+        Places that each plane goes through.
+    points : ndarray of shape (P, 3)
+    normal : ndarray of shape (3, T)
+        As long as the plane weighs.
+    weight : ndarray of shape (T,)
+    """
+    count = quadric.shape[1]
+    target = []
+    for corner in corners.T:
+        group = groups[corner]
+        # A plane counts once for a group, however many of its corners are in it.
+        once = moving[group]
+        for other in target:
+            once &= other != group
+        target.append(np.where(once, group, count))
+    share = 1.0 / np.maximum(weight, 1e-300)
+    through = points[corners[:, 0]]
+    offset = sum(n * x for n, x in zip(normal, through.T, strict=True)) * share
+
+    def add(into, values):
+        for group in target:
+            into += np.bincount(group, values, count + 1)[:count]
+
+    row = 0
+    for i in range(3):
+        add(pull[i], normal[i] * offset)
+        scaled = normal[i] * share
+        for j in range(i, 3):
+            add(quadric[row], scaled * normal[j])
+            row += 1
+
+
+def _move(quadric, pull, hold, mean):
+    """Solve (Q + hold) x = pull - Q mean, by cofactors: the matrices are well conditioned."""
+    xx, xy, xz, yy, yz, zz = quadric
+    mx, my, mz = mean
+    bx = pull[0] - (xx * mx + xy * my + xz * mz)
+    by = pull[1] - (xy * mx + yy * my + yz * mz)
+    bz = pull[2] - (xz * mx + yz * my + zz * mz)
+    # Of one size, so that no product of three overflows or vanishes.
+    size = 1.0 / np.maximum(xx + yy + zz + hold, 1e-300)
+    xx, yy, zz = (xx + hold) * size, (yy + hold) * size, (zz + hold) * size
+    xy, xz, yz = xy * size, xz * size, yz * size
+    bx, by, bz = bx * size, by * size, bz * size
+    cxx, cxy, cxz = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
+    cyy, cyz, czz = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
+    determinant = xx * cxx + xy * cxy + xz * cxz
+    return (
+        np.stack(
+            [
+                cxx * bx + cxy * by + cxz * bz,
+                cxy * bx + cyy * by + cyz * bz,
+                cxz * bx + cyz * by + czz * bz,
+            ]
+        )
+        / determinant
+    )

@@ -1,0 +1,20 @@
+"""Axial colour in the corners, lateral with red and blue changed round."""
+
+import bpy
+
+camera = getattr(bpy.context, "camera", None) or bpy.context.scene.camera.data
+chromatic = camera.aplanat.chromatic
+
+chromatic.use = True
+chromatic.mode = "SPECTRAL"
+chromatic.axial = 1.0
+chromatic.lateral = 1.0
+chromatic.dispersion = "GLASS"
+chromatic.glass = "N-BK7"
+chromatic.wavelength_min = 380.0
+chromatic.wavelength_max = 780.0
+chromatic.use_equalizer = False
+chromatic.axial_first = "ONE_MINUS"
+chromatic.axial_then = "IDENTITY"
+chromatic.lateral_first = "EXP"
+chromatic.lateral_then = "ONE_MINUS"
