@@ -30,7 +30,7 @@ def stage(opened):
 
 
 def wait_until_converged(window):
-    window.wait_for("converged()", timeout=40)
+    window.wait_for("converged()", timeout=180)
 
 
 def screen(window, path):
