@@ -5,7 +5,7 @@ the blur of what lies out there reaches in. A pixel of it is a pixel of the pict
 sub-pixels so that small emitters are met.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,8 @@ _LARGEST_TILE = 1 << 22
 _LEAST_SUBPIXELS, _MOST_SUBPIXELS = 2, 4
 # Sub-pixels along a side of a triangle that shines: a lamp of one is met within a few per cent.
 _HITS_A_SIDE = 6.0
+# Of highlights behind one another, in drafts.
+_DRAFT_LAYERS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +62,8 @@ class BokehPlan:
         That shapes the discs; None: the thin lens.
     filter_width : float
         Side of the square that blurs as the pixel filter does, px.
+    draft : bool
+        Bounded work, for a view that moves; see `draft_of`.
     """
 
     settings: BokehSettings
@@ -76,6 +80,7 @@ class BokehPlan:
     iris: Iris
     real_lens: LensSettings | None
     filter_width: float
+    draft: bool = False
 
     @property
     def lens_views(self):
@@ -163,6 +168,37 @@ def plan_bokeh(snapshot, plan):
         iris=lens.iris,
         real_lens=None if plan.orthographic else snapshot.camera.real_lens,
         filter_width=_filter_width(film.filter_kind, film.filter_size_px),
+    )
+
+
+def draft_of(bokeh):
+    """Return a plan of the same light with little work: few sources, few layers, coarse masks.
+
+    What is splatted, and what the lens samples keep, is divided as before, so that the same
+    samples go with either.
+
+    Parameters
+    ----------
+    bokeh : BokehPlan
+
+    Returns
+    -------
+    BokehPlan
+    """
+    settings = bokeh.settings
+    return replace(
+        bokeh,
+        settings=replace(
+            settings,
+            model="CLUSTERED",
+            similarity=max(settings.similarity, 1.0),
+            global_merge=False,
+            visibility="WARP",
+            layers=min(settings.layers, _DRAFT_LAYERS),
+            lens_views=1,
+        ),
+        subpixels=min(bokeh.subpixels, _LEAST_SUBPIXELS),
+        draft=True,
     )
 
 

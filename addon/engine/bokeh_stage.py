@@ -1,7 +1,8 @@
 """Bokeh of a frame: peel, extract, splat (methods 9 to 13).
 
 Done once a frame, before its first lens sample; what the samples then leave out is what was
-splatted here, light for light.
+splatted here, light for light. A view that moves is given a draft, and the whole in steps when it
+has come to rest.
 """
 
 from dataclasses import dataclass, replace
@@ -12,12 +13,15 @@ from ..device import geometry, readback
 from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
 from ..passes import background, clusters, highlights, peel, splat, surface
-from .bokeh_look import make_look
 from .bokeh_clusters import similarity_of
+from .bokeh_look import make_look
 from .bokeh_visibility import BokehVisibility
 
 # Highlights that the list has room for at first.
 _FIRST_LIST = 1 << 16
+# Sources of a draft, and how often they are merged more boldly to get there.
+_DRAFT_SOURCES = 1 << 11
+_DRAFT_ROUNDS = 4
 
 
 @dataclass
@@ -99,24 +103,43 @@ class BokehStage:
         self.counts = HighlightCounts()
         self.bytes = 0
 
-    def run(self, fullscreen, target, frame_view):
+    def run(self, fullscreen, targets, frame_view):
         """Peel, extract and splat.
 
         Parameters
         ----------
         fullscreen : GPUBatch
-        target : GPUFrameBuffer
-            Gets the bokeh; is cleared.
+        targets : Targets
+            Whose ``bokeh`` gets it.
         frame_view : GPUUniformBuf
             `ViewParams` of the frame.
         """
-        with target.bind():
-            target.clear(color=(0.0, 0.0, 0.0, 0.0))
+        for _ in self.steps(fullscreen, targets, frame_view):
+            pass
+
+    def steps(self, fullscreen, targets, frame_view):
+        """Do the same bit by bit; the picture changes with the last step.
+
+        Yields
+        ------
+        None
+            After each step; closing the generator gives back what it holds.
+        """
         held = []
         try:
-            sources, count = self._merge(*self._find(fullscreen, held), held)
+            sources, count = self._find(fullscreen, held)
+            yield
+            sources, count = self._merge(sources, count, held)
+            visibility = None
             if count:
-                self._splat(sources, count, self._hide(sources, count, held), target, frame_view)
+                yield
+                visibility = self._hide(sources, count, held)
+                yield
+            target = targets.framebuffer("bokeh")
+            with target.bind():
+                target.clear(color=(0.0, 0.0, 0.0, 0.0))
+            if visibility:
+                self._splat(sources, count, visibility, target, frame_view)
             self.bytes = max(self.bytes, sum(targets.bytes for targets in held))
         finally:
             for targets in held:
@@ -150,15 +173,20 @@ class BokehStage:
 
     def _merge(self, sources, count, held):
         """Merge similar highlights, as the model asks for; returns the list and its length."""
-        similarity = similarity_of(self._plan.bokeh.settings, count)
-        if similarity and count > 1:
-            plan = self._plan
+        plan = self._plan
+        similarity = similarity_of(plan.bokeh.settings, count)
+        rounds = _DRAFT_ROUNDS if plan.bokeh.draft else 1
+        while similarity and count > 1:
             lens = (plan.focus_distance, float(plan.orthographic), plan.coc_scale, 0.0)
             pixel = 2.0 / (plan.projection[1, 1] * plan.height)
             parameters = clusters.cluster_params(similarity, plan.view, lens, pixel)
             lists, count = clusters.cluster(sources, count, uniform_buffer(parameters), similarity)
             held.append(lists)
             sources = (lists["a"], lists["b"])
+            rounds -= 1
+            if rounds == 0 or count <= _DRAFT_SOURCES:
+                break
+            similarity = _bolder(similarity)
         self.counts.clustered = count
         return sources, count
 
@@ -298,3 +326,13 @@ class BokehStage:
             )
         # What it reads is given back only after the device has read it.
         readback.wait(target)
+
+
+def _bolder(similarity):
+    """Return what merges highlights that differ twice as much."""
+    return replace(
+        similarity,
+        cell=2.0 * similarity.cell,
+        extent=2.0 * similarity.extent,
+        harm=4.0 * similarity.harm,
+    )
