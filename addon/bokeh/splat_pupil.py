@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .deposit import deposit, open_weights, rays_for
-from .opening import extent
+from .opening import LEAST_BLUR, extent
 from .pupil_beam import PupilBeam, beam_from_infinity, beam_from_point
 from .ray_map import lagrange_weights
 
@@ -29,7 +29,9 @@ SHARP, SOFT = 96, 32
 _MOST_RAYS = 224
 # Places in the stop are stored as (s + 1.5) / 3, to be positive.
 STOP_OFFSET, STOP_SCALE = 1.5, 3.0
-AZIMUTHS = 64
+AZIMUTHS = 48
+# Texels of a tile that are taken together.
+_STEP = 2
 _VERGENCES = 7
 _LEAST_LIGHT = 1e-3
 
@@ -211,30 +213,40 @@ def light_left(tiles, opening):
     ----------
     tiles : PupilTiles
     opening : ndarray of shape (layers, size, size, 4)
-        From `bokeh.opening.opening_layers`; its first layer is used.
+        From `bokeh.opening.opening_layers`.
 
     Returns
     -------
-    ndarray of float32, shape (FIELDS, AZIMUTHS + 1, DEPTHS, 4)
-        Red, green, blue.
+    ndarray of float32, shape (layers * FIELDS, AZIMUTHS + 1, DEPTHS, 4)
+        Red, green, blue: means of the opening's density over the light.
     """
-    light, step = opening[0], 2
-    size = len(light)
-    result = np.empty((FIELDS, AZIMUTHS + 1, DEPTHS, 4), np.float32)
-    sharp = tiles.sharp.reshape(FIELDS, DEPTHS, SHARP // step, step, SHARP // step, step, 4)
-    sharp = sharp.sum(axis=(3, 5)).reshape(FIELDS, DEPTHS, -1, 4)
-    for i in range(FIELDS):
-        for j in range(DEPTHS):
-            tile = sharp[i, j][sharp[i, j, :, 0] > 0.0]
-            stop = tile[:, 1:3] / tile[:, :1] * STOP_SCALE - STOP_OFFSET
-            for k in range(AZIMUTHS):
-                turn = 2.0 * np.pi * k / AZIMUTHS - 0.5 * np.pi
-                x = stop[:, 0] * np.cos(turn) - stop[:, 1] * np.sin(turn)
-                y = stop[:, 0] * np.sin(turn) + stop[:, 1] * np.cos(turn)
-                at = (np.stack([y, x]) / extent(0) + 1.0) * (0.5 * size)
-                at = np.clip(at, 0, size - 1).astype(int)
-                passed = light[at[0], at[1], :3]
-                result[i, k, j, :3] = tile[:, 0] @ passed / tile[:, 0].sum()
-    result[:, AZIMUTHS] = result[:, 0]
+    count, size = opening.shape[:2]
+    result = np.empty((count, FIELDS, AZIMUTHS + 1, DEPTHS, 4), np.float32)
+    turn = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS - 0.5 * np.pi
+    turns = np.stack([np.cos(turn), np.sin(turn)])[..., None]
+    blurs = [_as_blurred(tiles, LEAST_BLUR * 2.0**layer) for layer in range(count)]
+    for layer, (light, blurred) in enumerate(zip(opening, blurs, strict=True)):
+        for i in range(FIELDS):
+            for j in range(DEPTHS):
+                tile = blurred[i, j][blurred[i, j, :, 0] > 1e-6 * blurred[i, j, :, 0].max()]
+                stop = tile[:, 1:3] / tile[:, :1] * STOP_SCALE - STOP_OFFSET
+                stop /= np.maximum(np.hypot(stop[:, 0], stop[:, 1]), 1.0)[:, None]
+                x = stop[:, 0] * turns[0] - stop[:, 1] * turns[1]
+                y = stop[:, 0] * turns[1] + stop[:, 1] * turns[0]
+                weight = tile[:, 0] / tile[:, 0].sum()
+                at = ((np.stack([y, x]) / extent(layer) + 1.0) * (0.5 * size)).astype(int)
+                passed = light[np.clip(at[0], 0, size - 1), np.clip(at[1], 0, size - 1), :3]
+                result[layer, i, :AZIMUTHS, j, :3] = np.einsum("n,anc->ac", weight, passed)
+    result[:, :, AZIMUTHS] = result[:, :, 0]
     result[..., 3] = 0.0
-    return np.maximum(result, _LEAST_LIGHT)
+    return np.maximum(result, _LEAST_LIGHT).reshape(-1, AZIMUTHS + 1, DEPTHS, 4)
+
+
+def _as_blurred(tiles, blur):
+    """Texels of the tiles that a shader reads for a blur, shape (FIELDS, DEPTHS, texels, 4)."""
+    nearest = int(np.argmin(np.abs(np.log2(np.array(BLURS) / blur))))
+    if nearest > 0:
+        soft = tiles.soft.reshape(-1, FIELDS, DEPTHS, SOFT * SOFT, 4)
+        return soft[nearest - 1]
+    sharp = tiles.sharp.reshape(FIELDS, DEPTHS, SHARP // _STEP, _STEP, SHARP // _STEP, _STEP, 4)
+    return sharp.sum(axis=(3, 5)).reshape(FIELDS, DEPTHS, -1, 4)

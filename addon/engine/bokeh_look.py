@@ -220,7 +220,7 @@ def _opening(appearance, fresnel):
             parts.append(layers_of_mask(mask, range(layer, last), _OPENING))
         layers = np.concatenate(parts)
     areas = _texel_areas(len(layers))
-    energy = layers[..., :3].sum(axis=(1, 2)) * areas[:, None]
+    energy = layers[..., :3].sum(axis=(1, 2), dtype=np.float64) * areas[:, None]
     layers[..., :3] /= np.maximum(energy, 1e-30)[:, None, None]
     return layers
 
@@ -299,5 +299,5 @@ def _beams(lens, focus, pupil, tangent):
 @lru_cache(maxsize=2)
 def _tiles_left(tiles_and_opening, even):
     if even:
-        return np.ones((splat_pupil.FIELDS, 2, 2, 4), np.float32)
+        return np.ones((1, 2, 2, 4), np.float32)
     return splat_pupil.light_left(*tiles_and_opening.parts)
