@@ -5,6 +5,7 @@ splatted here, light for light. A view that moves is given a draft, and the whol
 has come to rest.
 """
 
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -103,7 +104,7 @@ class BokehStage:
         self.counts = HighlightCounts()
         self.bytes = 0
 
-    def run(self, fullscreen, targets, frame_view):
+    def run(self, fullscreen, targets, frame_view, stage=nullcontext):
         """Peel, extract and splat.
 
         Parameters
@@ -113,9 +114,13 @@ class BokehStage:
             Whose ``bokeh`` gets it.
         frame_view : GPUUniformBuf
             `ViewParams` of the frame.
+        stage : callable, optional
+            As that of `FrameRenderer.advance`: ``search``, ``merge``, ``visibility``, ``splat``.
         """
-        for _ in self.steps(fullscreen, targets, frame_view):
-            pass
+        steps = self.steps(fullscreen, targets, frame_view)
+        for name in ("search", "merge", "visibility", "splat"):
+            with stage(name):
+                next(steps, None)
 
     def steps(self, fullscreen, targets, frame_view):
         """Do the same bit by bit; the picture changes with the last step.

@@ -155,7 +155,7 @@ class FrameRenderer:
         stage : callable, optional
             For measuring: called with the name of each part of a sample's work (``bokeh``,
             ``bounds``, ``surfaces``, ``sum``), it returns a context manager in which that is given
-            to the device.
+            to the device. Within ``bokeh``, also with those of `BokehStage.run`.
         """
         self._targets.forget_framebuffers()
         end = min(self.samples_done + samples, self.plan.samples)
@@ -174,7 +174,7 @@ class FrameRenderer:
             with stage("bokeh"):
                 self._bokeh = self._draft or self._whole
                 start = time.perf_counter()
-                self._bokeh.run(self._fullscreen, self._targets, self._view)
+                self._bokeh.run(self._fullscreen, self._targets, self._view, stage)
                 if self._bokeh is self._whole:
                     self._bokeh_seconds = time.perf_counter() - start
         if self._blur and index == 0:
