@@ -6,16 +6,16 @@ needs no setting by scene or resolution.
 
 from ..passes.clusters import Similarity
 
-# CLUSTERED: cells from half a radius of the disc to twice its diameter, as long as the disc is blurred
-# by little more than its radius.
+# CLUSTERED: cells from half a radius of the disc to twice its diameter, as long as the disc is
+# blurred by little more than its radius.
 _CELL = 0.25
 _EXTENT = 1.6
 _HARM = 1.0
 # Rounds of pairwise merging.
 _PAIRS = 3
 
-# POINT: up to so many, each is a source of its own. Beyond, those are merged that lie within a small
-# share of their discs. Where discs are small, none do, but then they cost little.
+# POINT: up to so many, each is a source of its own. Beyond, those are merged that lie within a
+# small share of their discs. Where discs are small, none do, but then they cost little.
 POINT_BUDGET = 10000
 _POINT_LEVELS = 2
 _POINT_EXTENT = 1.0 / 16.0

@@ -216,7 +216,9 @@ def cluster(sources, count, parameters, similarity):
         tables["number_0"].clear(format="UINT", value=(count,))
         # The last list that is written is `out`.
         lists = [(spare["a"], spare["b"]), (out["a"], out["b"])]
-        steps = [(level, shift) for level in range(1, similarity.levels + 1) for shift in (0.0, 0.5)]
+        steps = [
+            (level, shift) for level in range(1, similarity.levels + 1) for shift in (0.0, 0.5)
+        ]
         cells = len(steps)
         # None stands for pairs.
         steps += [(similarity.levels, None)] * similarity.pairs
