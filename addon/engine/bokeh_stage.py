@@ -54,6 +54,27 @@ class HighlightCounts:
     splatted: int = 0
 
 
+@dataclass(frozen=True)
+class _Search:
+    """Surfaces that are searched for highlights in one way.
+
+    Parameters
+    ----------
+    surfaces : frozenset of (int, int)
+        Group and slot.
+    world : bool
+        The world, too.
+    subpixels : int
+    views : list of (tuple of 2 float, int)
+        Place on the lens, m, and the region that it stands for.
+    """
+
+    surfaces: frozenset
+    world: bool
+    subpixels: int
+    views: list
+
+
 def highlight_buffer(bokeh):
     """Upload what divides light into highlights and the rest.
 
@@ -161,12 +182,13 @@ class BokehStage:
                 specs = [TargetSpec(name, "RGBA32F") for name in "ab"]
                 lists = Targets(highlights.COLUMNS, room // highlights.COLUMNS, specs)
                 _, _, width, height = bokeh.tiles[0]
-                with Targets(width, height, self._specs()) as layers:
-                    for peeled in self._rasters(layers, fullscreen):
-                        self._list(peeled, layers, lists, total)
-                    self.bytes = max(self.bytes, layers.bytes)
-                    # The layers are given back only after the device has read them.
-                    count, sharp = (int(n) for n in np.asarray(total.read()).ravel()[:2])
+                for search in self._searches():
+                    with Targets(width, height, self._specs(search)) as layers:
+                        for peeled in self._rasters(search, layers, fullscreen):
+                            self._list(peeled, layers, lists, total)
+                        self.bytes = max(self.bytes, layers.bytes)
+                        # The layers are given back only after the device has read them.
+                        count, sharp = (int(n) for n in np.asarray(total.read()).ravel()[:2])
             if count <= room:
                 break
             lists.release()
@@ -195,31 +217,38 @@ class BokehStage:
         self.counts.clustered = count
         return sources, count
 
-    def _rasters(self, layers, fullscreen):
-        """Peel tile by tile, what looks different from each place on the lens also view by view.
+    def _searches(self):
+        """Return what is searched in which way: what looks the same from anywhere, and the rest."""
+        bokeh = self._plan.bokeh
+        places = [tuple(place) for place in (bokeh.lens_views * self._plan.lens_extent).tolist()]
+        views = list(zip(places, range(1, len(places) + 1), strict=True))
+        alone = [((0.0, 0.0), 0)]
+        steady = bokeh.shining - bokeh.mirroring
+        searches = [_Search(steady, bokeh.world, bokeh.subpixels, alone)]
+        if bokeh.mirroring:
+            several = views if len(views) > 1 else alone
+            fine = bokeh.mirroring_subpixels
+            searches.append(_Search(bokeh.mirroring, False, fine, several))
+        return searches
+
+    def _rasters(self, search, layers, fullscreen):
+        """Peel tile by tile and view by view.
 
         Yields
         ------
         PeeledRaster
             To be read before the next.
         """
-        bokeh, drawing = self._plan.bokeh, self._drawing
-        opaque = drawing.full_detail_draws(peel.OPAQUE)
-        shining = drawing.full_detail_draws(peel.HIGHLIGHTS, bokeh.shining)
-        views = [((0.0, 0.0), 0, shining)]
-        if len(bokeh.lens_views) > 1:
-            lit = [draw for draw in shining if draw.lighting]
-            views[0] = ((0.0, 0.0), 0, [draw for draw in shining if not draw.lighting])
-            places = (bokeh.lens_views * self._plan.lens_extent).tolist()
-            views += [(tuple(p), n, lit) for n, p in enumerate(places, start=1) if lit]
+        drawing, bokeh = self._drawing, self._plan.bokeh
+        draws = drawing.full_detail_draws(peel.HIGHLIGHTS, search.surfaces)
+        if not draws and not search.world:
+            return
+        opaque = drawing.full_detail_draws(peel.OPAQUE) if draws else []
         for tile in bokeh.tiles:
-            view = uniform_buffer(self._raster_params(tile, layers))
-            for lens, region, draws in views:
-                world = bokeh.world and region == 0
-                if not draws and not world:
-                    continue
-                peeled = self._peel(layers, view, (opaque, draws), lens, fullscreen, world)
-                shape = (tile[2:], bokeh.subpixels, lens, region)
+            view = uniform_buffer(self._raster_params(tile, layers, search.subpixels))
+            for lens, region in search.views:
+                peeled = self._peel(layers, view, (opaque, draws), lens, fullscreen, search.world)
+                shape = (tile[2:], search.subpixels, lens, region)
                 yield highlights.PeeledRaster(peeled, view, self._highlights, *shape)
 
     def _list(self, peeled, layers, lists, total):
@@ -243,12 +272,12 @@ class BokehStage:
             found = replace(found, masks=soft["masks"])
         return found
 
-    def _specs(self):
-        bokeh, fine = self._plan.bokeh, self._plan.bokeh.subpixels
+    def _specs(self, search):
+        bokeh, fine = self._plan.bokeh, search.subpixels
         _, _, _, height = bokeh.tiles[0]
-        lists = bokeh.layers + bokeh.world
+        lists = bokeh.layers + search.world
         names = [f"light_color_{k}" for k in range(bokeh.layers)] + ["no_color"]
-        names += ["world"] * bokeh.world
+        names += ["world"] * search.world
         specs = [TargetSpec(name, "RGBA32F", scale=fine) for name in names]
         names = [f"light_depth_{k}" for k in range(bokeh.layers)] + ["no_depth", "scene_depth"]
         specs += [TargetSpec(name, "DEPTH_COMPONENT32F", scale=fine) for name in names]
@@ -256,7 +285,7 @@ class BokehStage:
         specs.append(TargetSpec("rows", "R32UI", size=(height, 2 * lists)))
         return specs
 
-    def _raster_params(self, tile, layers):
+    def _raster_params(self, tile, layers, subpixels):
         plan, bokeh = self._plan, self._plan.bokeh
         x, y, _, _ = tile
         width, height = layers.width, layers.height
@@ -269,7 +298,7 @@ class BokehStage:
             view_inverse=np.linalg.inv(plan.view),
             projection=crop @ bokeh.projection,
             lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
-            film=(width * bokeh.subpixels, height * bokeh.subpixels, 0.0, 0.0),
+            film=(width * subpixels, height * subpixels, 0.0, 0.0),
         )
 
     def _peel(self, layers, view, draws, lens, fullscreen, world):
