@@ -31,6 +31,12 @@ ENDINGS = (".exr", ".png")
 # argparse would take a negative number after these for an option.
 _MAY_BE_NEGATIVE = {"--frames", "--field-deg", "--planes-mm", "--rho"}
 
+# Of `bench --bokeh`.
+BOKEH_MEASURES = (
+    *("pictures", "truth", "models", "culling", "visibility", "time", "peers", "pan"),
+    *("scaling", "focus-pull"),
+)
+
 _LATER = {
     "capture": "depth layers",
     "refocus": "depth layers",
@@ -110,6 +116,8 @@ def _check_bench(arguments):
     for option in ("focus_pull", "peers"):
         if getattr(arguments, option) and (arguments.method != "adaptive" or arguments.lens):
             raise InputError(f"--{option.replace('_', '-')} belongs to --method adaptive")
+    if arguments.bokeh is not None and (arguments.method != "reference" or arguments.lens):
+        raise InputError("--bokeh measures both methods; give neither --method nor --lens")
 
 
 _frame = whole_number(-MAX_FRAME, MAX_FRAME)
@@ -265,6 +273,14 @@ def _add_bench(commands):
         "--peers",
         action="store_true",
         help="adaptive method: compare with EEVEE and Cycles at equal quality instead; takes long",
+    )
+    also.add_argument(
+        "--bokeh",
+        nargs="*",
+        metavar="MEASURE",
+        choices=BOKEH_MEASURES,
+        help="measure highlights instead: " + ", ".join(BOKEH_MEASURES) + " (default: all of"
+        " them, which takes hours)",
     )
     add(
         "--samples",

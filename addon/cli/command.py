@@ -115,6 +115,8 @@ def _runner(arguments, prepare):
         prepare()
         if arguments.command == "render":
             from .render import render as run
+        elif arguments.bokeh is not None:
+            from .bench_bokeh import bench_bokeh as run
         elif arguments.method == "adaptive":
             from .bench_adaptive import bench_adaptive as run
         else:
