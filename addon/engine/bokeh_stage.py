@@ -16,6 +16,7 @@ from ..device.uniforms import uniform_buffer
 from ..passes import background, clusters, highlights, peel, splat, surface
 from .bokeh_clusters import similarity_of
 from .bokeh_look import make_look
+from .bokeh_plan import tiles_of
 from .bokeh_visibility import BokehVisibility
 
 # Highlights that the list has room for at first.
@@ -63,7 +64,9 @@ class _Search:
     surfaces : frozenset of (int, int)
         Group and slot.
     world : bool
-        The world, too.
+        Instead of surfaces, the world.
+    part : tuple of 4 int
+        Of the raster.
     subpixels : int
     views : list of (tuple of 2 float, int)
         Place on the lens, m, and the region that it stands for.
@@ -71,6 +74,7 @@ class _Search:
 
     surfaces: frozenset
     world: bool
+    part: tuple[int, int, int, int]
     subpixels: int
     views: list
 
@@ -181,14 +185,18 @@ class BokehStage:
                 total.clear(format="UINT", value=(0,))
                 specs = [TargetSpec(name, "RGBA32F") for name in "ab"]
                 lists = Targets(highlights.COLUMNS, room // highlights.COLUMNS, specs)
-                _, _, width, height = bokeh.tiles[0]
                 for search in self._searches():
-                    with Targets(width, height, self._specs(search)) as layers:
-                        for peeled in self._rasters(search, layers, fullscreen):
-                            self._list(peeled, layers, lists, total)
+                    tiles = tiles_of(search.part, search.subpixels)
+                    if not tiles:
+                        continue
+                    _, _, width, height = tiles[0]
+                    with Targets(width, height, self._specs(search, height)) as layers:
+                        for tile in tiles:
+                            self._list_tile(search, tile, layers, lists, total, fullscreen)
                         self.bytes = max(self.bytes, layers.bytes)
                         # The layers are given back only after the device has read them.
-                        count, sharp = (int(n) for n in np.asarray(total.read()).ravel()[:2])
+                        _totals(total)
+                count, sharp = _totals(total)
             if count <= room:
                 break
             lists.release()
@@ -224,36 +232,29 @@ class BokehStage:
         views = list(zip(places, range(1, len(places) + 1), strict=True))
         alone = [((0.0, 0.0), 0)]
         steady = bokeh.shining - bokeh.mirroring
-        searches = [_Search(steady, bokeh.world, bokeh.subpixels, alone)]
+        searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone)]
         if bokeh.mirroring:
             several = views if len(views) > 1 else alone
             fine = bokeh.mirroring_subpixels
-            searches.append(_Search(bokeh.mirroring, False, fine, several))
+            searches.append(_Search(bokeh.mirroring, False, bokeh.whole, fine, several))
+        if bokeh.world:
+            searches.append(_Search(frozenset(), True, bokeh.whole, bokeh.world_subpixels, alone))
         return searches
 
-    def _rasters(self, search, layers, fullscreen):
-        """Peel tile by tile and view by view.
-
-        Yields
-        ------
-        PeeledRaster
-            To be read before the next.
-        """
-        drawing, bokeh = self._drawing, self._plan.bokeh
-        draws = drawing.full_detail_draws(peel.HIGHLIGHTS, search.surfaces)
-        if not draws and not search.world:
-            return
-        opaque = drawing.full_detail_draws(peel.OPAQUE) if draws else []
-        for tile in bokeh.tiles:
-            view = uniform_buffer(self._raster_params(tile, layers, search.subpixels))
-            for lens, region in search.views:
-                peeled = self._peel(layers, view, (opaque, draws), lens, fullscreen, search.world)
+    def _list_tile(self, search, tile, layers, lists, total, fullscreen):
+        """List what a tile shows, view by view and layer by layer, as long as there is more."""
+        view = uniform_buffer(self._raster_params(tile, layers, search.subpixels))
+        for lens, region in search.views:
+            found = _totals(total) if search.surfaces else None
+            peel_layers = self._peel_world if search.world else self._peel
+            for layer in peel_layers(search, layers, view, lens, fullscreen):
                 shape = (tile[2:], search.subpixels, lens, region)
-                yield highlights.PeeledRaster(peeled, view, self._highlights, *shape)
-
-    def _list(self, peeled, layers, lists, total):
-        highlights.count(peeled, layers["counts"], layers["rows"], total)
-        highlights.emit(peeled, layers["counts"], layers["rows"], (lists["a"], lists["b"]))
+                peeled = highlights.PeeledRaster((layer,), view, self._highlights, *shape)
+                highlights.count(peeled, layers["counts"], layers["rows"], total)
+                highlights.emit(peeled, layers["counts"], layers["rows"], (lists["a"], lists["b"]))
+                before, found = found, _totals(total)
+                if found == before:
+                    break
 
     def _hide(self, sources, count, held):
         """Find what hides the sources from the lens, as `Visibility`."""
@@ -264,7 +265,8 @@ class BokehStage:
         self.counts.culled_cone = counts.visible + counts.free
         self.counts.masked = counts.masked
         self.counts.splatted = count - self.counts.culled_occlusion
-        if counts.masked and counts.method != "SPLAT" and count < self.counts.found:
+        merged = self._plan.bokeh.settings.model == "CLUSTERED" or self._plan.bokeh.draft
+        if merged and counts.masked and counts.method != "SPLAT":
             masks = found.masks
             soft = Targets(masks.width, masks.height, [TargetSpec("masks", "R16F")])
             held.append(soft)
@@ -272,17 +274,16 @@ class BokehStage:
             found = replace(found, masks=soft["masks"])
         return found
 
-    def _specs(self, search):
-        bokeh, fine = self._plan.bokeh, search.subpixels
-        _, _, _, height = bokeh.tiles[0]
-        lists = bokeh.layers + search.world
-        names = [f"light_color_{k}" for k in range(bokeh.layers)] + ["no_color"]
-        names += ["world"] * search.world
-        specs = [TargetSpec(name, "RGBA32F", scale=fine) for name in names]
-        names = [f"light_depth_{k}" for k in range(bokeh.layers)] + ["no_depth", "scene_depth"]
-        specs += [TargetSpec(name, "DEPTH_COMPONENT32F", scale=fine) for name in names]
-        specs.append(TargetSpec("counts", "R32UI", lists))
-        specs.append(TargetSpec("rows", "R32UI", size=(height, 2 * lists)))
+    @staticmethod
+    def _specs(search, height):
+        fine = search.subpixels
+        # A layer and the one before it.
+        colors = ["world"] if search.world else ["light_color_0", "light_color_1"]
+        depths = [] if search.world else ["light_depth_0", "light_depth_1", "scene_depth"]
+        specs = [TargetSpec(name, "RGBA32F", scale=fine) for name in colors]
+        specs += [TargetSpec(name, "DEPTH_COMPONENT32F", scale=fine) for name in depths]
+        specs.append(TargetSpec("counts", "R32UI", 1))
+        specs.append(TargetSpec("rows", "R32UI", size=(height, 2)))
         return specs
 
     def _raster_params(self, tile, layers, subpixels):
@@ -301,38 +302,41 @@ class BokehStage:
             film=(width * subpixels, height * subpixels, 0.0, 0.0),
         )
 
-    def _peel(self, layers, view, draws, lens, fullscreen, world):
+    def _peel(self, search, layers, view, lens, fullscreen):
         """Draw what is brighter than the threshold, layer by layer.
 
-        Returns
-        -------
-        tuple of (GPUTexture, GPUTexture or None)
-            Light and depth of each layer.
+        Yields
+        ------
+        tuple of 2 GPUTexture
+            Light and depth of a layer, to be read before the next.
         """
-        opaque, shining = draws
-        nothing = layers.framebuffer("no_color", depth="no_depth")
+        drawing = self._drawing
+        shining = drawing.full_detail_draws(peel.HIGHLIGHTS, search.surfaces)
+        if not shining:
+            return
+        before, layer = (("light_color_1", "light_depth_1"), ("light_color_0", "light_depth_0"))
+        nothing = layers.framebuffer(before[0], depth=before[1])
         with nothing.bind():
             nothing.clear(color=(0.0, 0.0, 0.0, 0.0), depth=0.0)
-        before = ("no_depth", "no_color")
         # The first layer's colour is drawn over by its highlights.
-        self._draw_layer(layers, view, opaque, before[:1], ("light_color_0", "scene_depth"), lens)
-        peeled = []
-        for k in range(self._plan.bokeh.layers if shining else 0):
-            layer = (f"light_color_{k}", f"light_depth_{k}")
-            self._draw_layer(layers, view, shining, (*before, "scene_depth"), layer, lens)
-            before = layer[::-1]
-            peeled.append(tuple(layers[name] for name in layer))
-        if world:
-            with layers.framebuffer("world").bind():
-                background.draw_excess(
-                    fullscreen,
-                    view,
-                    self._buffers.environment_buffer,
-                    self._buffers.environment_image,
-                    self._highlights,
-                )
-            peeled.append((layers["world"], None))
-        return tuple(peeled)
+        opaque = drawing.full_detail_draws(peel.OPAQUE)
+        self._draw_layer(layers, view, opaque, before[1:], (layer[0], "scene_depth"), lens)
+        for _ in range(self._plan.bokeh.layers):
+            self._draw_layer(layers, view, shining, (*before[::-1], "scene_depth"), layer, lens)
+            yield tuple(layers[name] for name in layer)
+            before, layer = layer, before
+
+    def _peel_world(self, search, layers, view, lens, fullscreen):
+        """Draw what of the world is brighter than the threshold; yields it, without a depth."""
+        with layers.framebuffer("world").bind():
+            background.draw_excess(
+                fullscreen,
+                view,
+                self._buffers.environment_buffer,
+                self._buffers.environment_image,
+                self._highlights,
+            )
+        yield layers["world"], None
 
     def _draw_layer(self, layers, view, draws, textures, layer, lens):
         color, depth = layer
@@ -360,6 +364,11 @@ class BokehStage:
             )
         # What it reads is given back only after the device has read it.
         readback.wait(target)
+
+
+def _totals(total):
+    """Read how many highlights have been listed, and how many texels were too sharp."""
+    return tuple(int(n) for n in np.asarray(total.read()).ravel()[:2])
 
 
 def _bolder(similarity):
