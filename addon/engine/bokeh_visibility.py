@@ -26,8 +26,9 @@ from .occluders import CLUSTER, Occluders, Part
 # Steps of a ray that take as long as a triangle of a cluster: 120 to 130 ns against 7 to 8 on
 # software OpenGL.
 STEPS_PER_TRIANGLE = 16
-# Texels of the atlas, at most, and its longer side.
-_LARGEST_ATLAS = 1 << 23
+# Texels of the atlas, at most, also where sources are very many, and its longer side.
+_LARGEST_ATLAS = 1 << 25
+_ATLAS_OF_MANY = 1 << 23
 _LONGEST_ATLAS = 16384
 # Cells of the N-buffers over the peeled raster.
 _MOST_CELLS = 1 << 18
@@ -43,7 +44,7 @@ _TEXELS_PER_PIXEL = 3
 _LARGEST_RASTER = 1 << 23
 
 # More sources are left to the layers alone, which cost the less a source the smaller the masks are.
-_MOST_CONES = 1 << 14
+_MOST_CONES = 1 << 15
 # Of drafts: layers, and texels of the atlas.
 _DRAFT_LAYERS = 2
 _DRAFT_ATLAS = 1 << 19
@@ -375,7 +376,7 @@ class BokehVisibility:
             found = np.asarray(tables.counts.read()).ravel()
             _note(counts, found)
             drawn = found[bokeh_culling.COUNT_SIZES :][: bokeh_culling.SIZES].astype(np.int64)
-            layout = lay_out(drawn, _DRAFT_ATLAS if self._plan.bokeh.draft else _LARGEST_ATLAS)
+            layout = lay_out(drawn, self._room(count))
             counts.texels = int((drawn * layout.sizes[:, 2] ** 2).sum())
             wanted = (drawn * (bokeh_culling.LEAST_SIDE << np.arange(len(drawn))) ** 2).sum()
             counts.work = int(counts.work * (counts.texels / max(wanted, 1)))
@@ -452,6 +453,12 @@ class BokehVisibility:
         drawing.counts.draw_calls += number * len(draws)
         drawn = sum(d.triangles * d.count for d in draws)
         drawing.counts.triangles += number * drawn
+
+    def _room(self, count):
+        """Return how many texels masks may take."""
+        if self._plan.bokeh.draft:
+            return _DRAFT_ATLAS
+        return _LARGEST_ATLAS if count <= _MOST_CONES else _ATLAS_OF_MANY
 
     def _format(self):
         # Products of several surfaces must not be rounded to 8 bits each.
