@@ -20,7 +20,7 @@ from .opening import LEAST_BLUR, extent
 from .pupil_beam import PupilBeam, beam_from_infinity, beam_from_point
 from .ray_map import lagrange_weights
 
-FIELDS, DEPTHS = 9, 13
+FIELDS, DEPTHS = 9, 25
 # Blur of the tiles in units of half their width, as the side of a box of the same variance; the
 # first one is of the sharp tiles. Must agree with lib/bokeh_look_lib.glsl.
 BLURS = (1.0 / 32.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0)
@@ -92,9 +92,16 @@ class PupilBeams:
         turn = np.linspace(0.0, np.pi, _VERGENCES)
         self.sensor = tables.sensor
         self._nodes = largest_vergence * 0.5 * (1.0 - np.cos(turn))
-        self._beams = [
-            [_traced(tables, pupil, f_number, t, v) for v in self._nodes] for t in self.tangents
-        ]
+        self._beams = []
+        for tangent in self.tangents:
+            ends = self._nodes[[0, _VERGENCES // 2, -1]]
+            boxes = [_box(_traced(tables, pupil, f_number, tangent, v)) for v in ends]
+            # One grid for all: a ray of the grid is then a smooth function of the vergence.
+            sides = np.array(boxes).T
+            box = (sides[0].min(), sides[1].max(), sides[2].min(), sides[3].max())
+            self._beams.append(
+                [_traced(tables, pupil, f_number, tangent, v, box) for v in self._nodes]
+            )
 
     def at(self, field, vergence):
         """Return the beam of a field's number and a vergence."""
@@ -114,11 +121,16 @@ class PupilBeams:
         )
 
 
-def _traced(tables, pupil, f_number, tangent, vergence):
+def _traced(tables, pupil, f_number, tangent, vergence, box=None):
     if vergence * 1e7 < 1.0:
-        return beam_from_infinity(tables, float(np.arctan(tangent)), f_number)
+        return beam_from_infinity(tables, float(np.arctan(tangent)), f_number, box=box)
     distance = 1.0 / vergence
-    return beam_from_point(tables, tangent * distance, distance - pupil, f_number)
+    return beam_from_point(tables, tangent * distance, distance - pupil, f_number, box=box)
+
+
+def _box(beam):
+    (x0, v0), (x1, v1) = beam.pupil[0, 0], beam.pupil[-1, -1]
+    return float(x0), float(x1), float(v0), float(v1)
 
 
 def pupil_tiles(beams, shift, blur, soft, w_range):
@@ -168,18 +180,11 @@ def pupil_tiles(beams, shift, blur, soft, w_range):
 def _tile(beam, shift):
     """Light and stop places of a beam, and where the pattern stands, mm."""
     landing = beam.landing(shift)
-    inside = (beam.clearance > 0.0) & (np.hypot(*np.moveaxis(beam.stop, -1, 0)) < beam.stop_scale)
-    if not inside.any():
-        inside = beam.clearance == beam.clearance.max()
-    # A ray's width more than what passes.
-    wide = inside.copy()
-    for axis in (0, 1):
-        wide |= np.roll(inside, 1, axis) | np.roll(inside, -1, axis)
-    x, y = np.abs(landing[wide][:, 0]).max(), landing[wide][:, 1]
-    middle, half_x = 0.5 * (y.min() + y.max()), max(x, 1e-6)
-    half_y = max(0.5 * (y.max() - y.min()), 1e-6)
-    extent = max(half_x, half_y)
-    fine = beam.refined(min(rays_for(beam, shift, 2.0 * extent / SHARP), _MOST_RAYS))
+    _, half_x, half_y = _bounds(beam, landing)
+    count = rays_for(beam, shift, 2.0 * max(half_x, half_y) / SHARP)
+    fine = beam.refined(min(count, _MOST_RAYS))
+    # On the fine grid: rims of neighbouring tiles then lie at the same place.
+    middle, half_x, half_y = _bounds(fine, fine.landing(shift))
     light = open_weights(fine)
     # The camera sees the stop turned by half a turn against the sensor's picture.
     stop = -fine.stop / fine.stop_scale
@@ -188,6 +193,25 @@ def _tile(beam, shift):
     layers = [light, light * share[..., 0], light * share[..., 1]]
     tile = np.stack([deposit(at, layer, SHARP) for layer in layers], axis=-1)
     return tile, (middle - _center(beam, landing), half_x, half_y)
+
+
+def _bounds(beam, landing):
+    """Middle of a pattern along y and half its width in x and y, up to where rims cut it."""
+    stop = np.hypot(beam.stop[..., 0], beam.stop[..., 1]) / beam.stop_scale
+    clear = np.minimum(beam.clearance, 1.0 - stop)
+    inside = clear > 0.0
+    if not inside.any():
+        inside = clear == clear.max()
+    found = [landing[inside]]
+    for axis in (0, 1):
+        rays, signed = np.moveaxis(landing, axis, 0), np.moveaxis(clear, axis, 0)
+        cut = (signed[1:] > 0.0) != (signed[:-1] > 0.0)
+        low, high = signed[:-1][cut], signed[1:][cut]
+        share = (low / (low - high))[:, None]
+        found.append(rays[:-1][cut] * (1.0 - share) + rays[1:][cut] * share)
+    x, y = np.concatenate(found).T
+    half_x, half_y = np.abs(x).max(), 0.5 * (y.max() - y.min())
+    return 0.5 * (y.min() + y.max()), max(half_x, 1e-6), max(half_y, 1e-6)
 
 
 def _center(beam, landing):

@@ -8,7 +8,7 @@
 // Blur of the tiles in units of half their width, and how they are counted: splat_pupil.py.
 #define TILE_BLUR vec4(1.0 / 32.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0)
 #define TILE_FIELDS 9
-#define TILE_DEPTHS 13
+#define TILE_DEPTHS 25
 #define STOP_OFFSET 1.5
 #define STOP_SCALE 3.0
 
