@@ -13,7 +13,7 @@ def coc_radius(depth, lens):
     return defocus if lens[1] else defocus / depth
 
 
-def cells(sources, regions, view, lens, pixel, side, level, shift):
+def cells(sources, regions, view, lens, pixel, side, level, shift, length=1.0):
     """Return the cell of each source.
 
     Parameters
@@ -29,6 +29,8 @@ def cells(sources, regions, view, lens, pixel, side, level, shift):
     side : float
         Of the cells of level 0, in radii of the circle of confusion.
     level, shift : float
+    length : float
+        Of a cell along the camera's axis, in sides.
 
     Returns
     -------
@@ -38,7 +40,7 @@ def cells(sources, regions, view, lens, pixel, side, level, shift):
     depth = sources[:, 2]
     radius = np.abs(coc_radius(depth, lens)) * pixel * (1.0 if lens[1] else depth)
     scale = np.floor(np.log2(np.maximum(side * radius, 1e-30)) + level)
-    eye = np.column_stack([sources[:, :2], -depth, np.ones(len(depth))])
+    eye = np.column_stack([sources[:, :2], -depth / length, np.ones(len(depth))])
     world = (eye @ np.linalg.inv(view).T)[:, :3]
     place = np.floor(world @ AXES.T / 2.0 ** scale[:, None] + SHIFT + shift)
     return np.column_stack([place, scale, regions]).astype(np.int64)
@@ -91,7 +93,9 @@ def _together(sources, energies, lens, pixel):
         place = np.column_stack([place[:, :2], np.ones(len(place))]) / place[:, 2:]
     mean = weight @ place
     variance = weight @ (((place - mean)[:, :2] / pixel) ** 2).sum(axis=1)
-    side = np.sqrt(weight @ sources[:, 3] ** 2 + 6.0 * variance)
+    rate = lens[2] / lens[0] if lens[1] else lens[2]
+    radii = weight @ (rate * (place - mean)[:, 2]) ** 2
+    side = np.sqrt(weight @ sources[:, 3] ** 2 + 6.0 * variance + 12.0 * radii)
     if not lens[1]:
         mean = np.append(mean[:2], 1.0) / mean[2]
     return np.append(mean, side), energies[:, :3].sum(axis=0)
@@ -115,7 +119,9 @@ def cluster(sources, energies, similarity, view, lens, pixel):
     sources, energies = np.asarray(sources, float), np.asarray(energies, float)
     for level in range(1, similarity.levels + 1):
         for shift in (0.0, 0.5):
-            own = cells(sources, energies[:, 3], view, lens, pixel, similarity.cell, level, shift)
+            energy_regions = energies[:, 3]
+            shape = (similarity.cell, level, shift, similarity.length)
+            own = cells(sources, energy_regions, view, lens, pixel, *shape)
             sources, energies = merge(
                 sources, energies, own, lens, pixel, similarity.extent, similarity.harm
             )

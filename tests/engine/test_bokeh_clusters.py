@@ -8,10 +8,12 @@ def test_points_are_left_alone_up_to_a_budget():
     assert similarity_of(BokehSettings(), POINT_BUDGET) is None
 
 
-def test_beyond_the_budget_points_spread_over_a_sixteenth_of_their_discs_at_most():
-    similarity = similarity_of(BokehSettings(), POINT_BUDGET + 1)
-    assert similarity.extent <= 1.0 / 16.0
-    assert similarity.cell * 2**similarity.levels <= 1.0 / 16.0
+def test_beyond_the_budget_merging_sets_in_smoothly():
+    harms = [similarity_of(BokehSettings(), POINT_BUDGET * n).harm for n in (2, 5, 10, 100, 1000)]
+    assert similarity_of(BokehSettings(), POINT_BUDGET + 1).harm < 1e-6
+    assert harms == sorted(harms)
+    # A disc as bright as white, of 8 px radius, is blurred over 1.4 px at most.
+    assert harms[-1] == harms[-2] <= 1.4**2 / 64.0
 
 
 def test_clusters_follow_the_settings():

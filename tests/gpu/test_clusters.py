@@ -64,11 +64,13 @@ def merged(sources, energies, similarity=LIBERAL, view=None, lens=LENS):
 
 
 @pytest.mark.parametrize("lens", [LENS, PARALLEL])
-def test_clusters_are_those_of_the_twin(lens):
+@pytest.mark.parametrize("length", [1.0, 16.0])
+def test_clusters_are_those_of_the_twin(lens, length):
     sources, energies = some_sources(1500)
     view = view_turned()
-    a, b = merged(sources, energies, view=view, lens=lens)
-    expected_a, expected_b = twin.cluster(sources, energies, LIBERAL, view, lens, PIXEL)
+    similarity = replace(LIBERAL, length=length)
+    a, b = merged(sources, energies, similarity, view, lens)
+    expected_a, expected_b = twin.cluster(sources, energies, similarity, view, lens, PIXEL)
     assert 0.02 < len(a) / len(sources) < 0.5
     assert len(a) == len(expected_a)
     # Rounding to float32 of places some metres away, and of means over spans of millimetres.
