@@ -69,10 +69,10 @@ def bench_bokeh(arguments, console):
                 write_json(arguments.output, _answer(runs))
 
         wanted = arguments.bokeh or [*OF_SCENES, *OF_CHARTS]
-        for case in find_cases(arguments, console, _TRUTH):
-            for name in wanted:
-                if name in OF_SCENES:
-                    note({"scene": case.name, **OF_SCENES[name](study, case)})
+        of_scenes = [OF_SCENES[name] for name in wanted if name in OF_SCENES]
+        for case in find_cases(arguments, console, _TRUTH) if of_scenes else ():
+            for measure in of_scenes:
+                note({"scene": case.name, **measure(study, case)})
         for name in wanted:
             if name in OF_CHARTS:
                 note(OF_CHARTS[name](study))

@@ -9,7 +9,7 @@ from .scene_setup import use_engine
 
 # Of the chart of many highlights: between so many metres, focus, and behind bars at a third of it.
 _NEAR, _FAR, FOCUS = 8.0, 16.0, 4.0
-_BARS = 24
+_BARS = 8
 # Of the half-hidden highlight: its depth, and that of what hides half of it.
 LAMP_DEPTH, EDGE_DEPTH = 8.0, 4.0
 
@@ -27,7 +27,7 @@ def many_highlights(resolution, number):
     -------
     bpy.types.Scene
     """
-    scene, pixel = _scene(resolution, FOCUS, f_stop=0.4)
+    scene, pixel = _scene(resolution, FOCUS, f_stop=0.15)
     rng = np.random.default_rng(6)
     depth = rng.uniform(_NEAR, _FAR, number)
     half = depth * pixel / 2.0 * np.array(resolution)[:, None]
@@ -42,7 +42,7 @@ def many_highlights(resolution, number):
         ],
         axis=-1,
     )
-    _mesh(scene, "lamps", vertices, (40.0, 34.0, 26.0))
+    _mesh(scene, "lamps", vertices, (8.0, 6.8, 5.2))
     at = (np.arange(_BARS) + 0.5) / _BARS * 2.0 - 1.0
     width, tall = 0.25 / _BARS, resolution[1] / resolution[0]
     reach = FOCUS / 3.0 * pixel / 2.0 * resolution[0]
@@ -64,7 +64,7 @@ def half_hidden(resolution):
     bpy.types.Scene
         Its camera's focus is to be set.
     """
-    scene, pixel = _scene(resolution, LAMP_DEPTH, f_stop=0.25)
+    scene, pixel = _scene(resolution, LAMP_DEPTH, f_stop=0.05)
     scene.camera.data.dof.aperture_blades = 3
     scene.camera.data.dof.aperture_rotation = 0.3
     angles = 0.4 + np.arange(12) * 2.0 * np.pi / 12
