@@ -126,7 +126,7 @@ class PupilBeam:
         )
 
 
-def beam_from_infinity(tables, angle, f_number=None, wavelength=0):
+def beam_from_infinity(tables, angle, f_number=None, wavelength=0, box=None):
     """Beam of a point at infinity.
 
     Parameters
@@ -138,15 +138,17 @@ def beam_from_infinity(tables, angle, f_number=None, wavelength=0):
         None: wide open.
     wavelength : int
         Index into `tables.wavelengths_nm`.
+    box : tuple of 4 float or None
+        Span of the grid in the plane of the pupil, x and then v, mm; None: what is open.
 
     Returns
     -------
     PupilBeam
     """
-    return _beam(tables, float(angle), np.inf, f_number, wavelength)
+    return _beam(tables, float(angle), np.inf, f_number, wavelength, box)
 
 
-def beam_from_point(tables, height, depth, f_number=None, wavelength=0):
+def beam_from_point(tables, height, depth, f_number=None, wavelength=0, box=None):
     """Beam of a near point.
 
     Parameters
@@ -160,6 +162,8 @@ def beam_from_point(tables, height, depth, f_number=None, wavelength=0):
         None: wide open.
     wavelength : int
         Index into `tables.wavelengths_nm`.
+    box : tuple of 4 float or None
+        Span of the grid in the plane of the pupil, x and then v, mm; None: what is open.
 
     Returns
     -------
@@ -184,18 +188,19 @@ def beam_from_point(tables, height, depth, f_number=None, wavelength=0):
             f"a point {depth:g} mm in front of surface 1 lies behind the entrance pupil"
             f" ({distance:.4g} mm); move it away from the lens"
         )
-    return _beam(tables, angle, distance, f_number, wavelength)
+    return _beam(tables, angle, distance, f_number, wavelength, box)
 
 
-def _beam(tables, angle, distance, f_number, wavelength):
+def _beam(tables, angle, distance, f_number, wavelength, given=None):
     scale = 1.0 if f_number is None else min(1.0, tables.f_number / f_number)
     half_x, _, half_v = tables.curves_at(angle)[1:]
     wide = 1.0 + MARGIN if np.isinf(distance) else 1.5
     box = (-half_x * wide, half_x * wide, -half_v * wide, half_v * wide)
     # The open part of a small stop, a near point's or a vignetted pupil is smaller than the box.
-    for _ in range(2):
+    for _ in range(0 if given else 2):
         x, v, values, _ = _rays(tables, angle, distance, box, _SEARCH_GRID, wavelength)
         box = _open_part(x, v, values, scale) or box
+    box = given or box
     x, v, values, solid = _rays(tables, angle, distance, box, _GRID, wavelength)
     cell = (x[0, 1] - x[0, 0]) * (v[1, 0] - v[0, 0])
     centre = _rays(tables, angle, distance, (-1e-6, 1e-6, -1e-6, 1e-6), 3, wavelength)[2][1, 1]

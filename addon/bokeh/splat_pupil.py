@@ -16,11 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from .deposit import deposit, open_weights, rays_for
-from .opening import extent
+from .opening import LEAST_BLUR, extent
 from .pupil_beam import PupilBeam, beam_from_infinity, beam_from_point
 from .ray_map import lagrange_weights
 
-FIELDS, DEPTHS = 9, 13
+FIELDS, DEPTHS = 9, 25
 # Blur of the tiles in units of half their width, as the side of a box of the same variance; the
 # first one is of the sharp tiles. Must agree with lib/bokeh_look_lib.glsl.
 BLURS = (1.0 / 32.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0)
@@ -29,7 +29,9 @@ SHARP, SOFT = 96, 32
 _MOST_RAYS = 224
 # Places in the stop are stored as (s + 1.5) / 3, to be positive.
 STOP_OFFSET, STOP_SCALE = 1.5, 3.0
-AZIMUTHS = 64
+AZIMUTHS = 48
+# Texels of a tile that are taken together.
+_STEP = 2
 _VERGENCES = 7
 _LEAST_LIGHT = 1e-3
 
@@ -90,9 +92,16 @@ class PupilBeams:
         turn = np.linspace(0.0, np.pi, _VERGENCES)
         self.sensor = tables.sensor
         self._nodes = largest_vergence * 0.5 * (1.0 - np.cos(turn))
-        self._beams = [
-            [_traced(tables, pupil, f_number, t, v) for v in self._nodes] for t in self.tangents
-        ]
+        self._beams = []
+        for tangent in self.tangents:
+            ends = self._nodes[[0, _VERGENCES // 2, -1]]
+            boxes = [_box(_traced(tables, pupil, f_number, tangent, v)) for v in ends]
+            # One grid for all: a ray of the grid is then a smooth function of the vergence.
+            sides = np.array(boxes).T
+            box = (sides[0].min(), sides[1].max(), sides[2].min(), sides[3].max())
+            self._beams.append(
+                [_traced(tables, pupil, f_number, tangent, v, box) for v in self._nodes]
+            )
 
     def at(self, field, vergence):
         """Return the beam of a field's number and a vergence."""
@@ -112,11 +121,16 @@ class PupilBeams:
         )
 
 
-def _traced(tables, pupil, f_number, tangent, vergence):
+def _traced(tables, pupil, f_number, tangent, vergence, box=None):
     if vergence * 1e7 < 1.0:
-        return beam_from_infinity(tables, float(np.arctan(tangent)), f_number)
+        return beam_from_infinity(tables, float(np.arctan(tangent)), f_number, box=box)
     distance = 1.0 / vergence
-    return beam_from_point(tables, tangent * distance, distance - pupil, f_number)
+    return beam_from_point(tables, tangent * distance, distance - pupil, f_number, box=box)
+
+
+def _box(beam):
+    (x0, v0), (x1, v1) = beam.pupil[0, 0], beam.pupil[-1, -1]
+    return float(x0), float(x1), float(v0), float(v1)
 
 
 def pupil_tiles(beams, shift, blur, soft, w_range):
@@ -166,18 +180,11 @@ def pupil_tiles(beams, shift, blur, soft, w_range):
 def _tile(beam, shift):
     """Light and stop places of a beam, and where the pattern stands, mm."""
     landing = beam.landing(shift)
-    inside = (beam.clearance > 0.0) & (np.hypot(*np.moveaxis(beam.stop, -1, 0)) < beam.stop_scale)
-    if not inside.any():
-        inside = beam.clearance == beam.clearance.max()
-    # A ray's width more than what passes.
-    wide = inside.copy()
-    for axis in (0, 1):
-        wide |= np.roll(inside, 1, axis) | np.roll(inside, -1, axis)
-    x, y = np.abs(landing[wide][:, 0]).max(), landing[wide][:, 1]
-    middle, half_x = 0.5 * (y.min() + y.max()), max(x, 1e-6)
-    half_y = max(0.5 * (y.max() - y.min()), 1e-6)
-    extent = max(half_x, half_y)
-    fine = beam.refined(min(rays_for(beam, shift, 2.0 * extent / SHARP), _MOST_RAYS))
+    _, half_x, half_y = _bounds(beam, landing)
+    count = rays_for(beam, shift, 2.0 * max(half_x, half_y) / SHARP)
+    fine = beam.refined(min(count, _MOST_RAYS))
+    # On the fine grid: rims of neighbouring tiles then lie at the same place.
+    middle, half_x, half_y = _bounds(fine, fine.landing(shift))
     light = open_weights(fine)
     # The camera sees the stop turned by half a turn against the sensor's picture.
     stop = -fine.stop / fine.stop_scale
@@ -186,6 +193,25 @@ def _tile(beam, shift):
     layers = [light, light * share[..., 0], light * share[..., 1]]
     tile = np.stack([deposit(at, layer, SHARP) for layer in layers], axis=-1)
     return tile, (middle - _center(beam, landing), half_x, half_y)
+
+
+def _bounds(beam, landing):
+    """Middle of a pattern along y and half its width in x and y, up to where rims cut it."""
+    stop = np.hypot(beam.stop[..., 0], beam.stop[..., 1]) / beam.stop_scale
+    clear = np.minimum(beam.clearance, 1.0 - stop)
+    inside = clear > 0.0
+    if not inside.any():
+        inside = clear == clear.max()
+    found = [landing[inside]]
+    for axis in (0, 1):
+        rays, signed = np.moveaxis(landing, axis, 0), np.moveaxis(clear, axis, 0)
+        cut = (signed[1:] > 0.0) != (signed[:-1] > 0.0)
+        low, high = signed[:-1][cut], signed[1:][cut]
+        share = (low / (low - high))[:, None]
+        found.append(rays[:-1][cut] * (1.0 - share) + rays[1:][cut] * share)
+    x, y = np.concatenate(found).T
+    half_x, half_y = np.abs(x).max(), 0.5 * (y.max() - y.min())
+    return 0.5 * (y.min() + y.max()), max(half_x, 1e-6), max(half_y, 1e-6)
 
 
 def _center(beam, landing):
@@ -211,30 +237,40 @@ def light_left(tiles, opening):
     ----------
     tiles : PupilTiles
     opening : ndarray of shape (layers, size, size, 4)
-        From `bokeh.opening.opening_layers`; its first layer is used.
+        From `bokeh.opening.opening_layers`.
 
     Returns
     -------
-    ndarray of float32, shape (FIELDS, AZIMUTHS + 1, DEPTHS, 4)
-        Red, green, blue.
+    ndarray of float32, shape (layers * FIELDS, AZIMUTHS + 1, DEPTHS, 4)
+        Red, green, blue: means of the opening's density over the light.
     """
-    light, step = opening[0], 2
-    size = len(light)
-    result = np.empty((FIELDS, AZIMUTHS + 1, DEPTHS, 4), np.float32)
-    sharp = tiles.sharp.reshape(FIELDS, DEPTHS, SHARP // step, step, SHARP // step, step, 4)
-    sharp = sharp.sum(axis=(3, 5)).reshape(FIELDS, DEPTHS, -1, 4)
-    for i in range(FIELDS):
-        for j in range(DEPTHS):
-            tile = sharp[i, j][sharp[i, j, :, 0] > 0.0]
-            stop = tile[:, 1:3] / tile[:, :1] * STOP_SCALE - STOP_OFFSET
-            for k in range(AZIMUTHS):
-                turn = 2.0 * np.pi * k / AZIMUTHS - 0.5 * np.pi
-                x = stop[:, 0] * np.cos(turn) - stop[:, 1] * np.sin(turn)
-                y = stop[:, 0] * np.sin(turn) + stop[:, 1] * np.cos(turn)
-                at = (np.stack([y, x]) / extent(0) + 1.0) * (0.5 * size)
-                at = np.clip(at, 0, size - 1).astype(int)
-                passed = light[at[0], at[1], :3]
-                result[i, k, j, :3] = tile[:, 0] @ passed / tile[:, 0].sum()
-    result[:, AZIMUTHS] = result[:, 0]
+    count, size = opening.shape[:2]
+    result = np.empty((count, FIELDS, AZIMUTHS + 1, DEPTHS, 4), np.float32)
+    turn = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS - 0.5 * np.pi
+    turns = np.stack([np.cos(turn), np.sin(turn)])[..., None]
+    blurs = [_as_blurred(tiles, LEAST_BLUR * 2.0**layer) for layer in range(count)]
+    for layer, (light, blurred) in enumerate(zip(opening, blurs, strict=True)):
+        for i in range(FIELDS):
+            for j in range(DEPTHS):
+                tile = blurred[i, j][blurred[i, j, :, 0] > 1e-6 * blurred[i, j, :, 0].max()]
+                stop = tile[:, 1:3] / tile[:, :1] * STOP_SCALE - STOP_OFFSET
+                stop /= np.maximum(np.hypot(stop[:, 0], stop[:, 1]), 1.0)[:, None]
+                x = stop[:, 0] * turns[0] - stop[:, 1] * turns[1]
+                y = stop[:, 0] * turns[1] + stop[:, 1] * turns[0]
+                weight = tile[:, 0] / tile[:, 0].sum()
+                at = ((np.stack([y, x]) / extent(layer) + 1.0) * (0.5 * size)).astype(int)
+                passed = light[np.clip(at[0], 0, size - 1), np.clip(at[1], 0, size - 1), :3]
+                result[layer, i, :AZIMUTHS, j, :3] = np.einsum("n,anc->ac", weight, passed)
+    result[:, :, AZIMUTHS] = result[:, :, 0]
     result[..., 3] = 0.0
-    return np.maximum(result, _LEAST_LIGHT)
+    return np.maximum(result, _LEAST_LIGHT).reshape(-1, AZIMUTHS + 1, DEPTHS, 4)
+
+
+def _as_blurred(tiles, blur):
+    """Texels of the tiles that a shader reads for a blur, shape (FIELDS, DEPTHS, texels, 4)."""
+    nearest = int(np.argmin(np.abs(np.log2(np.array(BLURS) / blur))))
+    if nearest > 0:
+        soft = tiles.soft.reshape(-1, FIELDS, DEPTHS, SOFT * SOFT, 4)
+        return soft[nearest - 1]
+    sharp = tiles.sharp.reshape(FIELDS, DEPTHS, SHARP // _STEP, _STEP, SHARP // _STEP, _STEP, 4)
+    return sharp.sum(axis=(3, 5)).reshape(FIELDS, DEPTHS, -1, 4)

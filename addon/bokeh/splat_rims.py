@@ -12,7 +12,9 @@ from . import vignetting_model
 from .opening import LEAST_BLUR, extent
 
 TANGENTS, AZIMUTHS, MOST_ROWS = 33, 128, 17
-_RINGS = 96
+_RINGS = 192
+# Edges of rims are at least that part of a layer's reach wide; as in lib/bokeh_look_lib.glsl.
+EDGES = 96.0
 # Nothing is brightened beyond that: where hardly anything is left, hardly anything is shown.
 _LEAST_LIGHT = 1e-3
 
@@ -47,8 +49,8 @@ def light_left(rims, opening, profile, largest_tangent):
         whole = np.einsum("crk,ck->cr", factors, polar[..., 0].real)
         places = rings[:, None, None] * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1)
         for i, tangent in enumerate(np.linspace(0.0, largest_tangent, TANGENTS)):
-            cell = max(width, reach / _RINGS)
-            passing = vignetting_model.transmission(rims, places, (tangent, 0.0), cell)
+            edge = max(width, reach / EDGES)
+            passing = vignetting_model.transmission(rims, places, (tangent, 0.0), edge)
             turned = np.fft.irfft(polar * np.conj(np.fft.rfft(passing, axis=-1)), AZIMUTHS, axis=-1)
             left = np.einsum("crk,cka->cra", factors, turned) / np.maximum(whole, 1e-30)[..., None]
             left = np.clip(left, _LEAST_LIGHT, 1.0)

@@ -31,6 +31,12 @@ ENDINGS = (".exr", ".png")
 # argparse would take a negative number after these for an option.
 _MAY_BE_NEGATIVE = {"--frames", "--field-deg", "--planes-mm", "--rho"}
 
+# Of `bench --bokeh`.
+BOKEH_MEASURES = (
+    *("pictures", "truth", "models", "culling", "visibility", "time", "peers", "pan"),
+    *("scaling", "focus-pull"),
+)
+
 _LATER = {
     "capture": "depth layers",
     "refocus": "depth layers",
@@ -112,6 +118,8 @@ def _check_bench(arguments):
             raise InputError(f"--{option.replace('_', '-')} belongs to --method adaptive")
     if arguments.chromatic and (arguments.method != "reference" or arguments.lens):
         raise InputError("--chromatic measures both methods; give neither --method nor --lens")
+    if arguments.bokeh is not None and (arguments.method != "reference" or arguments.lens):
+        raise InputError("--bokeh measures both methods; give neither --method nor --lens")
 
 
 _frame = whole_number(-MAX_FRAME, MAX_FRAME)
@@ -272,6 +280,14 @@ def _add_bench(commands):
         "--chromatic",
         action="store_true",
         help="measure chromatic aberration instead: against its model and Cycles, noise, cost",
+    )
+    also.add_argument(
+        "--bokeh",
+        nargs="*",
+        metavar="MEASURE",
+        choices=BOKEH_MEASURES,
+        help="measure highlights instead: " + ", ".join(BOKEH_MEASURES) + " (default: all of"
+        " them, which takes hours)",
     )
     add(
         "--samples",

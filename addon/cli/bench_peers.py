@@ -24,7 +24,7 @@ from .bench_scenes import save_picture
 from .picture_metrics import compare, read_picture
 from .render import heard_render
 
-# What all but EEVEE must reach.
+# What all but EEVEE must reach, if nothing else is asked for.
 _SSIM = 0.98
 # From cheap to dear: lens samples and subsamples.
 _LADDER = (
@@ -39,7 +39,7 @@ _THREADS = 2
 _TIMES = 3
 
 
-def peers(scene, case, arguments, console):
+def peers(scene, case, arguments, console, wanted=_SSIM):
     """Measure a scene.
 
     Parameters
@@ -49,6 +49,8 @@ def peers(scene, case, arguments, console):
     case : Case
     arguments : argparse.Namespace
     console : Console
+    wanted : float
+        Structural similarity that all but EEVEE must reach.
 
     Returns
     -------
@@ -69,6 +71,7 @@ def peers(scene, case, arguments, console):
     scene.render.threads_mode, scene.render.threads = "FIXED", _THREADS
     with tempfile.TemporaryDirectory() as folder:
         study = _Study(scene, case, reference, Path(folder), arguments.pictures, console)
+        study.wanted = wanted
         found = {"adaptive": study.adaptive()}
         found["cycles"] = study.cycles()
         found["cycles_denoised"] = [study.denoised(count) for count in _DENOISED_SAMPLES]
@@ -81,6 +84,7 @@ class _Study:
         self._scene, self._case, self._reference = scene, case, reference
         self._folder, self._pictures, self._console = folder, pictures, console
         self._setting = None
+        self.wanted = _SSIM
 
     def adaptive(self):
         first, tried = None, []
@@ -90,13 +94,13 @@ class _Study:
             # The first makes levels of detail and compiles.
             first = first or found
             tried.append({"setting": list(setting), "ssim_srgb": found["compared"]["ssim_srgb"]})
-            if tried[-1]["ssim_srgb"] >= _SSIM:
+            if tried[-1]["ssim_srgb"] >= self.wanted:
                 break
         times = [self._ours() for _ in range(_TIMES)]
         return {
             "samples": self._setting[0],
             "subsamples": self._setting[1],
-            "reached": tried[-1]["ssim_srgb"] >= _SSIM,
+            "reached": tried[-1]["ssim_srgb"] >= self.wanted,
             "tried": tried,
             "first_render": first["work"],
             **_middle(times),
@@ -124,14 +128,14 @@ class _Study:
             found = self._render("cycles", number)
             numbers.append(number)
             ssim.append(found["compared"]["ssim_srgb"])
-            if ssim[-1] >= _SSIM:
+            if ssim[-1] >= self.wanted:
                 break
             number *= 2
         curve = Curve(tuple(numbers), (0.0,) * len(numbers), tuple(ssim))
-        samples, reached = samples_to_reach(curve, _SSIM)
+        samples, reached = samples_to_reach(curve, self.wanted)
         # Cycles' pattern is best at powers of two: what lies between may be worse than both ends.
         between = self._render("cycles", round(samples))["compared"]["ssim_srgb"]
-        samples = round(samples) if between >= _SSIM else numbers[-1]
+        samples = round(samples) if between >= self.wanted else numbers[-1]
         return {
             "tried": [{"samples": n, "ssim_srgb": q} for n, q in zip(numbers, ssim, strict=True)],
             "reached": reached,

@@ -117,6 +117,8 @@ def _runner(arguments, prepare):
             from .render import render as run
         elif arguments.chromatic:
             from .bench_chromatic import bench_chromatic as run
+        elif arguments.bokeh is not None:
+            from .bench_bokeh import bench_bokeh as run
         elif arguments.method == "adaptive":
             from .bench_adaptive import bench_adaptive as run
         else:

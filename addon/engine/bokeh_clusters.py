@@ -6,19 +6,25 @@ needs no setting by scene or resolution.
 
 from ..passes.clusters import Similarity
 
-# CLUSTERED: at most a sixteenth of a disc's diameter... to two of it, level by level, as long as
-# the disc is blurred by little more than its radius.
+# CLUSTERED: cells from half a radius of the disc to twice its diameter, as long as the disc is
+# blurred by little more than its radius.
 _CELL = 0.25
 _EXTENT = 1.6
 _HARM = 1.0
 # Rounds of pairwise merging.
 _PAIRS = 3
 
-# POINT: up to so many, each is a source of its own. Beyond, those are merged that show no difference.
+# POINT: up to so many, each is a source of its own. Beyond, faint ones are merged, the more the more
+# there are: where so many discs overlap, none shows its edge. Cells are long, because discs of all
+# depths overlap; merges that do no harm may change while the camera turns.
 POINT_BUDGET = 10000
-_POINT_LEVELS = 4
+_POINT_LEVELS = 3
+_POINT_CELL = 0.125
 _POINT_EXTENT = 0.5
-_POINT_HARM = 0.005
+_POINT_LENGTH = 16.0
+# For each budget of highlights, and at most.
+_POINT_HARM = 0.003
+_POINT_MOST_HARM = 0.03
 
 
 def similarity_of(settings, count):
@@ -47,4 +53,5 @@ def similarity_of(settings, count):
         )
     if count <= POINT_BUDGET:
         return None
-    return Similarity(_POINT_LEVELS, _CELL, _POINT_EXTENT, _POINT_HARM)
+    harm = min(_POINT_HARM * (count / POINT_BUDGET - 1.0), _POINT_MOST_HARM)
+    return Similarity(_POINT_LEVELS, _POINT_CELL, _POINT_EXTENT, harm, length=_POINT_LENGTH)

@@ -30,6 +30,8 @@ _OPENING, _MASK = 512, 1024
 _RINGING_LAYERS = 4
 _RINGING_MASK = 512
 _REFERENCE_M = 587.5618e-9
+# Focus distance over that of the nearest tile: still nearer patterns only grow.
+_NEAREST = 4.0
 _MM = 1000.0
 
 
@@ -220,7 +222,7 @@ def _opening(appearance, fresnel):
             parts.append(layers_of_mask(mask, range(layer, last), _OPENING))
         layers = np.concatenate(parts)
     areas = _texel_areas(len(layers))
-    energy = layers[..., :3].sum(axis=(1, 2)) * areas[:, None]
+    energy = layers[..., :3].sum(axis=(1, 2), dtype=np.float64) * areas[:, None]
     layers[..., :3] /= np.maximum(energy, 1e-30)[:, None, None]
     return layers
 
@@ -271,7 +273,8 @@ def _tiles(lens, focus_distance, tangent):
     distance = distance_from_h(profile, focus_distance)
     state = profile.focused(distance)
     focus = distance if lens.settings.prescription.focus else np.inf
-    beams = _beams(lens, focus, float(state.ray_map.pupil), tangent)
+    nearest = min(float(state.ray_map.vergences[-1]), _NEAREST / (focus_distance * _MM))
+    beams = _beams(lens, focus, float(state.ray_map.pupil), tangent, nearest)
     rows = _lens_rows(lens, focus_distance, False)
     plane = state.image_plane(distance)
     # The circle of confusion of the lens, c = k0 + k1 V, is 0 at the focus.
@@ -279,25 +282,26 @@ def _tiles(lens, focus_distance, tangent):
     opening = profile.stop_fraction(lens.settings.f_number)
     k0, k1 = (-opening * state.ray_map.pupil_radius * linear).tolist()
     soft = rows.soft * abs(k0)
-    tiles = splat_pupil.pupil_tiles(beams, plane - beams.sensor, (k0, k1), soft, rows.w_range)
-    return tiles, rows.w_range, rows.soft
+    ends = [k0 + k1 * vergence for vergence in (0.0, nearest)]
+    w_range = tuple(sorted(c / (abs(c) + soft) for c in ends))
+    tiles = splat_pupil.pupil_tiles(beams, plane - beams.sensor, (k0, k1), soft, w_range)
+    return tiles, w_range, rows.soft
 
 
 @lru_cache(maxsize=2)
-def _beams(lens, focus, pupil, tangent):
+def _beams(lens, focus, pupil, tangent, nearest):
     settings = lens.settings
     prescription = settings.prescription
-    last = float(lens.profile(False).states[0].ray_map.vergences[-1])
     if np.isinf(focus):
         tables = profile_cache.pupil_tables(prescription, settings.label, lens_id=settings.id)
     else:
         configuration = prescription.configuration(settings.label)
         tables = build_pupil_tables(focused(configuration, focus, prescription.focus))
-    return splat_pupil.PupilBeams(tables, pupil, settings.f_number, tangent, last)
+    return splat_pupil.PupilBeams(tables, pupil, settings.f_number, tangent, nearest)
 
 
 @lru_cache(maxsize=2)
 def _tiles_left(tiles_and_opening, even):
     if even:
-        return np.ones((splat_pupil.FIELDS, 2, 2, 4), np.float32)
+        return np.ones((1, 2, 2, 4), np.float32)
     return splat_pupil.light_left(*tiles_and_opening.parts)

@@ -5,14 +5,14 @@ the blur of what lies out there reaches in. A pixel of it is a pixel of the pict
 sub-pixels so that small emitters are met.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..sampling.highlights import highlight_share, least_coc
 from ..sampling.iris import Iris
 from ..sampling.pixel_filter import filter_density
-from ..scene.brightness import brightest
+from ..scene.brightness import brightest, emits, mirrors
 from ..scene.snapshot import BokehSettings, LensSettings
 from .levels import coc_radius, extents, world_corners
 
@@ -27,6 +27,8 @@ _LARGEST_TILE = 1 << 22
 _LEAST_SUBPIXELS, _MOST_SUBPIXELS = 2, 4
 # Sub-pixels along a side of a triangle that shines: a lamp of one is met within a few per cent.
 _HITS_A_SIDE = 6.0
+# Of highlights behind one another, in drafts.
+_DRAFT_LAYERS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +40,8 @@ class BokehPlan:
     settings : BokehSettings
     shining : frozenset of (int, int)
         Group and slot of the surfaces that may be brighter than the threshold.
+    mirroring : frozenset of (int, int)
+        Those of them that look different from different places on the lens.
     least_coc : float
         Radius of the circle of confusion from which on light is splatted, px.
     width, height : int
@@ -60,10 +64,13 @@ class BokehPlan:
         That shapes the discs; None: the thin lens.
     filter_width : float
         Side of the square that blurs as the pixel filter does, px.
+    draft : bool
+        Bounded work, for a view that moves; see `draft_of`.
     """
 
     settings: BokehSettings
     shining: frozenset[tuple[int, int]]
+    mirroring: frozenset[tuple[int, int]]
     least_coc: float
     width: int
     height: int
@@ -76,19 +83,28 @@ class BokehPlan:
     iris: Iris
     real_lens: LensSettings | None
     filter_width: float
+    draft: bool = False
 
     @property
     def lens_views(self):
-        """Places on the lens that view-dependent highlights are looked for from.
+        """Places on the lens that mirroring highlights are looked for from.
 
         Returns
         -------
         ndarray of shape (n^2, 2)
-            In units of half the opening, row by row: the centres of n x n regions.
+            In units of half the opening, row by row: the centres of n x n regions; one where
+            nothing mirrors.
         """
-        side = max(1, int(np.sqrt(self.settings.lens_views)))
+        side = max(1, int(np.sqrt(self.settings.lens_views))) if self.mirroring else 1
         axis = (2.0 * np.arange(side) + 1.0) / side - 1.0
         return np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+
+    @property
+    def mirroring_subpixels(self):
+        """As `subpixels`, of what mirrors: the views together are as many as one would be."""
+        if self.draft:
+            return 1
+        return max(1, _LEAST_SUBPIXELS // int(np.sqrt(len(self.lens_views))))
 
     @property
     def tiles(self):
@@ -136,8 +152,9 @@ def plan_bokeh(snapshot, plan):
         return None
     least = least_coc(plan.samples)
     shining = _shining(snapshot.content, settings.threshold)
-    rows, of_group = _rows(snapshot.content, shining)
+    rows, _ = _rows(snapshot.content, shining)
     seen = extents(_corners(snapshot.content, rows), plan.view)
+    emitting, of_emitting = _rows(snapshot.content, _emitting(snapshot.content, shining))
     largest = _largest_coc(snapshot.content, plan, seen)
     if largest <= least:
         return None
@@ -151,18 +168,50 @@ def plan_bokeh(snapshot, plan):
     return BokehPlan(
         settings=settings,
         shining=shining,
+        mirroring=_mirroring(snapshot.content, shining),
         least_coc=least,
         width=width,
         height=height,
         margin=margin,
         projection=np.diag([plan.width / width, plan.height / height, 1.0, 1.0]) @ plan.projection,
-        subpixels=_subpixels(snapshot.content, plan, rows, of_group, seen, (width, height)),
+        subpixels=_subpixels(snapshot.content, plan, emitting, of_emitting, (width, height)),
         world=world,
         world_share=float(highlight_share(plan.empty_coc, least)) if world else 0.0,
         world_depth=_INFINITY * max(plan.focus_distance, 1.0),
         iris=lens.iris,
         real_lens=None if plan.orthographic else snapshot.camera.real_lens,
         filter_width=_filter_width(film.filter_kind, film.filter_size_px),
+    )
+
+
+def draft_of(bokeh):
+    """Return a plan of the same light with little work: few sources, few layers, coarse masks.
+
+    What is splatted, and what the lens samples keep, is divided as before, so that the same
+    samples go with either.
+
+    Parameters
+    ----------
+    bokeh : BokehPlan
+
+    Returns
+    -------
+    BokehPlan
+    """
+    settings = bokeh.settings
+    return replace(
+        bokeh,
+        settings=replace(
+            settings,
+            model="CLUSTERED",
+            similarity=max(settings.similarity, 1.0),
+            global_merge=False,
+            visibility="WARP",
+            layers=min(settings.layers, _DRAFT_LAYERS),
+            lens_views=1,
+        ),
+        subpixels=min(bokeh.subpixels, _LEAST_SUBPIXELS),
+        draft=True,
     )
 
 
@@ -176,6 +225,21 @@ def _shining(content, threshold):
         for (slot, _, _), bound in zip(content.meshes[group.mesh].slots, bounds, strict=True)
         if bound > threshold and content.materials[group.materials[slot]].highlights
     )
+
+
+def _mirroring(content, shining):
+    """Return which of the surfaces look different from different places on the lens."""
+    return frozenset(key for key in shining if mirrors(_graph(content, key)))
+
+
+def _emitting(content, shining):
+    """Return which of the surfaces have light of their own."""
+    return frozenset(key for key in shining if emits(_graph(content, key)))
+
+
+def _graph(content, key):
+    number, slot = key
+    return content.materials[content.groups[number].materials[slot]].graph
 
 
 def _rows(content, shining):
@@ -207,17 +271,15 @@ def _margin(plan, settings, largest):
     return tuple(int(np.ceil(min(largest * n, limit))) + _RIM for n in narrowing)
 
 
-def _subpixels(content, plan, rows, of_group, seen, size):
-    """Return how finely highlights are searched: several times in small triangles that shine.
+def _subpixels(content, plan, rows, of_group, size):
+    """Return how finely highlights are searched: several times in small triangles that emit.
 
     Parameters
     ----------
     content : SceneContent
     plan : FramePlan
     rows, of_group : ndarray of shape (R,)
-        Instances with shining surfaces, and their groups.
-    seen : Extents
-        Of these.
+        Instances with emitting surfaces, and their groups.
     size : tuple of 2 int
         Of the raster in pixels.
 
@@ -226,6 +288,7 @@ def _subpixels(content, plan, rows, of_group, seen, size):
     int
     """
     width, height = size
+    seen = extents(_corners(content, rows), plan.view)
     affordable = int(np.sqrt(_LARGEST_RASTER / (width * height)))
     area = np.array([content.meshes[g.mesh].triangle_area for g in content.groups])[of_group]
     stretch = np.abs(np.linalg.det(content.instances.world[rows, :3, :3].astype(float)))

@@ -1,9 +1,11 @@
 """Bokeh of a frame: peel, extract, splat (methods 9 to 13).
 
 Done once a frame, before its first lens sample; what the samples then leave out is what was
-splatted here, light for light.
+splatted here, light for light. A view that moves is given a draft, and the whole in steps when it
+has come to rest.
 """
 
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,12 +14,16 @@ from ..device import geometry, readback
 from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
 from ..passes import background, clusters, highlights, peel, splat, surface
-from .bokeh_look import make_look
 from .bokeh_clusters import similarity_of
+from .bokeh_look import make_look
+from .bokeh_plan import tiles_of
 from .bokeh_visibility import BokehVisibility
 
 # Highlights that the list has room for at first.
 _FIRST_LIST = 1 << 16
+# Sources of a draft, and how often they are merged more boldly to get there.
+_DRAFT_SOURCES = 1 << 11
+_DRAFT_ROUNDS = 4
 
 
 @dataclass
@@ -47,6 +53,30 @@ class HighlightCounts:
     culled_cone: int = 0
     masked: int = 0
     splatted: int = 0
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Surfaces that are searched for highlights in one way.
+
+    Parameters
+    ----------
+    surfaces : frozenset of (int, int)
+        Group and slot.
+    world : bool
+        Instead of surfaces, the world.
+    part : tuple of 4 int
+        Of the raster.
+    subpixels : int
+    views : list of (tuple of 2 float, int)
+        Place on the lens, m, and the region that it stands for.
+    """
+
+    surfaces: frozenset
+    world: bool
+    part: tuple[int, int, int, int]
+    subpixels: int
+    views: list
 
 
 def highlight_buffer(bokeh):
@@ -99,24 +129,47 @@ class BokehStage:
         self.counts = HighlightCounts()
         self.bytes = 0
 
-    def run(self, fullscreen, target, frame_view):
+    def run(self, fullscreen, targets, frame_view, stage=nullcontext):
         """Peel, extract and splat.
 
         Parameters
         ----------
         fullscreen : GPUBatch
-        target : GPUFrameBuffer
-            Gets the bokeh; is cleared.
+        targets : Targets
+            Whose ``bokeh`` gets it.
         frame_view : GPUUniformBuf
             `ViewParams` of the frame.
+        stage : callable, optional
+            As that of `FrameRenderer.advance`: ``search``, ``merge``, ``visibility``, ``splat``.
         """
-        with target.bind():
-            target.clear(color=(0.0, 0.0, 0.0, 0.0))
+        steps = self.steps(fullscreen, targets, frame_view)
+        for name in ("search", "merge", "visibility", "splat"):
+            with stage(name):
+                next(steps, None)
+
+    def steps(self, fullscreen, targets, frame_view):
+        """Do the same bit by bit; the picture changes with the last step.
+
+        Yields
+        ------
+        None
+            After each step; closing the generator gives back what it holds.
+        """
         held = []
         try:
-            sources, count = self._merge(*self._find(fullscreen, held), held)
+            sources, count = self._find(fullscreen, held)
+            yield
+            sources, count = self._merge(sources, count, held)
+            visibility = None
             if count:
-                self._splat(sources, count, self._hide(sources, count, held), target, frame_view)
+                yield
+                visibility = self._hide(sources, count, held)
+                yield
+            target = targets.framebuffer("bokeh")
+            with target.bind():
+                target.clear(color=(0.0, 0.0, 0.0, 0.0))
+            if visibility:
+                self._splat(sources, count, visibility, target, frame_view)
             self.bytes = max(self.bytes, sum(targets.bytes for targets in held))
         finally:
             for targets in held:
@@ -132,13 +185,18 @@ class BokehStage:
                 total.clear(format="UINT", value=(0,))
                 specs = [TargetSpec(name, "RGBA32F") for name in "ab"]
                 lists = Targets(highlights.COLUMNS, room // highlights.COLUMNS, specs)
-                _, _, width, height = bokeh.tiles[0]
-                with Targets(width, height, self._specs()) as layers:
-                    for peeled in self._rasters(layers, fullscreen):
-                        self._list(peeled, layers, lists, total)
-                    self.bytes = max(self.bytes, layers.bytes)
-                    # The layers are given back only after the device has read them.
-                    count, sharp = (int(n) for n in np.asarray(total.read()).ravel()[:2])
+                for search in self._searches():
+                    tiles = tiles_of(search.part, search.subpixels)
+                    if not tiles:
+                        continue
+                    _, _, width, height = tiles[0]
+                    with Targets(width, height, self._specs(search, height)) as layers:
+                        for tile in tiles:
+                            self._list_tile(search, tile, layers, lists, total, fullscreen)
+                        self.bytes = max(self.bytes, layers.bytes)
+                        # The layers are given back only after the device has read them.
+                        _totals(total)
+                count, sharp = _totals(total)
             if count <= room:
                 break
             lists.release()
@@ -150,48 +208,53 @@ class BokehStage:
 
     def _merge(self, sources, count, held):
         """Merge similar highlights, as the model asks for; returns the list and its length."""
-        similarity = similarity_of(self._plan.bokeh.settings, count)
-        if similarity and count > 1:
-            plan = self._plan
+        plan = self._plan
+        similarity = similarity_of(plan.bokeh.settings, count)
+        rounds = _DRAFT_ROUNDS if plan.bokeh.draft else 1
+        while similarity and count > 1:
             lens = (plan.focus_distance, float(plan.orthographic), plan.coc_scale, 0.0)
             pixel = 2.0 / (plan.projection[1, 1] * plan.height)
             parameters = clusters.cluster_params(similarity, plan.view, lens, pixel)
             lists, count = clusters.cluster(sources, count, uniform_buffer(parameters), similarity)
             held.append(lists)
             sources = (lists["a"], lists["b"])
+            rounds -= 1
+            if rounds == 0 or count <= _DRAFT_SOURCES:
+                break
+            similarity = _bolder(similarity)
         self.counts.clustered = count
         return sources, count
 
-    def _rasters(self, layers, fullscreen):
-        """Peel tile by tile, what looks different from each place on the lens also view by view.
+    def _searches(self):
+        """Return what is searched in which way: what looks the same from anywhere, and the rest."""
+        bokeh = self._plan.bokeh
+        places = [tuple(place) for place in (bokeh.lens_views * self._plan.lens_extent).tolist()]
+        views = list(zip(places, range(1, len(places) + 1), strict=True))
+        alone = [((0.0, 0.0), 0)]
+        steady = bokeh.shining - bokeh.mirroring
+        searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone)]
+        if bokeh.mirroring:
+            several = views if len(views) > 1 else alone
+            fine = bokeh.mirroring_subpixels
+            searches.append(_Search(bokeh.mirroring, False, bokeh.whole, fine, several))
+        if bokeh.world:
+            searches.append(_Search(frozenset(), True, bokeh.whole, bokeh.world_subpixels, alone))
+        return searches
 
-        Yields
-        ------
-        PeeledRaster
-            To be read before the next.
-        """
-        bokeh, drawing = self._plan.bokeh, self._drawing
-        opaque = drawing.full_detail_draws(peel.OPAQUE)
-        shining = drawing.full_detail_draws(peel.HIGHLIGHTS, bokeh.shining)
-        views = [((0.0, 0.0), 0, shining)]
-        if len(bokeh.lens_views) > 1:
-            lit = [draw for draw in shining if draw.lighting]
-            views[0] = ((0.0, 0.0), 0, [draw for draw in shining if not draw.lighting])
-            places = (bokeh.lens_views * self._plan.lens_extent).tolist()
-            views += [(tuple(p), n, lit) for n, p in enumerate(places, start=1) if lit]
-        for tile in bokeh.tiles:
-            view = uniform_buffer(self._raster_params(tile, layers))
-            for lens, region, draws in views:
-                world = bokeh.world and region == 0
-                if not draws and not world:
-                    continue
-                peeled = self._peel(layers, view, (opaque, draws), lens, fullscreen, world)
-                shape = (tile[2:], bokeh.subpixels, lens, region)
-                yield highlights.PeeledRaster(peeled, view, self._highlights, *shape)
-
-    def _list(self, peeled, layers, lists, total):
-        highlights.count(peeled, layers["counts"], layers["rows"], total)
-        highlights.emit(peeled, layers["counts"], layers["rows"], (lists["a"], lists["b"]))
+    def _list_tile(self, search, tile, layers, lists, total, fullscreen):
+        """List what a tile shows, view by view and layer by layer, as long as there is more."""
+        view = uniform_buffer(self._raster_params(tile, layers, search.subpixels))
+        for lens, region in search.views:
+            found = _totals(total) if search.surfaces else None
+            peel_layers = self._peel_world if search.world else self._peel
+            for layer in peel_layers(search, layers, view, lens, fullscreen):
+                shape = (tile[2:], search.subpixels, lens, region)
+                peeled = highlights.PeeledRaster((layer,), view, self._highlights, *shape)
+                highlights.count(peeled, layers["counts"], layers["rows"], total)
+                highlights.emit(peeled, layers["counts"], layers["rows"], (lists["a"], lists["b"]))
+                before, found = found, _totals(total)
+                if found == before:
+                    break
 
     def _hide(self, sources, count, held):
         """Find what hides the sources from the lens, as `Visibility`."""
@@ -202,7 +265,8 @@ class BokehStage:
         self.counts.culled_cone = counts.visible + counts.free
         self.counts.masked = counts.masked
         self.counts.splatted = count - self.counts.culled_occlusion
-        if counts.masked and counts.method != "SPLAT" and count < self.counts.found:
+        merged = self._plan.bokeh.settings.model == "CLUSTERED" or self._plan.bokeh.draft
+        if merged and counts.masked and counts.method != "SPLAT":
             masks = found.masks
             soft = Targets(masks.width, masks.height, [TargetSpec("masks", "R16F")])
             held.append(soft)
@@ -210,20 +274,19 @@ class BokehStage:
             found = replace(found, masks=soft["masks"])
         return found
 
-    def _specs(self):
-        bokeh, fine = self._plan.bokeh, self._plan.bokeh.subpixels
-        _, _, _, height = bokeh.tiles[0]
-        lists = bokeh.layers + bokeh.world
-        names = [f"light_color_{k}" for k in range(bokeh.layers)] + ["no_color"]
-        names += ["world"] * bokeh.world
-        specs = [TargetSpec(name, "RGBA32F", scale=fine) for name in names]
-        names = [f"light_depth_{k}" for k in range(bokeh.layers)] + ["no_depth", "scene_depth"]
-        specs += [TargetSpec(name, "DEPTH_COMPONENT32F", scale=fine) for name in names]
-        specs.append(TargetSpec("counts", "R32UI", lists))
-        specs.append(TargetSpec("rows", "R32UI", size=(height, 2 * lists)))
+    @staticmethod
+    def _specs(search, height):
+        fine = search.subpixels
+        # A layer and the one before it.
+        colors = ["world"] if search.world else ["light_color_0", "light_color_1"]
+        depths = [] if search.world else ["light_depth_0", "light_depth_1", "scene_depth"]
+        specs = [TargetSpec(name, "RGBA32F", scale=fine) for name in colors]
+        specs += [TargetSpec(name, "DEPTH_COMPONENT32F", scale=fine) for name in depths]
+        specs.append(TargetSpec("counts", "R32UI", 1))
+        specs.append(TargetSpec("rows", "R32UI", size=(height, 2)))
         return specs
 
-    def _raster_params(self, tile, layers):
+    def _raster_params(self, tile, layers, subpixels):
         plan, bokeh = self._plan, self._plan.bokeh
         x, y, _, _ = tile
         width, height = layers.width, layers.height
@@ -236,41 +299,44 @@ class BokehStage:
             view_inverse=np.linalg.inv(plan.view),
             projection=crop @ bokeh.projection,
             lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
-            film=(width * bokeh.subpixels, height * bokeh.subpixels, 0.0, 0.0),
+            film=(width * subpixels, height * subpixels, 0.0, 0.0),
         )
 
-    def _peel(self, layers, view, draws, lens, fullscreen, world):
+    def _peel(self, search, layers, view, lens, fullscreen):
         """Draw what is brighter than the threshold, layer by layer.
 
-        Returns
-        -------
-        tuple of (GPUTexture, GPUTexture or None)
-            Light and depth of each layer.
+        Yields
+        ------
+        tuple of 2 GPUTexture
+            Light and depth of a layer, to be read before the next.
         """
-        opaque, shining = draws
-        nothing = layers.framebuffer("no_color", depth="no_depth")
+        drawing = self._drawing
+        shining = drawing.full_detail_draws(peel.HIGHLIGHTS, search.surfaces)
+        if not shining:
+            return
+        before, layer = (("light_color_1", "light_depth_1"), ("light_color_0", "light_depth_0"))
+        nothing = layers.framebuffer(before[0], depth=before[1])
         with nothing.bind():
             nothing.clear(color=(0.0, 0.0, 0.0, 0.0), depth=0.0)
-        before = ("no_depth", "no_color")
         # The first layer's colour is drawn over by its highlights.
-        self._draw_layer(layers, view, opaque, before[:1], ("light_color_0", "scene_depth"), lens)
-        peeled = []
-        for k in range(self._plan.bokeh.layers if shining else 0):
-            layer = (f"light_color_{k}", f"light_depth_{k}")
-            self._draw_layer(layers, view, shining, (*before, "scene_depth"), layer, lens)
-            before = layer[::-1]
-            peeled.append(tuple(layers[name] for name in layer))
-        if world:
-            with layers.framebuffer("world").bind():
-                background.draw_excess(
-                    fullscreen,
-                    view,
-                    self._buffers.environment_buffer,
-                    self._buffers.environment_image,
-                    self._highlights,
-                )
-            peeled.append((layers["world"], None))
-        return tuple(peeled)
+        opaque = drawing.full_detail_draws(peel.OPAQUE)
+        self._draw_layer(layers, view, opaque, before[1:], (layer[0], "scene_depth"), lens)
+        for _ in range(self._plan.bokeh.layers):
+            self._draw_layer(layers, view, shining, (*before[::-1], "scene_depth"), layer, lens)
+            yield tuple(layers[name] for name in layer)
+            before, layer = layer, before
+
+    def _peel_world(self, search, layers, view, lens, fullscreen):
+        """Draw what of the world is brighter than the threshold; yields it, without a depth."""
+        with layers.framebuffer("world").bind():
+            background.draw_excess(
+                fullscreen,
+                view,
+                self._buffers.environment_buffer,
+                self._buffers.environment_image,
+                self._highlights,
+            )
+        yield layers["world"], None
 
     def _draw_layer(self, layers, view, draws, textures, layer, lens):
         color, depth = layer
@@ -298,3 +364,18 @@ class BokehStage:
             )
         # What it reads is given back only after the device has read it.
         readback.wait(target)
+
+
+def _totals(total):
+    """Read how many highlights have been listed, and how many texels were too sharp."""
+    return tuple(int(n) for n in np.asarray(total.read()).ravel()[:2])
+
+
+def _bolder(similarity):
+    """Return what merges highlights that differ twice as much."""
+    return replace(
+        similarity,
+        cell=2.0 * similarity.cell,
+        extent=2.0 * similarity.extent,
+        harm=4.0 * similarity.harm,
+    )

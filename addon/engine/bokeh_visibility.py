@@ -26,8 +26,9 @@ from .occluders import CLUSTER, Occluders, Part
 # Steps of a ray that take as long as a triangle of a cluster: 120 to 130 ns against 7 to 8 on
 # software OpenGL.
 STEPS_PER_TRIANGLE = 16
-# Texels of the atlas, at most, and its longer side.
-_LARGEST_ATLAS = 1 << 23
+# Texels of the atlas, at most, also where sources are very many, and its longer side.
+_LARGEST_ATLAS = 1 << 25
+_ATLAS_OF_MANY = 1 << 23
 _LONGEST_ATLAS = 16384
 # Cells of the N-buffers over the peeled raster.
 _MOST_CELLS = 1 << 18
@@ -36,13 +37,17 @@ _WINDOW = 1 << 20
 # Surfaces so close before a source that the lens' rim sees them moved by less, in pixels, do not
 # part the lens into places that see it and places that do not.
 _SAME_VIEW = 0.25
-_MASK_TEXELS_PER_PIXEL = 1.0
+# The square root of 3: the spline that masks are read with then blurs as a pixel does.
+_MASK_TEXELS_PER_PIXEL = 1.73
 # Of the layers, along a side of a pixel: coarser ones miss what is thin. And of all their texels.
 _TEXELS_PER_PIXEL = 3
 _LARGEST_RASTER = 1 << 23
 
 # More sources are left to the layers alone, which cost the less a source the smaller the masks are.
-_MOST_CONES = 1 << 14
+_MOST_CONES = 1 << 15
+# Of drafts: layers, and texels of the atlas.
+_DRAFT_LAYERS = 2
+_DRAFT_ATLAS = 1 << 19
 
 MASKED, IN_SPLAT = 2, 3
 
@@ -226,6 +231,8 @@ def visibility_params(plan, fine=1, reach=1.0):
 
 
 def _texels_per_pixel(bokeh):
+    if bokeh.draft:
+        return 1
     affordable = int(np.sqrt(_LARGEST_RASTER / (bokeh.width * bokeh.height)))
     longest = _LONGEST_ATLAS // max(bokeh.width, bokeh.height)
     return max(1, min(_TEXELS_PER_PIXEL, affordable, longest))
@@ -364,12 +371,12 @@ class BokehVisibility:
             if method == "AUTO" and count > _MOST_CONES:
                 method = "WARP"
             exact = method in {"AUTO", "RASTER"}
-            cones = exact or count <= _MOST_CONES
+            cones = exact or (count <= _MOST_CONES and not self._plan.bokeh.draft)
             self._cull(sources, count, raster, tables, culls, exact, cones)
             found = np.asarray(tables.counts.read()).ravel()
             _note(counts, found)
             drawn = found[bokeh_culling.COUNT_SIZES :][: bokeh_culling.SIZES].astype(np.int64)
-            layout = lay_out(drawn)
+            layout = lay_out(drawn, self._room(count))
             counts.texels = int((drawn * layout.sizes[:, 2] ** 2).sum())
             wanted = (drawn * (bokeh_culling.LEAST_SIDE << np.arange(len(drawn))) ** 2).sum()
             counts.work = int(counts.work * (counts.texels / max(wanted, 1)))
@@ -424,6 +431,7 @@ class BokehVisibility:
             )
         )
         draws = drawing.full_detail_draws(peel.OCCLUDERS)
+        number = _DRAFT_LAYERS if plan.bokeh.draft else visibility_warp.MOST_LAYERS
         specs = [TargetSpec("color", "RGBA32F")]
         specs += [TargetSpec(name, "DEPTH_COMPONENT32F") for name in ("depth", "front")]
         with Targets(raster.width, raster.height, specs) as layers:
@@ -431,7 +439,7 @@ class BokehVisibility:
             nothing = layers.framebuffer("color", depth=front)
             with nothing.bind():
                 nothing.clear(depth=0.0)
-            for channel in range(visibility_warp.MOST_LAYERS):
+            for channel in range(number):
                 framebuffer = layers.framebuffer("color", depth=depth)
                 with framebuffer.bind():
                     framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
@@ -442,9 +450,15 @@ class BokehVisibility:
                 depth, front = front, depth
             # The layers are given back only after the device has read them.
             readback.wait(layers.framebuffer("color", depth=front))
-        drawing.counts.draw_calls += visibility_warp.MOST_LAYERS * len(draws)
+        drawing.counts.draw_calls += number * len(draws)
         drawn = sum(d.triangles * d.count for d in draws)
-        drawing.counts.triangles += visibility_warp.MOST_LAYERS * drawn
+        drawing.counts.triangles += number * drawn
+
+    def _room(self, count):
+        """Return how many texels masks may take."""
+        if self._plan.bokeh.draft:
+            return _DRAFT_ATLAS
+        return _LARGEST_ATLAS if count <= _MOST_CONES else _ATLAS_OF_MANY
 
     def _format(self):
         # Products of several surfaces must not be rounded to 8 bits each.

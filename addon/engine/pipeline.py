@@ -4,7 +4,9 @@ Only the sums of the samples and the Cryptomatte tables outlive a sample, so mem
 on their number.
 """
 
+import time
 from contextlib import nullcontext
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,6 +16,7 @@ from ..device.uniforms import uniform_buffer
 from ..passes import accumulate, background, chromatic, cryptomatte, data, resolve, surface
 from ..sampling.chromatic import LEAST_SCALE
 from . import render_passes
+from .bokeh_plan import draft_of
 from .bokeh_stage import BokehStage, highlight_buffer
 from .bokeh_visibility import SceneOccluders
 from .scene_drawing import SceneDrawing
@@ -21,6 +24,8 @@ from .subsampling import SubsampleBlur
 
 # Samples that may wait in the device's queue: the queue's memory, too, is bounded.
 _SAMPLES_IN_FLIGHT = 32
+# A bokeh that takes no longer needs no draft, s.
+_QUICK = 0.03
 
 
 class FrameRenderer:
@@ -36,18 +41,21 @@ class FrameRenderer:
     Attributes
     ----------
     samples_done : int
+    bokeh_drafted : bool
+        What is shown is a draft of the bokeh, or none yet.
     """
 
-    def __init__(self, plan, snapshot, buffers):
+    def __init__(self, plan, snapshot, buffers, drafts=False):
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
         self._content = self._levels = self._drawing = self._blur = self._plain = None
         self._target = self._bokeh = self._occluders = None
         self._graded = {}
-        self._targets = None
-        self.restart(plan, snapshot)
+        self._targets = self._refining = None
+        self._bokeh_seconds = np.inf
+        self.restart(plan, snapshot, drafts)
 
-    def restart(self, plan, snapshot):
+    def restart(self, plan, snapshot, drafts=False):
         """Begin a frame anew, with another view or content; what still fits is kept.
 
         Parameters
@@ -55,7 +63,11 @@ class FrameRenderer:
         plan : FramePlan
         snapshot : SceneSnapshot
             The buffers must be updated to its content.
+        drafts : bool
+            Begin with a draft of the bokeh, unless the last whole one was quick, and leave the
+            whole to `refine_bokeh`.
         """
+        self._stop_refining()
         self.plan = plan
         self.samples_done = 0
         self._cryptomattes = render_passes.cryptomatte_kinds(plan.passes)
@@ -82,11 +94,12 @@ class FrameRenderer:
         self._blur = None
         if plan.blurs:
             self._blur = SubsampleBlur(plan, self._drawing.nearest, wavelengths)
-        self._bokeh = None
+        self._bokeh = self._whole = self._draft = None
         if plan.bokeh:
-            self._bokeh = BokehStage(
-                plan, self._drawing, self._buffers, self._occluders, self._highlights
-            )
+            self._bokeh = self._whole = self._stage(plan)
+            if drafts and self._bokeh_seconds > _QUICK:
+                self._draft = self._stage(replace(plan, bokeh=draft_of(plan.bokeh)))
+        self.bokeh_drafted = self._draft is not None
         self._prepare_targets()
         self._restart_plain(plan, snapshot)
 
@@ -110,6 +123,10 @@ class FrameRenderer:
         plan = self.plan.chromatic
         tint = tuple(plan.weights[index].tolist())
         return chromatic.ChromaticSample(plan.dispersion(index), tint, self._field)
+
+    def _stage(self, plan):
+        buffers, occluders = self._buffers, self._occluders
+        return BokehStage(plan, self._drawing, buffers, occluders, self._highlights)
 
     @property
     def counts(self):
@@ -170,7 +187,7 @@ class FrameRenderer:
         stage : callable, optional
             For measuring: called with the name of each part of a sample's work (``bokeh``,
             ``bounds``, ``surfaces``, ``sum``), it returns a context manager in which that is given
-            to the device.
+            to the device. Within ``bokeh``, also with those of `BokehStage.run`.
         """
         self._targets.forget_framebuffers()
         end = min(self.samples_done + samples, self.plan.samples)
@@ -189,8 +206,11 @@ class FrameRenderer:
     def _render_sample(self, index, stage):
         if self._bokeh and index == 0:
             with stage("bokeh"):
-                framebuffer = self._targets.framebuffer("bokeh")
-                self._bokeh.run(self._fullscreen, framebuffer, self._view)
+                self._bokeh = self._draft or self._whole
+                start = time.perf_counter()
+                self._bokeh.run(self._fullscreen, self._targets, self._view, stage)
+                if self._bokeh is self._whole:
+                    self._bokeh_seconds = time.perf_counter() - start
         if self._blur and index == 0:
             with stage("bounds"):
                 self._find_bounds()
@@ -199,6 +219,28 @@ class FrameRenderer:
         with stage("sum"):
             self._add_sample(index)
         self._drawing.counts.triangles_full_detail += self._drawing.full_detail
+
+    def refine_bokeh(self):
+        """Make a part of the whole bokeh; the last part replaces the draft."""
+        if not self.bokeh_drafted:
+            return
+        self._targets.forget_framebuffers()
+        if self._refining is None:
+            self._refining = self._whole.steps(self._fullscreen, self._targets, self._view)
+            self._bokeh_seconds = 0.0
+        start = time.perf_counter()
+        done = next(self._refining, self) is self
+        self._bokeh_seconds += time.perf_counter() - start
+        if done:
+            self._refining = None
+            self._bokeh = self._whole
+            self.bokeh_drafted = False
+
+    def _stop_refining(self):
+        if self._refining is not None:
+            self._refining.close()
+            self._refining = None
+            self._bokeh_seconds = np.inf
 
     def _draw_sample(self, index):
         targets = self._targets
@@ -263,8 +305,8 @@ class FrameRenderer:
         return (sharp / max(abs(self.plan.empty_coc), sharp)) ** 2
 
     def finished(self):
-        """Whether every sample has been rendered."""
-        return self.samples_done >= self.plan.samples
+        """Whether every sample has been rendered, and the whole bokeh."""
+        return self.samples_done >= self.plan.samples and not self.bokeh_drafted
 
     def resolve(self, origin=(0, 0), pixel_size=1):
         """Draw the picture so far into the bound frame buffer.
@@ -427,11 +469,12 @@ class FrameRenderer:
 
     def release(self):
         """Give back to the device what nobody else holds; the renderer is of no use after it."""
+        self._stop_refining()
         self._release_targets()
         if self._plain:
             self._plain.release()
         self._plain = self._buffers = self._drawing = self._blur = self._graded = None
-        self._bokeh = self._occluders = None
+        self._bokeh = self._whole = self._draft = self._occluders = None
 
     def _release_targets(self):
         if self._targets is not None:

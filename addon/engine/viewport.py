@@ -2,10 +2,12 @@
 
 Blender tells a viewport what changed (`Viewport.note_updates`) and asks it to draw
 (`Viewport.draw`). A drawing answers within about one sample; the picture is the final render's at
-every step: same plan, same passes. 3D views that show the same objects share their copies on the
-graphics device.
+every step: same plan, same passes. While the view moves, its bokeh is a draft; the final render's
+follows, step by step, when it has come to rest. 3D views that show the same objects share their
+copies on the graphics device.
 """
 
+import time
 import weakref
 from functools import cache
 
@@ -27,6 +29,8 @@ from .scene_buffers import SceneBuffers
 
 # Between two answers to the user; a single sample may take longer.
 DRAW_SECONDS = 0.02
+# A view that has not changed for so long is at rest: longer than between two movements of a hand.
+REST_SECONDS = 0.2
 
 
 class _ViewedScene:
@@ -122,6 +126,7 @@ class Viewport:
         self._renderer = None
         self._pacer = Pacer(DRAW_SECONDS)
         self._broken = False
+        self._moved = 0.0
 
     def note_updates(self, depsgraph, space):
         """Take note of what changed; cheap, nothing is read yet.
@@ -182,26 +187,39 @@ class Viewport:
             self._begin_if_changed(snapshot)
             renderer = self._renderer
             if not renderer.finished():
-                self._pacer.advance(renderer)
+                self._refine(renderer)
                 note_highlights(depsgraph.scene.name, renderer.highlights)
             x, y, width, height = view.rectangle
             with state.confined(x, y, width, height):
                 renderer.resolve((x, y), view.pixel_size)
         self.text = f"Sample {renderer.samples_done}/{renderer.plan.samples}"
+        if renderer.bokeh_drafted:
+            self.text += " | Draft of the bokeh"
         done, total = level_store().progress
         if done < total:
             self.text += f" | Levels of detail {done / total:.0%}"
         return not renderer.finished()
+
+    def _refine(self, renderer):
+        if renderer.samples_done < renderer.plan.samples:
+            first = renderer.samples_done == 0
+            self._pacer.advance(renderer)
+            if first:
+                # Answering the movement may have taken longer than the rest.
+                self._moved = time.perf_counter()
+        if time.perf_counter() - self._moved >= REST_SECONDS:
+            renderer.refine_bokeh()
 
     def _begin_if_changed(self, snapshot):
         changed = compare(self._snapshot, snapshot)
         self._snapshot = snapshot
         if self._renderer is None or self._drawn_scene is not self._scene:
             self.release()
-            self._renderer = FrameRenderer(self._plan(snapshot), snapshot, self._scene.buffers)
+            plan, buffers = self._plan(snapshot), self._scene.buffers
+            self._renderer = FrameRenderer(plan, snapshot, buffers, drafts=True)
             self._drawn_scene = self._scene
         elif changed & Change.PICTURE:
-            self._renderer.restart(self._plan(snapshot), snapshot)
+            self._renderer.restart(self._plan(snapshot), snapshot, drafts=True)
 
     def _plan(self, snapshot):
         plan = plan_frame(snapshot)

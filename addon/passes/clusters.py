@@ -147,6 +147,9 @@ class Similarity:
         extent over the radius of the circle of confusion and 8 px.
     pairs : int
         How often those that are nearest to each other are merged, wherever cells part them.
+    length : float
+        Of a cell along the camera's axis in sides. Long cells hold more, but where the camera turns
+        they stay in place no longer.
     """
 
     levels: int
@@ -154,6 +157,7 @@ class Similarity:
     extent: float
     harm: float
     pairs: int = 0
+    length: float = 1.0
 
 
 def cluster_params(similarity, view, lens, pixel):
@@ -174,7 +178,7 @@ def cluster_params(similarity, view, lens, pixel):
     bytes
     """
     return CLUSTER_PARAMS.pack(
-        world=np.linalg.inv(view),
+        world=np.linalg.inv(view) @ np.diag([1.0, 1.0, 1.0 / similarity.length, 1.0]),
         lens=lens,
         cell=(similarity.cell, pixel, 0.0, 0.0),
         limits=(similarity.extent, similarity.harm, 0.0, 0.0),

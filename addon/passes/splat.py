@@ -31,7 +31,13 @@ _LOOK_TEXTURES = {
 _LOOK_VARYINGS = {
     "PROFILE": (("FLAT FLOAT", "v_row"),),
     "RIMS": (("FLAT VEC3", "v_left_lower"), ("FLAT VEC3", "v_left_upper")),
-    "TILES": (("FLAT FLOAT", "v_row"), ("FLAT VEC2", "v_tile_at"), ("FLAT FLOAT", "v_upright")),
+    "TILES": (
+        ("FLAT FLOAT", "v_row"),
+        ("FLAT VEC2", "v_tile_at"),
+        ("FLAT FLOAT", "v_upright"),
+        ("FLAT VEC3", "v_left_lower"),
+        ("FLAT VEC3", "v_left_upper"),
+    ),
 }
 
 

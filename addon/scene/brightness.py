@@ -1,6 +1,7 @@
-"""How bright surfaces may be at most: bounds from their node graphs, without drawing them.
+"""How bright surfaces may be at most, and whether they mirror: from their node graphs alone.
 
-Highlights are searched only on surfaces that may exceed the threshold.
+Highlights are searched only on surfaces that may exceed the threshold, and from several places on
+the lens only on those that look different from each.
 """
 
 import numpy as np
@@ -28,6 +29,54 @@ def brightest(content):
         )
         for group in content.groups
     ]
+
+
+def mirrors(graph):
+    """Whether all light of a surface is reflected, and looks different from another place.
+
+    Parameters
+    ----------
+    graph : SurfaceGraph
+
+    Returns
+    -------
+    bool
+        False for lamps: what they emit outshines what they mirror.
+    """
+    return not emits(graph) and any(
+        node.kind == "glossy" or (node.kind == "principled" and not _is_matt(node))
+        for node in graph.nodes
+    )
+
+
+def emits(graph):
+    """Whether a surface may have light of its own.
+
+    Parameters
+    ----------
+    graph : SurfaceGraph
+
+    Returns
+    -------
+    bool
+    """
+    names = {
+        "emission": ("Color", "Strength"),
+        "principled": ("Emission Color", "Emission Strength"),
+    }
+    return any(
+        not any(_is_zero(node.input(name)) for name in names[node.kind])
+        for node in graph.nodes
+        if node.kind in names
+    )
+
+
+def _is_matt(principled):
+    return all(_is_zero(principled.input(name)) for name in ("Metallic", "Specular IOR Level"))
+
+
+def _is_zero(source):
+    return isinstance(source, Constant) and not any(source.value)
 
 
 def _bound(content, known, group, slot):

@@ -290,8 +290,9 @@ class BokehSettings:
     overscan : float
         How far outside the frame highlights are searched at most, as a share of its longer side.
     lens_views : int
-        Places on the lens that highlights are looked for from; more than one keeps apart what
-        mirroring surfaces show to different parts of the lens.
+        Places on the lens that mirroring surfaces are looked at from; more than one keeps apart
+        what they show to different parts of the lens. What looks the same from anywhere is looked
+        at once.
     amplification : float
         How much brighter white is taken to be in worlds whose pictures hold nothing brighter.
     world : bool
@@ -316,7 +317,7 @@ class BokehSettings:
     visibility: str = "AUTO"
     layers: int = 4
     overscan: float = 0.25
-    lens_views: int = 1
+    lens_views: int = 4
     amplification: float = 0.0
     world: bool = True
     appearance: Appearance = field(default_factory=Appearance)

@@ -140,9 +140,9 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
     )
     lens_views: IntProperty(
         name="Lens Views",
-        description="Places on the lens from which highlights are searched: 1, 4, 9 or 16. More"
-        " keep apart what mirroring surfaces show to different parts of the lens",
-        default=1,
+        description="Places on the lens from which mirroring surfaces are searched: 1, 4, 9 or 16."
+        " More keep apart what they show to different parts of the lens",
+        default=4,
         min=1,
         max=16,
         **_SHARED,

@@ -3,11 +3,12 @@
 // its radius.
 #ifndef BOKEH_LOOK_LIB_GLSL
 #define BOKEH_LOOK_LIB_GLSL
+#include "lib/opening_lib.glsl"
 
 // Blur of the tiles in units of half their width, and how they are counted: splat_pupil.py.
 #define TILE_BLUR vec4(1.0 / 32.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0)
 #define TILE_FIELDS 9
-#define TILE_DEPTHS 13
+#define TILE_DEPTHS 25
 #define STOP_OFFSET 1.5
 #define STOP_SCALE 3.0
 
@@ -26,12 +27,13 @@ vec4 profile_texel(sampler2DArray tx, float radius, float row, float layer)
   return texture(tx, vec3(radius, (row * (count - 1.0) + 0.5) / count, layer));
 }
 
-// Share of light that a row of rims lets through; edges are as wide as the blur.
-float rim_share(vec4 rim, vec2 place, vec2 chief, float blur)
+// Share of light that a row of rims lets through in a layer of the opening; splat_rims.py.
+float rim_share(vec4 rim, vec2 place, vec2 chief, float layer)
 {
+  float width = max(OPENING_LEAST_BLUR * exp2(layer), opening_extent(layer) / 96.0);
   float members = max(rim.z, 1.0);
   float apart = (members > 1.5) ? length(chief) * abs(rim.y) / members : 0.0;
-  float edge = max(max(blur, apart), 1e-6);
+  float edge = max(width, apart);
   float cleared = 0.0;
   for (float member = 1.0; member <= members; member += 1.0) {
     float inside = rim.x - length(place - chief * (rim.y * member / members));
@@ -110,14 +112,15 @@ vec3 tile_light(sampler2DArray sharp_tx, sampler2DArray soft_tx, vec2 place, flo
   return vec3(light.x, stop);
 }
 
-// Light that an opening leaves of tiles; array over fields, azimuth by depth.
-vec3 tile_left(sampler2DArray tx, vec2 chief, vec2 at)
+// Light that a layer of the opening leaves of tiles; array over layers and fields, azimuth by depth.
+vec3 tile_left(sampler2DArray tx, float layer, vec2 chief, vec2 at)
 {
   float turn = (dot(chief, chief) > 0.0) ? atan(chief.y, chief.x) / 6.28318531 : 0.25;
   vec2 size = vec2(textureSize(tx, 0).xy);
   vec2 uv = (vec2(at.y, (turn - floor(turn)) * (size.y - 1.0)) + 0.5) / size;
   float low = clamp(floor(at.x), 0.0, float(TILE_FIELDS - 2));
-  return mix(texture(tx, vec3(uv, low)).rgb, texture(tx, vec3(uv, low + 1.0)).rgb, at.x - low);
+  float first = layer * float(TILE_FIELDS) + low;
+  return mix(texture(tx, vec3(uv, first)).rgb, texture(tx, vec3(uv, first + 1.0)).rgb, at.x - low);
 }
 
 #endif

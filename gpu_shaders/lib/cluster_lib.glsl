@@ -3,7 +3,8 @@
 //
 // Cells are cubes of world space, so that they stay where they are while the camera moves. The side
 // at level l is 2^l times a share of the circle of confusion that a highlight has in object space,
-// rounded down to a power of two: neighbours at about the same depth agree about it.
+// rounded down to a power of two: neighbours at about the same depth agree about it. Cells may be
+// longer along the camera's axis.
 #ifndef CLUSTER_LIB_GLSL
 #define CLUSTER_LIB_GLSL
 #include "lib/lens_lib.glsl"
@@ -30,6 +31,12 @@ vec3 cluster_place(vec3 source, vec4 lens)
 vec3 cluster_source(vec3 place, vec4 lens)
 {
   return cluster_place(place, lens);
+}
+
+// How the circle of confusion changes with the third coordinate, px.
+float coc_rate(vec4 lens)
+{
+  return (lens.y > 0.5) ? lens.z / lens.x : lens.z;
 }
 
 // Side of a pixel at a depth, m.

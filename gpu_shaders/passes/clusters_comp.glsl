@@ -96,7 +96,7 @@ void handle(int index, int number)
     float extent_scale = max(bounds.extent * bounds.extent, 1e-30);
     // Whole numbers: the members come in any order.
     Sum red = NO_SUM, green = NO_SUM, blue = NO_SUM, weight = NO_SUM;
-    Sum x = NO_SUM, y = NO_SUM, z = NO_SUM, xx = NO_SUM, yy = NO_SUM, extent = NO_SUM;
+    Sum x = NO_SUM, y = NO_SUM, z = NO_SUM, xx = NO_SUM, yy = NO_SUM, zz = NO_SUM, extent = NO_SUM;
     for (int k = 0; k < size; k++) {
       ivec2 other = list_texel(member(start, k));
       vec4 a = imageLoad(a_img, other);
@@ -113,15 +113,19 @@ void handle(int index, int number)
       sum_add(z, w * place.z);
       sum_add(xx, w * place.x * place.x);
       sum_add(yy, w * place.y * place.y);
+      sum_add(zz, w * place.z * place.z);
       sum_add(extent, w * (a.w * a.w / extent_scale));
     }
     float total = max(sum_value(weight), 1e-30);
     vec3 mean = vec3(sum_value(x), sum_value(y), sum_value(z)) / total;
-    vec2 spread = max(vec2(sum_value(xx), sum_value(yy)) / total - mean.xy * mean.xy, 0.0);
-    vec2 variance = spread * span.xy * span.xy / (cluster_buf.cell.y * cluster_buf.cell.y);
+    vec3 spread = vec3(sum_value(xx), sum_value(yy), sum_value(zz)) / total - mean * mean;
+    float pixel = cluster_buf.cell.y;
+    // Discs of several sizes are blurred at their rims as shifted ones are.
+    vec3 scale = span * vec3(1.0 / pixel, 1.0 / pixel, coc_rate(cluster_buf.lens));
+    vec3 variance = max(spread, 0.0) * scale * scale;
     float own = sum_value(extent) / total * extent_scale;
     // A square's variance along a side is a twelfth of its area.
-    float side = sqrt(own + 6.0 * (variance.x + variance.y));
+    float side = sqrt(own + 6.0 * (variance.x + variance.y) + 12.0 * variance.z);
     vec3 place = bounds.low + mean * span;
     vec3 source = cluster_source(place, cluster_buf.lens);
     float coc = abs(coc_radius_px(source.z, cluster_buf.lens));

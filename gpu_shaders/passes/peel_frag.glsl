@@ -58,6 +58,14 @@ void main()
   if (z <= front) {
     discard;
   }
+  // Before the surface's own code, which may be long.
+  float scene = texelFetch(scene_tx, texel, 0).x;
+  if (scene < z - DEPTH_STEPS && hides(scene, z)) {
+    discard;
+  }
+  if (texelFetch(front_color_tx, texel, 0).a >= 0.999 && hides(front, z)) {
+    discard;
+  }
   Closure closure = surface_closure();
   float opacity = 1.0;
   vec3 excess = highlight_excess(closure.radiance, highlight_buf.split.x);
@@ -69,13 +77,6 @@ void main()
 #endif
 #endif
   if (max(excess.r, max(excess.g, excess.b)) <= 0.0) {
-    discard;
-  }
-  float scene = texelFetch(scene_tx, texel, 0).x;
-  if (scene < z - DEPTH_STEPS && hides(scene, z)) {
-    discard;
-  }
-  if (texelFetch(front_color_tx, texel, 0).a >= 0.999 && hides(front, z)) {
     discard;
   }
   out_color = vec4(excess, opacity);

@@ -56,6 +56,11 @@ vec3 layer_density(float layer, vec3 left)
   float radius = length(v_place) / opening_extent(layer);
   density *= profile_texel(profile_tx, radius, v_row, layer).rgb;
 #endif
+#ifdef RIMS
+  for (int i = 0; i < int(splat_buf.field.y); i++) {
+    density *= rim_share(splat_buf.rims[i], v_place, v_chief, layer);
+  }
+#endif
   return density / left;
 }
 #endif
@@ -75,7 +80,13 @@ vec3 disc_density(out vec2 lens)
   lens = light.y * vec2(away.y, -away.x) + light.z * away;
   lens /= max(length(lens), 1.0);
   vec3 density = vec3(light.x);
-  return (splat_buf.field.w > 0.5) ? density * opening_density(opening_tx, lens, v_blur) : density;
+  if (splat_buf.field.w > 0.5) {
+    vec2 layers = opening_layers(float(textureSize(opening_tx, 0).z), v_blur);
+    density *= mix(opening_layer(opening_tx, lens, layers.x) / v_left_lower,
+                   opening_layer(opening_tx, lens, layers.x + 1.0) / v_left_upper,
+                   layers.y);
+  }
+  return density;
 #elif defined(PROFILE) || defined(RIMS)
   vec2 layers = opening_layers(float(textureSize(opening_tx, 0).z), v_blur);
 #ifdef RIMS
@@ -89,11 +100,6 @@ vec3 disc_density(out vec2 lens)
   if (layers.y > 0.0) {
     density = mix(density, layer_density(layers.x + 1.0, left_upper), layers.y);
   }
-#ifdef RIMS
-  for (int i = 0; i < int(splat_buf.field.y); i++) {
-    density *= rim_share(splat_buf.rims[i], v_place, v_chief, v_blur);
-  }
-#endif
   return density;
 #else
   return opening_density(opening_tx, v_place, v_blur);

@@ -44,11 +44,12 @@ void main()
   pattern = mix(vec3(0.0, radius, radius), pattern, splat_buf.rows.w);
   v_blur = blur * inversesqrt(pattern.y * pattern.z);
   v_upright = (coc < 0.0) ? -1.0 : 1.0;
-  vec3 energy = b.rgb * splat_buf.wavelength.rgb * (ratio / (pattern.y * pattern.z));
+  v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (pattern.y * pattern.z));
   if (splat_buf.field.w > 0.5) {
-    energy /= tile_left(left_tx, v_chief, v_tile_at);
+    float layer = opening_layers(float(textureSize(opening_tx, 0).z), v_blur).x;
+    v_left_lower = tile_left(left_tx, layer, v_chief, v_tile_at);
+    v_left_upper = tile_left(left_tx, layer + 1.0, v_chief, v_tile_at);
   }
-  v_density = energy;
   // The widest blur of the tiles, or the pattern with its own.
   vec2 reach = 1.0 + vec2(min(2.0 * v_blur + 0.07, 0.5)) + 0.5 / pattern.yz;
   v_place = (pos * 2.0 - 1.0) * reach;
@@ -57,8 +58,8 @@ void main()
   vec2 offset = (local.x * vec2(away.y, -away.x) + local.y * away) / vec2(ratio, 1.0);
 #else
   v_blur = blur / radius;
-  // The disc, its blur, and half a pixel.
-  vec2 reach = radius * vec2(splat_buf.opening.z / ratio, splat_buf.opening.z) + blur + 0.5;
+  // The disc, the wider layer of its blur, and half a pixel.
+  vec2 reach = radius * vec2(splat_buf.opening.z / ratio, splat_buf.opening.z) + 1.42 * blur + 0.5;
   vec2 offset = (pos * 2.0 - 1.0) * reach;
   v_place = offset / ((coc < 0.0) ? -radius : radius) * vec2(ratio, 1.0);
   v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (radius * radius));

@@ -91,6 +91,32 @@ def test_converged_viewport_equals_final_render(stage, tmp_path):
     assert np.abs(shown.astype(float) - rendered)[inside, inside].max() <= 3
 
 
+def test_viewport_at_rest_has_the_bokeh_of_the_final_render(stage, tmp_path):
+    bare_camera_view(stage)
+    stage.run(
+        "lamp = bpy.data.materials['material4'].node_tree.nodes['Emission']\n"
+        "lamp.inputs['Strength'].default_value = 40.0\n"
+        "bpy.data.objects['thing4'].scale = (0.08, 0.08, 0.08)\n"
+        # However quick the device is: a draft first.
+        "module('engine.pipeline')._QUICK = 0.0\n"
+        "bpy.context.scene.aplanat.use_reference_bokeh = True\n"
+        "redraw(3, lambda i: setattr(bpy.context.scene.camera.location, 'x', 0.01 * (i + 1)))"
+    )
+    assert any("Draft" in text for text in stage.run("result = texts()"))
+    wait_until_converged(stage)
+    shown = screen(stage, tmp_path / "viewport.png")
+    final = tmp_path / "final.png"
+    stage.run(
+        f"bpy.context.scene.render.filepath = {str(final)!r}\n"
+        "bpy.ops.render.render(write_still=True)",
+        timeout=200,
+    )
+    name = "bpy.context.scene.name"
+    assert stage.run(f"result = module('engine.outcome').last_highlights({name})['splatted']") > 0
+    stage.run("bpy.context.scene.aplanat.use_reference_bokeh = False")
+    assert similarity(shown, iio.imread(final)[..., :3]) >= 0.99
+
+
 def test_adaptive_viewport_gets_its_levels_and_shows_the_reference(stage, tmp_path):
     bare_camera_view(stage)
     stage.run(

@@ -157,7 +157,9 @@ def test_the_list_is_the_same_every_time():
 # Splat -----------------------------------------------------------------------------------------
 
 
-def splatted(radius, center, iris=None, ratio=1.0, size=64, light=(1.0, 2.0, 4.0)):
+def splatted(
+    radius, center, iris=None, ratio=1.0, size=64, light=(1.0, 2.0, 4.0), region=0, side=1
+):
     """Return the picture of one source with a circle of confusion of a signed radius."""
     iris = iris or BladedIris()
     # An orthographic camera a pixel of which is 1 m: depth sets the radius alone.
@@ -173,7 +175,7 @@ def splatted(radius, center, iris=None, ratio=1.0, size=64, light=(1.0, 2.0, 4.0
         )
     )
     parameters = splat.SPLAT_PARAMS.pack(
-        opening=(ratio, 1.0, 1.0, 1.0),
+        opening=(ratio, 1.0, 1.0, side),
         rows=(-1.0, 0.5, 0.0, 0.0),
         field=(1.0, 0.0, 1.0, 0.0),
         rims=np.zeros((splat.MOST_RIMS, 4)),
@@ -183,7 +185,7 @@ def splatted(radius, center, iris=None, ratio=1.0, size=64, light=(1.0, 2.0, 4.0
     place = np.asarray(center, float) - size / 2
     lists = np.zeros((3, 1, 1024, 4), np.float32)
     lists[0, 0, 0] = (*place, depth, 1.0)
-    lists[1, 0, 0] = (*light, 0.0)
+    lists[1, 0, 0] = (*light, region)
     # Nothing hides it.
     lists[2, 0, 0] = (0.0, 0.0, 0.0, 1.0)
     textures = [texture_2d(table) for table in lists]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.scene.brightness import brightest
+from addon.scene.brightness import brightest, emits, mirrors
 from addon.scene.snapshot import (
     ImageSnapshot,
     InstanceGroup,
@@ -88,3 +88,33 @@ def test_lit_and_unknown_surfaces_may_be_of_any_brightness():
 def test_holdouts_and_empty_surfaces_are_dark():
     assert bound(emission_graph((9.0, 9.0, 9.0)), holdout=True) == 0.0
     assert bound(SurfaceGraph()) == 0.0
+
+
+def principled(metallic, specular, strength=0.0):
+    inputs = (
+        ("Metallic", Constant((metallic,))),
+        ("Specular IOR Level", specular),
+        ("Emission Color", Constant((1.0, 1.0, 1.0))),
+        ("Emission Strength", Constant((strength,))),
+    )
+    return SurfaceGraph((ShaderNode("principled", inputs),), Link(0, "BSDF"))
+
+
+def test_only_gloss_looks_different_from_elsewhere():
+    half = Constant((0.5,))
+    assert not mirrors(emission_graph((1.0, 1.0, 1.0)))
+    assert not mirrors(SurfaceGraph((ShaderNode("diffuse"),), Link(0, "BSDF")))
+    assert mirrors(SurfaceGraph((ShaderNode("glossy"),), Link(0, "BSDF")))
+    assert not mirrors(principled(0.0, Constant((0.0,))))
+    assert mirrors(principled(1.0, Constant((0.0,))))
+    assert mirrors(principled(0.0, half))
+    assert mirrors(principled(0.0, Link(0, "Value")))
+
+
+def test_lamps_do_not_mirror():
+    half = Constant((0.5,))
+    assert emits(principled(0.0, half, 3.0)) and not mirrors(principled(0.0, half, 3.0))
+    assert not emits(principled(0.0, half))
+    assert emits(emission_graph((0.0, 0.0, 1.0))) and not emits(
+        emission_graph((1.0, 1.0, 1.0), 0.0)
+    )
