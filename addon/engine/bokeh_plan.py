@@ -27,6 +27,14 @@ _LARGEST_TILE = 1 << 22
 _LEAST_SUBPIXELS, _MOST_SUBPIXELS = 2, 4
 # Sub-pixels along a side of a triangle that shines: a lamp of one is met within a few per cent.
 _HITS_A_SIDE = 6.0
+# Across a lamp that stands alone: its light is met within one per cent. The error of m sub-pixels of
+# a lamp falls with m^(3/4); that of the sum of k lamps as if each had k^(2/3) times as many.
+_HITS_A_LAMP = 45.0
+# Sub-pixels along a side of a pixel, and all of them, for the sake of single lamps.
+_FINEST = 32
+_FINE_RASTER = 1 << 21
+# Of a tile's longer side, in sub-pixels.
+_LONGEST_TILE = 8192
 # Of highlights behind one another, in drafts.
 _DRAFT_LAYERS = 2
 
@@ -52,6 +60,9 @@ class BokehPlan:
         Camera space to clip space of the peeled raster.
     subpixels : int
         Along each side of a pixel of the peeled raster.
+    part : tuple of 4 int
+        x, y, width and height of the part of the raster that has all that shines and does not
+        mirror, px.
     world : bool
         The world's image may give highlights.
     world_share : float
@@ -77,6 +88,7 @@ class BokehPlan:
     margin: tuple[int, int]
     projection: np.ndarray
     subpixels: int
+    part: tuple[int, int, int, int]
     world: bool
     world_share: float
     world_depth: float
@@ -107,23 +119,14 @@ class BokehPlan:
         return max(1, _LEAST_SUBPIXELS // int(np.sqrt(len(self.lens_views))))
 
     @property
-    def tiles(self):
-        """Parts of the raster that are searched one after another.
+    def world_subpixels(self):
+        """As `subpixels`, of the world, whose image has no edges finer than its own pixels."""
+        return _LEAST_SUBPIXELS
 
-        Returns
-        -------
-        list of tuple of 4 int
-            x, y, width and height in pixels; the first is as large as any.
-        """
-        most = max(_LARGEST_TILE // self.subpixels**2, 1)
-        columns = -(-self.width // int(np.sqrt(most))) if self.width * self.height > most else 1
-        width = -(-self.width // columns)
-        height = min(max(most // width, 1), self.height)
-        return [
-            (x, y, min(width, self.width - x), min(height, self.height - y))
-            for y in range(0, self.height, height)
-            for x in range(0, self.width, width)
-        ]
+    @property
+    def whole(self):
+        """The peeled raster as a part of itself: x, y, width and height."""
+        return (0, 0, self.width, self.height)
 
     @property
     def layers(self):
@@ -154,7 +157,6 @@ def plan_bokeh(snapshot, plan):
     shining = _shining(snapshot.content, settings.threshold)
     rows, _ = _rows(snapshot.content, shining)
     seen = extents(_corners(snapshot.content, rows), plan.view)
-    emitting, of_emitting = _rows(snapshot.content, _emitting(snapshot.content, shining))
     largest = _largest_coc(snapshot.content, plan, seen)
     if largest <= least:
         return None
@@ -165,16 +167,26 @@ def plan_bokeh(snapshot, plan):
     world = world and not snapshot.film.transparent
     world = world and not plan.orthographic
     film = snapshot.film
+    projection = np.diag([plan.width / width, plan.height / height, 1.0, 1.0]) @ plan.projection
+    mirroring = _mirroring(snapshot.content, shining)
+    rows, _ = _rows(snapshot.content, shining - mirroring)
+    part = _part(_rectangles(snapshot.content, rows, plan, projection, (width, height)))
+    rows, of_group = _rows(snapshot.content, _emitting(snapshot.content, shining))
+    lamps = _rectangles(snapshot.content, rows, plan, projection, (width, height))
     return BokehPlan(
         settings=settings,
         shining=shining,
-        mirroring=_mirroring(snapshot.content, shining),
+        mirroring=mirroring,
         least_coc=least,
         width=width,
         height=height,
         margin=margin,
-        projection=np.diag([plan.width / width, plan.height / height, 1.0, 1.0]) @ plan.projection,
-        subpixels=_subpixels(snapshot.content, plan, emitting, of_emitting, (width, height)),
+        projection=projection,
+        subpixels=max(
+            _subpixels(snapshot.content, plan, rows, of_group, (width, height)),
+            _subpixels_of_lamps(lamps, part),
+        ),
+        part=part,
         world=world,
         world_share=float(highlight_share(plan.empty_coc, least)) if world else 0.0,
         world_depth=_INFINITY * max(plan.focus_distance, 1.0),
@@ -182,6 +194,37 @@ def plan_bokeh(snapshot, plan):
         real_lens=None if plan.orthographic else snapshot.camera.real_lens,
         filter_width=_filter_width(film.filter_kind, film.filter_size_px),
     )
+
+
+def tiles_of(part, subpixels):
+    """Divide a part of the raster into tiles that are searched one after another.
+
+    Parameters
+    ----------
+    part : tuple of 4 int
+        x, y, width and height, px; one without area has no tiles.
+    subpixels : int
+        Along each side of a pixel.
+
+    Returns
+    -------
+    list of tuple of 4 int
+        x, y, width and height in pixels; the first is as large as any.
+    """
+    left, below, width, height = part
+    if width == 0 or height == 0:
+        return []
+    most = max(_LARGEST_TILE // subpixels**2, 1)
+    longest = max(_LONGEST_TILE // subpixels, 1)
+    if width * height > most:
+        longest = min(longest, int(np.sqrt(most)))
+    w = -(-width // -(-width // longest))
+    h = min(max(most // w, 1), height, max(_LONGEST_TILE // subpixels, 1))
+    return [
+        (left + x, below + y, min(w, width - x), min(h, height - y))
+        for y in range(0, height, h)
+        for x in range(0, width, w)
+    ]
 
 
 def draft_of(bokeh):
@@ -298,6 +341,71 @@ def _subpixels(content, plan, rows, of_group, size):
     front = (seen.farthest > 0.0) & (side > 0.0)
     wanted = np.ceil(_HITS_A_SIDE / side[front].min(initial=np.inf)) if front.any() else 0
     return max(1, min(affordable, max(int(min(wanted, _MOST_SUBPIXELS)), _LEAST_SUBPIXELS)))
+
+
+def _rectangles(content, rows, plan, projection, size):
+    """Return where in the raster the boxes of instances are seen.
+
+    Parameters
+    ----------
+    content : SceneContent
+    rows : ndarray of shape (R,)
+        Of the instance table.
+    plan : FramePlan
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the raster.
+    size : tuple of 2 int
+        Of the raster, px.
+
+    Returns
+    -------
+    lower, upper : ndarray of shape (K, 2)
+        Of the boxes that are seen, px; of those that reach behind the camera, the whole raster's.
+    size : tuple of 2 int
+    """
+    corners = _corners(content, rows) @ plan.view[:3, :3].T + plan.view[:3, 3]
+    clip = np.concatenate([corners, np.ones((*corners.shape[:2], 1))], axis=2) @ projection.T
+    w = clip[..., 3:]
+    ahead = (w > 1e-6).all(axis=(1, 2))
+    places = (clip[..., :2] / np.where(w > 1e-6, w, 1.0) * 0.5 + 0.5) * size
+    lower = np.where(ahead[:, None], places.min(axis=1), 0.0)
+    upper = np.where(ahead[:, None], places.max(axis=1), size)
+    seen = (w > 1e-6).any(axis=(1, 2)) & (upper > 0.0).all(axis=1) & (lower < size).all(axis=1)
+    return lower[seen], upper[seen], size
+
+
+def _part(rectangles):
+    """Return the part of the raster that holds all rectangles: x, y, width, height."""
+    lower, upper, size = rectangles
+    if len(lower) == 0:
+        return (0, 0, 0, 0)
+    # A pixel more, for rounding.
+    x, y = (max(int(np.floor(v)) - 1, 0) for v in lower.min(axis=0))
+    right, top = (min(int(np.ceil(v)) + 1, s) for v, s in zip(upper.max(axis=0), size, strict=True))
+    return (x, y, right - x, top - y)
+
+
+def _subpixels_of_lamps(rectangles, part):
+    """Return how finely small lamps are searched so that each keeps its energy.
+
+    Parameters
+    ----------
+    rectangles : tuple
+        Of the instances that emit; see `_rectangles`.
+    part : tuple of 4 int
+        That is searched.
+
+    Returns
+    -------
+    int
+    """
+    lower, upper, _ = rectangles
+    if len(lower) == 0:
+        return 1
+    width = max(float((upper - lower).max(axis=1).min()), 1e-3)
+    wanted = np.ceil(_HITS_A_LAMP / (width * np.cbrt(len(lower))))
+    affordable = int(np.sqrt(_FINE_RASTER / (part[2] * part[3])))
+    return int(min(wanted, affordable, _FINEST))
 
 
 def _filter_width(kind, size_px):

@@ -296,6 +296,22 @@ def test_splats_are_what_the_reference_method_converges_to(iris, parallel):
     assert error.max() < 0.25 * peak
 
 
+@pytest.mark.parametrize("diameter_px", [3.0, 1.2, 0.5])
+def test_a_lone_lamp_keeps_its_energy_in_a_slow_pan(diameter_px):
+    depth = 8.0
+    pixel = 2.0 * 0.5 * depth / WIDTH
+    light, found = (20.0, 10.0, 5.0), []
+    for step in range(8):
+        place = (0.3 + 0.17 * step * pixel, -0.2 + 0.07 * step * pixel)
+        corners = lamp(*place, depth, 0.5 * diameter_px * pixel)
+        a, b = (corners[i, :2] - corners[0, :2] for i in (1, 2))
+        area = 0.5 * abs(a[0] * b[1] - a[1] * b[0]) / pixel**2
+        snapshot = triangles_snapshot([corners], [light], WIDTH, HEIGHT, LENS, 4)
+        picture = render_snapshot(with_bokeh(snapshot, passes=("Bokeh",)))["Bokeh"]
+        found.append(energy(picture)[0] / (area * (light[0] - 1.0)))
+    assert found == pytest.approx([1.0] * len(found), abs=0.01)
+
+
 def test_light_from_outside_the_frame_reaches_in():
     corners = [lamp(4.25, 0.0, 8.0, 0.1)]
     lights = [(300.0, 300.0, 300.0)]
