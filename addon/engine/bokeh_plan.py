@@ -27,11 +27,11 @@ _LARGEST_TILE = 1 << 22
 _LEAST_SUBPIXELS, _MOST_SUBPIXELS = 2, 4
 # Sub-pixels along a side of a triangle that shines: a lamp of one is met within a few per cent.
 _HITS_A_SIDE = 6.0
-# Across a lamp that stands alone: its light is met within one per cent. The error of m sub-pixels of
-# a lamp falls with m^(3/4); that of the sum of k lamps as if each had k^(2/3) times as many.
+# Across a lamp that stands alone: its light is met within one per cent. The error of m sub-pixels
+# of a lamp falls with m^(3/4); that of the sum of k lamps as if each had k^(2/3) times as many.
 _HITS_A_LAMP = 45.0
 # Sub-pixels along a side of a pixel, and all of them, for the sake of single lamps.
-_FINEST = 32
+_FINEST = 64
 _FINE_RASTER = 1 << 21
 # Of a tile's longer side, in sub-pixels.
 _LONGEST_TILE = 8192

@@ -177,7 +177,6 @@ class BokehStage:
 
     def _find(self, fullscreen, held):
         """Return the list of highlights, two textures, and how many they are."""
-        bokeh = self._plan.bokeh
         room = _FIRST_LIST
         while True:
             with Targets(2, 1, [TargetSpec("total", "R32UI")]) as totals:

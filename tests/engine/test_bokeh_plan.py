@@ -86,7 +86,7 @@ def test_the_share_of_the_world_is_that_of_its_circle_of_confusion():
 def test_lone_lamps_are_searched_where_they_are():
     bokeh = plan_frame(snapshot(corners=(TRIANGLE * [0.2, 0.2, 1],))).bokeh
     x, y, width, height = bokeh.part
-    assert 0 <= x and x + width <= bokeh.width and 0 <= y and y + height <= bokeh.height
+    assert min(x, y) >= 0 and x + width <= bokeh.width and y + height <= bokeh.height
     assert 0 < width * height < 0.1 * bokeh.width * bokeh.height
     # 45 sub-pixels across, and never more than the budget.
     assert width * bokeh.subpixels >= 45
