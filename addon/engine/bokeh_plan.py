@@ -35,8 +35,9 @@ _FINEST = 64
 _FINE_RASTER = 1 << 21
 # Of a tile's longer side, in sub-pixels.
 _LONGEST_TILE = 8192
-# Of highlights behind one another, in drafts.
+# Of drafts: highlights behind one another, and sub-pixels that are afforded.
 _DRAFT_LAYERS = 2
+_DRAFT_RASTER = 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +122,7 @@ class BokehPlan:
     @property
     def world_subpixels(self):
         """As `subpixels`, of the world, whose image has no edges finer than its own pixels."""
-        return _LEAST_SUBPIXELS
+        return 1 if self.draft else _LEAST_SUBPIXELS
 
     @property
     def whole(self):
@@ -242,6 +243,8 @@ def draft_of(bokeh):
     BokehPlan
     """
     settings = bokeh.settings
+    _, _, width, height = bokeh.part
+    affordable = int(np.sqrt(_DRAFT_RASTER / max(width * height, 1)))
     return replace(
         bokeh,
         settings=replace(
@@ -253,7 +256,7 @@ def draft_of(bokeh):
             layers=min(settings.layers, _DRAFT_LAYERS),
             lens_views=1,
         ),
-        subpixels=min(bokeh.subpixels, _LEAST_SUBPIXELS),
+        subpixels=max(1, min(bokeh.subpixels, _LEAST_SUBPIXELS, affordable)),
         draft=True,
     )
 

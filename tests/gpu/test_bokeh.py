@@ -11,7 +11,9 @@ from addon.device import geometry, readback
 from addon.device.targets import Targets, TargetSpec
 from addon.device.textures import texture_2d, texture_array
 from addon.device.uniforms import uniform_buffer
+from addon.engine import bokeh_plan
 from addon.engine.bokeh_look import BokehLook
+from addon.engine.plan import plan_frame
 from addon.passes import highlights, splat, surface
 from addon.reference.highlights import Raster
 from addon.reference.highlights import highlights as twin
@@ -319,6 +321,26 @@ def test_light_from_outside_the_frame_reaches_in():
     picture = render_snapshot(with_bokeh(plain, overscan=1.0))["Bokeh"]
     assert energy(picture)[0] > 1.0
     assert (picture[:, : WIDTH // 2] == 0.0).all()
+
+
+def test_tiles_find_what_the_whole_raster_does(monkeypatch):
+    whole = render_snapshot(with_bokeh(lamps()))["Bokeh"]
+    monkeypatch.setattr(bokeh_plan, "_LARGEST_TILE", 1 << 14)
+    plan = plan_frame(with_bokeh(lamps())).bokeh
+    assert len(bokeh_plan.tiles_of(plan.part, plan.subpixels)) > 3
+    tiles = render_snapshot(with_bokeh(lamps()))["Bokeh"]
+    # The same highlights in another order.
+    assert tiles == pytest.approx(whole, abs=1e-5 * float(whole.max()))
+
+
+def test_the_search_ends_with_the_first_empty_layer():
+    drawn = []
+    for layers in (4, 32):
+        renderer = make_renderer(with_bokeh(lamps(), layers=layers))
+        renderer.advance(1)
+        drawn.append(renderer.counts.draw_calls)
+        renderer.release()
+    assert drawn[0] == drawn[1]
 
 
 def test_gain_multiplies_the_bokeh_alone():
