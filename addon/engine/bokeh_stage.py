@@ -16,7 +16,7 @@ from ..device.uniforms import uniform_buffer
 from ..passes import background, clusters, highlights, peel, splat, surface
 from .bokeh_clusters import similarity_of
 from .bokeh_look import make_look
-from .bokeh_plan import tiles_of
+from .bokeh_search import tiles_of
 from .bokeh_visibility import BokehVisibility
 
 # Highlights that the list has room for at first.

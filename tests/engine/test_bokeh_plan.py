@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine.bokeh_plan import tiles_of
+from addon.engine.bokeh_search import tiles_of
 from addon.engine.plan import plan_frame
 from addon.sampling.highlights import highlight_share
 from addon.sampling.iris import Iris

@@ -11,7 +11,7 @@ from addon.device import geometry, readback
 from addon.device.targets import Targets, TargetSpec
 from addon.device.textures import texture_2d, texture_array
 from addon.device.uniforms import uniform_buffer
-from addon.engine import bokeh_plan
+from addon.engine import bokeh_search
 from addon.engine.bokeh_look import BokehLook
 from addon.engine.plan import plan_frame
 from addon.passes import highlights, splat, surface
@@ -325,9 +325,9 @@ def test_light_from_outside_the_frame_reaches_in():
 
 def test_tiles_find_what_the_whole_raster_does(monkeypatch):
     whole = render_snapshot(with_bokeh(lamps()))["Bokeh"]
-    monkeypatch.setattr(bokeh_plan, "_LARGEST_TILE", 1 << 14)
+    monkeypatch.setattr(bokeh_search, "_LARGEST_TILE", 1 << 14)
     plan = plan_frame(with_bokeh(lamps())).bokeh
-    assert len(bokeh_plan.tiles_of(plan.part, plan.subpixels)) > 3
+    assert len(bokeh_search.tiles_of(plan.part, plan.subpixels)) > 3
     tiles = render_snapshot(with_bokeh(lamps()))["Bokeh"]
     # The same highlights in another order.
     assert tiles == pytest.approx(whole, abs=1e-5 * float(whole.max()))
