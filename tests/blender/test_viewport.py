@@ -94,7 +94,7 @@ def test_converged_viewport_equals_final_render(stage, tmp_path):
 def test_viewport_at_rest_has_the_bokeh_of_the_final_render(stage, tmp_path):
     bare_camera_view(stage)
     moving = stage.run(
-        "lamp = bpy.data.materials['material4'].node_tree.nodes['Emission']\n"
+        "lamp = bpy.data.objects['thing4'].data.materials[0].node_tree.nodes['Emission']\n"
         "lamp.inputs['Strength'].default_value = 40.0\n"
         "bpy.data.objects['thing4'].scale = (0.08, 0.08, 0.08)\n"
         # However quick the device is: a draft first.
