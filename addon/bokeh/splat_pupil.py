@@ -22,9 +22,9 @@ from .ray_map import lagrange_weights
 
 FIELDS, DEPTHS = 9, 25
 # Blur of the tiles in units of half their width, as the side of a box of the same variance; the
-# first one is of the sharp tiles. Must agree with lib/bokeh_look_lib.glsl.
-BLURS = (1.0 / 32.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0)
-SHARP, SOFT = 96, 32
+# first one is what texels of the sharp tiles do. Must agree with lib/bokeh_look_lib.glsl.
+BLURS = (1.0 / 48.0, 1.0 / 20.0, 1.0 / 7.0, 1.0 / 2.0)
+SHARP, SOFT = 128, 64
 # Rays along a side of a tile's grid, at most: neighbours then land a texel apart for most light.
 _MOST_RAYS = 224
 # Places in the stop are stored as (s + 1.5) / 3, to be positive.
@@ -152,7 +152,6 @@ def pupil_tiles(beams, shift, blur, soft, w_range):
     -------
     PupilTiles
     """
-    tiles = np.zeros((FIELDS, DEPTHS, SHARP, SHARP, 3))
     places = np.zeros((FIELDS, DEPTHS, 4), np.float32)
     soft_tiles = np.zeros((len(BLURS) - 1, FIELDS, DEPTHS, SOFT, SOFT, 4), np.float32)
     sharp_tiles = np.zeros((FIELDS, DEPTHS, SHARP, SHARP, 4), np.float32)
@@ -160,15 +159,13 @@ def pupil_tiles(beams, shift, blur, soft, w_range):
         c = soft * w / (1.0 - abs(w))
         vergence = max((c - blur[0]) / blur[1], 0.0)
         for i in range(FIELDS):
-            tiles[i, j], place = _tile(beams.at(i, vergence), shift)
+            tile, place = _tile(beams.at(i, vergence), shift)
             places[i, j, :3] = np.array(place) / (abs(c) + soft)
-            for layer, width in enumerate(BLURS):
-                size = SOFT if layer else SHARP
-                matrix = _blur_matrix(width, size)
-                blurred = matrix @ np.moveaxis(tiles[i, j], -1, 0) @ matrix.T
-                blurred *= (size / (2.0 * reach(width))) ** 2 / max(blurred[0].sum(), 1e-30)
-                target = soft_tiles[layer - 1, i, j] if layer else sharp_tiles[i, j]
-                target[..., :3] = np.moveaxis(blurred, 0, -1)
+            sharp_tiles[i, j, ..., :3] = tile * _to_unit(tile, 0)
+            for layer, width in enumerate(BLURS[1:], 1):
+                matrix = _blur_matrix(width)
+                blurred = np.moveaxis(matrix @ np.moveaxis(tile, -1, 0) @ matrix.T, 0, -1)
+                soft_tiles[layer - 1, i, j, ..., :3] = blurred * _to_unit(blurred, layer)
     return PupilTiles(
         sharp_tiles.reshape(-1, SHARP, SHARP, 4),
         soft_tiles.reshape(-1, SOFT, SOFT, 4),
@@ -188,7 +185,8 @@ def _tile(beam, shift):
     light = open_weights(fine)
     # The camera sees the stop turned by half a turn against the sensor's picture.
     stop = -fine.stop / fine.stop_scale
-    at = (fine.landing(shift) - (0.0, middle)) / (half_x, half_y) * (0.5 * SHARP) + 0.5 * SHARP
+    at = (fine.landing(shift) - (0.0, middle)) / (half_x, half_y) / reach(BLURS[0])
+    at = (at + 1.0) * (0.5 * SHARP)
     share = np.clip((stop + STOP_OFFSET) / STOP_SCALE, 0.0, 1.0)
     layers = [light, light * share[..., 0], light * share[..., 1]]
     tile = np.stack([deposit(at, layer, SHARP) for layer in layers], axis=-1)
@@ -223,10 +221,16 @@ def _center(beam, landing):
     return float(np.polyval(np.polyfit(stop[near], height[near], 2), 0.0))
 
 
-def _blur_matrix(width, size):
-    """Matrix that blurs the texels of a pattern and samples them at those of a tile."""
-    source = (np.arange(SHARP) + 0.5) * (2.0 / SHARP) - 1.0
-    at = (np.arange(size) + 0.5) * (2.0 * reach(width) / size) - reach(width)
+def _to_unit(tile, layer):
+    """Factor that makes the light of a tile 1 over its own units."""
+    texel = 2.0 * reach(BLURS[layer]) / len(tile)
+    return 1.0 / max(tile[..., 0].sum() * texel**2, 1e-30)
+
+
+def _blur_matrix(width):
+    """Matrix that blurs the texels of a sharp tile and samples them at those of a soft one."""
+    source = (np.arange(SHARP) + 0.5) * (2.0 * reach(BLURS[0]) / SHARP) - reach(BLURS[0])
+    at = (np.arange(SOFT) + 0.5) * (2.0 * reach(width) / SOFT) - reach(width)
     return np.exp(-0.5 * ((at[:, None] - source) * np.sqrt(12.0) / width) ** 2)
 
 

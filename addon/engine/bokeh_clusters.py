@@ -14,9 +14,9 @@ _HARM = 1.0
 # Rounds of pairwise merging.
 _PAIRS = 3
 
-# POINT: up to so many, each is a source of its own. Beyond, faint ones are merged, the more the more
-# there are: where so many discs overlap, none shows its edge. Cells are long, because discs of all
-# depths overlap; merges that do no harm may change while the camera turns.
+# POINT: up to so many, each is a source of its own. Beyond, faint ones are merged, the more the
+# more there are: where so many discs overlap, none shows its edge. Cells are long, because discs of
+# all depths overlap; merges that do no harm may change while the camera turns.
 POINT_BUDGET = 10000
 _POINT_LEVELS = 3
 _POINT_CELL = 0.125

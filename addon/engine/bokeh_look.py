@@ -19,9 +19,9 @@ from ..bokeh.pupil_tables import build_pupil_tables
 from ..bokeh.splat_profile import distance_from_h, profile_layers, rows_of_edge, rows_of_lens
 from ..device.textures import texture_2d, texture_array
 from ..device.uniforms import uniform_buffer
-from ..lens_io import profile_cache
 from ..optics.focus import focused
 from ..passes.splat import MOST_RIMS, SPLAT_PARAMS
+from ..scene.lens_profiles import lens_profile, lens_pupil
 
 # Texels along a side of an opening's layers, and of the masks that they are made of.
 _OPENING, _MASK = 512, 1024
@@ -147,10 +147,7 @@ class _Lens:
 
     def profile(self, chromatic):
         """Return the lens' bokeh profile."""
-        lens = self.settings
-        return profile_cache.profile(
-            lens.prescription, lens.label, chromatic=chromatic, lens_id=lens.id
-        )
+        return lens_profile(self.settings, chromatic)
 
 
 class _Arrays:
@@ -293,7 +290,7 @@ def _beams(lens, focus, pupil, tangent, nearest):
     settings = lens.settings
     prescription = settings.prescription
     if np.isinf(focus):
-        tables = profile_cache.pupil_tables(prescription, settings.label, lens_id=settings.id)
+        tables = lens_pupil(settings)
     else:
         configuration = prescription.configuration(settings.label)
         tables = build_pupil_tables(focused(configuration, focus, prescription.focus))

@@ -12,23 +12,28 @@ import numpy as np
 from ..sampling.highlights import highlight_share, least_coc
 from ..sampling.iris import Iris
 from ..sampling.pixel_filter import filter_density
-from ..scene.brightness import brightest, emits, mirrors
+from ..scene.brightness import brightest, mirrors
 from ..scene.snapshot import BokehSettings, LensSettings
-from .levels import coc_radius, extents, world_corners
+from .bokeh_search import (
+    LEAST_SUBPIXELS,
+    corners_of,
+    emitting,
+    graph_of,
+    part_of,
+    rectangles_of,
+    rows_of,
+    subpixels_of_lamps,
+    subpixels_of_triangles,
+)
+from .levels import coc_radius, extents
 
 # Depth that stands for infinity, in focus distances: the circle of confusion differs by 1e-6.
 _INFINITY = 1e6
 # Around the frame, px, for the edges of discs that end just outside.
 _RIM = 2
-# Of the raster that highlights are searched in, in sub-pixels, and of a tile of it (20 bytes each a
-# layer).
-_LARGEST_RASTER = 1 << 26
-_LARGEST_TILE = 1 << 22
-_LEAST_SUBPIXELS, _MOST_SUBPIXELS = 2, 4
-# Sub-pixels along a side of a triangle that shines: a lamp of one is met within a few per cent.
-_HITS_A_SIDE = 6.0
-# Of highlights behind one another, in drafts.
+# Of drafts: highlights behind one another, and sub-pixels that are afforded.
 _DRAFT_LAYERS = 2
+_DRAFT_RASTER = 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +57,9 @@ class BokehPlan:
         Camera space to clip space of the peeled raster.
     subpixels : int
         Along each side of a pixel of the peeled raster.
+    part : tuple of 4 int
+        x, y, width and height of the part of the raster that has all that shines and does not
+        mirror, px.
     world : bool
         The world's image may give highlights.
     world_share : float
@@ -77,6 +85,7 @@ class BokehPlan:
     margin: tuple[int, int]
     projection: np.ndarray
     subpixels: int
+    part: tuple[int, int, int, int]
     world: bool
     world_share: float
     world_depth: float
@@ -104,26 +113,17 @@ class BokehPlan:
         """As `subpixels`, of what mirrors: the views together are as many as one would be."""
         if self.draft:
             return 1
-        return max(1, _LEAST_SUBPIXELS // int(np.sqrt(len(self.lens_views))))
+        return max(1, LEAST_SUBPIXELS // int(np.sqrt(len(self.lens_views))))
 
     @property
-    def tiles(self):
-        """Parts of the raster that are searched one after another.
+    def world_subpixels(self):
+        """As `subpixels`, of the world, whose image has no edges finer than its own pixels."""
+        return 1 if self.draft else LEAST_SUBPIXELS
 
-        Returns
-        -------
-        list of tuple of 4 int
-            x, y, width and height in pixels; the first is as large as any.
-        """
-        most = max(_LARGEST_TILE // self.subpixels**2, 1)
-        columns = -(-self.width // int(np.sqrt(most))) if self.width * self.height > most else 1
-        width = -(-self.width // columns)
-        height = min(max(most // width, 1), self.height)
-        return [
-            (x, y, min(width, self.width - x), min(height, self.height - y))
-            for y in range(0, self.height, height)
-            for x in range(0, self.width, width)
-        ]
+    @property
+    def whole(self):
+        """The peeled raster as a part of itself: x, y, width and height."""
+        return (0, 0, self.width, self.height)
 
     @property
     def layers(self):
@@ -152,9 +152,8 @@ def plan_bokeh(snapshot, plan):
         return None
     least = least_coc(plan.samples)
     shining = _shining(snapshot.content, settings.threshold)
-    rows, _ = _rows(snapshot.content, shining)
-    seen = extents(_corners(snapshot.content, rows), plan.view)
-    emitting, of_emitting = _rows(snapshot.content, _emitting(snapshot.content, shining))
+    rows, _ = rows_of(snapshot.content, shining)
+    seen = extents(corners_of(snapshot.content, rows), plan.view)
     largest = _largest_coc(snapshot.content, plan, seen)
     if largest <= least:
         return None
@@ -165,16 +164,26 @@ def plan_bokeh(snapshot, plan):
     world = world and not snapshot.film.transparent
     world = world and not plan.orthographic
     film = snapshot.film
+    projection = np.diag([plan.width / width, plan.height / height, 1.0, 1.0]) @ plan.projection
+    mirroring = _mirroring(snapshot.content, shining)
+    rows, _ = rows_of(snapshot.content, shining - mirroring)
+    part = part_of(rectangles_of(snapshot.content, rows, plan, projection, (width, height)))
+    rows, of_group = rows_of(snapshot.content, emitting(snapshot.content, shining))
+    lamps = rectangles_of(snapshot.content, rows, plan, projection, (width, height))
     return BokehPlan(
         settings=settings,
         shining=shining,
-        mirroring=_mirroring(snapshot.content, shining),
+        mirroring=mirroring,
         least_coc=least,
         width=width,
         height=height,
         margin=margin,
-        projection=np.diag([plan.width / width, plan.height / height, 1.0, 1.0]) @ plan.projection,
-        subpixels=_subpixels(snapshot.content, plan, emitting, of_emitting, (width, height)),
+        projection=projection,
+        subpixels=max(
+            subpixels_of_triangles(snapshot.content, plan, rows, of_group, (width, height)),
+            subpixels_of_lamps(lamps, part),
+        ),
+        part=part,
         world=world,
         world_share=float(highlight_share(plan.empty_coc, least)) if world else 0.0,
         world_depth=_INFINITY * max(plan.focus_distance, 1.0),
@@ -199,6 +208,8 @@ def draft_of(bokeh):
     BokehPlan
     """
     settings = bokeh.settings
+    _, _, width, height = bokeh.part
+    affordable = int(np.sqrt(_DRAFT_RASTER / max(width * height, 1)))
     return replace(
         bokeh,
         settings=replace(
@@ -210,7 +221,7 @@ def draft_of(bokeh):
             layers=min(settings.layers, _DRAFT_LAYERS),
             lens_views=1,
         ),
-        subpixels=min(bokeh.subpixels, _LEAST_SUBPIXELS),
+        subpixels=max(1, min(bokeh.subpixels, LEAST_SUBPIXELS, affordable)),
         draft=True,
     )
 
@@ -229,31 +240,7 @@ def _shining(content, threshold):
 
 def _mirroring(content, shining):
     """Return which of the surfaces look different from different places on the lens."""
-    return frozenset(key for key in shining if mirrors(_graph(content, key)))
-
-
-def _emitting(content, shining):
-    """Return which of the surfaces have light of their own."""
-    return frozenset(key for key in shining if emits(_graph(content, key)))
-
-
-def _graph(content, key):
-    number, slot = key
-    return content.materials[content.groups[number].materials[slot]].graph
-
-
-def _rows(content, shining):
-    """Return the rows of the instance table that have shining surfaces, and their groups."""
-    groups = [(number, content.groups[number]) for number in sorted({n for n, _ in shining})]
-    rows = [np.arange(g.first, g.first + g.count) for _, g in groups]
-    of_group = [np.full(g.count, number) for number, g in groups]
-    empty = [np.zeros(0, int)]
-    return np.concatenate(empty + rows), np.concatenate(empty + of_group)
-
-
-def _corners(content, rows):
-    bounds = {group.mesh: content.meshes[group.mesh].bounds for group in content.groups}
-    return world_corners(content, bounds)[rows]
+    return frozenset(key for key in shining if mirrors(graph_of(content, key)))
 
 
 def _largest_coc(content, plan, seen):
@@ -269,35 +256,6 @@ def _margin(plan, settings, largest):
     narrowing = plan.lens_extent / plan.lens_extent[1]
     limit = settings.overscan * max(plan.width, plan.height)
     return tuple(int(np.ceil(min(largest * n, limit))) + _RIM for n in narrowing)
-
-
-def _subpixels(content, plan, rows, of_group, size):
-    """Return how finely highlights are searched: several times in small triangles that emit.
-
-    Parameters
-    ----------
-    content : SceneContent
-    plan : FramePlan
-    rows, of_group : ndarray of shape (R,)
-        Instances with emitting surfaces, and their groups.
-    size : tuple of 2 int
-        Of the raster in pixels.
-
-    Returns
-    -------
-    int
-    """
-    width, height = size
-    seen = extents(_corners(content, rows), plan.view)
-    affordable = int(np.sqrt(_LARGEST_RASTER / (width * height)))
-    area = np.array([content.meshes[g.mesh].triangle_area for g in content.groups])[of_group]
-    stretch = np.abs(np.linalg.det(content.instances.world[rows, :3, :3].astype(float)))
-    side = np.sqrt(area) * np.cbrt(stretch) * plan.projection[1, 1] * plan.height / 2.0
-    if not plan.orthographic:
-        side = side / np.maximum(seen.center_depth, 1e-3 * plan.focus_distance)
-    front = (seen.farthest > 0.0) & (side > 0.0)
-    wanted = np.ceil(_HITS_A_SIDE / side[front].min(initial=np.inf)) if front.any() else 0
-    return max(1, min(affordable, max(int(min(wanted, _MOST_SUBPIXELS)), _LEAST_SUBPIXELS)))
 
 
 def _filter_width(kind, size_px):

@@ -16,7 +16,7 @@ from ..device.uniforms import uniform_buffer
 from ..passes import background, clusters, highlights, peel, splat, surface
 from .bokeh_clusters import similarity_of
 from .bokeh_look import make_look
-from .bokeh_plan import tiles_of
+from .bokeh_search import tiles_of
 from .bokeh_visibility import BokehVisibility
 
 # Highlights that the list has room for at first.
@@ -177,7 +177,6 @@ class BokehStage:
 
     def _find(self, fullscreen, held):
         """Return the list of highlights, two textures, and how many they are."""
-        bokeh = self._plan.bokeh
         room = _FIRST_LIST
         while True:
             with Targets(2, 1, [TargetSpec("total", "R32UI")]) as totals:

@@ -6,7 +6,7 @@
 #include "lib/opening_lib.glsl"
 
 // Blur of the tiles in units of half their width, and how they are counted: splat_pupil.py.
-#define TILE_BLUR vec4(1.0 / 32.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0)
+#define TILE_BLUR vec4(1.0 / 48.0, 1.0 / 20.0, 1.0 / 7.0, 1.0 / 2.0)
 #define TILE_FIELDS 9
 #define TILE_DEPTHS 25
 #define STOP_OFFSET 1.5

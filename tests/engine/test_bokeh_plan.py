@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from addon.engine.bokeh_search import tiles_of
 from addon.engine.plan import plan_frame
 from addon.sampling.highlights import highlight_share
 from addon.sampling.iris import Iris
@@ -71,8 +72,7 @@ def test_only_bright_surfaces_are_searched():
 def test_small_triangles_are_searched_more_finely():
     coarse = plan_frame(snapshot(corners=(TRIANGLE * [9, 9, 1],))).bokeh
     fine = plan_frame(snapshot(corners=(TRIANGLE * [0.2, 0.2, 1],))).bokeh
-    assert coarse.subpixels == 2
-    assert fine.subpixels == 4
+    assert coarse.subpixels < 4 < fine.subpixels
 
 
 def test_the_share_of_the_world_is_that_of_its_circle_of_confusion():
@@ -81,3 +81,32 @@ def test_the_share_of_the_world_is_that_of_its_circle_of_confusion():
     plan = plan_frame(replace(made, content=content))
     assert plan.bokeh.world
     assert plan.bokeh.world_share == highlight_share(plan.empty_coc, plan.bokeh.least_coc)
+
+
+def test_lone_lamps_are_searched_where_they_are():
+    bokeh = plan_frame(snapshot(corners=(TRIANGLE * [0.2, 0.2, 1],))).bokeh
+    x, y, width, height = bokeh.part
+    assert min(x, y) >= 0 and x + width <= bokeh.width and y + height <= bokeh.height
+    assert 0 < width * height < 0.1 * bokeh.width * bokeh.height
+    # 45 sub-pixels across, and never more than the budget.
+    assert width * bokeh.subpixels >= 45
+    assert width * height * bokeh.subpixels**2 <= 1 << 21
+
+
+@pytest.mark.parametrize(
+    ("part", "subpixels"),
+    [((0, 0, 96, 64), 4), ((7, 3, 2000, 1200), 4), ((1, 0, 5, 3), 32), ((0, 9, 9000, 2), 8)],
+)
+def test_tiles_cover_the_part_once(part, subpixels):
+    tiles = tiles_of(part, subpixels)
+    x, y, width, height = part
+    covered = np.zeros((y + height, x + width), int)
+    for left, below, w, h in tiles:
+        assert w <= tiles[0][2] and h <= tiles[0][3] and min(w, h) > 0
+        assert w * h * subpixels**2 <= 1 << 22 and max(w, h) * subpixels <= 8192
+        covered[below : below + h, left : left + w] += 1
+    assert (covered[y:, x:] == 1).all() and covered.sum() == width * height
+
+
+def test_a_part_without_area_has_no_tiles():
+    assert tiles_of((0, 0, 0, 0), 4) == []

@@ -11,7 +11,9 @@ from addon.device import geometry, readback
 from addon.device.targets import Targets, TargetSpec
 from addon.device.textures import texture_2d, texture_array
 from addon.device.uniforms import uniform_buffer
+from addon.engine import bokeh_search
 from addon.engine.bokeh_look import BokehLook
+from addon.engine.plan import plan_frame
 from addon.passes import highlights, splat, surface
 from addon.reference.highlights import Raster
 from addon.reference.highlights import highlights as twin
@@ -296,6 +298,22 @@ def test_splats_are_what_the_reference_method_converges_to(iris, parallel):
     assert error.max() < 0.25 * peak
 
 
+@pytest.mark.parametrize("diameter_px", [3.0, 1.2, 0.5])
+def test_a_lone_lamp_keeps_its_energy_in_a_slow_pan(diameter_px):
+    depth = 8.0
+    pixel = 2.0 * 0.5 * depth / WIDTH
+    light, found = (20.0, 10.0, 5.0), []
+    for step in range(8):
+        place = (0.3 + 0.17 * step * pixel, -0.2 + 0.07 * step * pixel)
+        corners = lamp(*place, depth, 0.5 * diameter_px * pixel)
+        a, b = (corners[i, :2] - corners[0, :2] for i in (1, 2))
+        area = 0.5 * abs(a[0] * b[1] - a[1] * b[0]) / pixel**2
+        snapshot = triangles_snapshot([corners], [light], WIDTH, HEIGHT, LENS, 4)
+        picture = render_snapshot(with_bokeh(snapshot, passes=("Bokeh",)))["Bokeh"]
+        found.append(energy(picture)[0] / (area * (light[0] - 1.0)))
+    assert found == pytest.approx([1.0] * len(found), abs=0.01)
+
+
 def test_light_from_outside_the_frame_reaches_in():
     corners = [lamp(4.25, 0.0, 8.0, 0.1)]
     lights = [(300.0, 300.0, 300.0)]
@@ -303,6 +321,26 @@ def test_light_from_outside_the_frame_reaches_in():
     picture = render_snapshot(with_bokeh(plain, overscan=1.0))["Bokeh"]
     assert energy(picture)[0] > 1.0
     assert (picture[:, : WIDTH // 2] == 0.0).all()
+
+
+def test_tiles_find_what_the_whole_raster_does(monkeypatch):
+    whole = render_snapshot(with_bokeh(lamps()))["Bokeh"]
+    monkeypatch.setattr(bokeh_search, "_LARGEST_TILE", 1 << 14)
+    plan = plan_frame(with_bokeh(lamps())).bokeh
+    assert len(bokeh_search.tiles_of(plan.part, plan.subpixels)) > 3
+    tiles = render_snapshot(with_bokeh(lamps()))["Bokeh"]
+    # The same highlights in another order.
+    assert tiles == pytest.approx(whole, abs=1e-5 * float(whole.max()))
+
+
+def test_the_search_ends_with_the_first_empty_layer():
+    drawn = []
+    for layers in (4, 32):
+        renderer = make_renderer(with_bokeh(lamps(), layers=layers))
+        renderer.advance(1)
+        drawn.append(renderer.counts.draw_calls)
+        renderer.release()
+    assert drawn[0] == drawn[1]
 
 
 def test_gain_multiplies_the_bokeh_alone():

@@ -60,7 +60,7 @@ def test_all_numbers_and_choices_arrive(bokeh, aplanat_bpy):
         "visibility": "WARP",
         "layers": 2,
         "overscan": 0.5,
-        "lens_views": 4,
+        "lens_views": 9,
         "amplification": 150.0,
         "profile_strength": 0.5,
     }
