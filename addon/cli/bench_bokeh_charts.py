@@ -92,6 +92,7 @@ def _scene(resolution, focus, f_stop):
     camera.rotation_euler = (math.pi / 2.0, 0.0, 0.0)
     scene.collection.objects.link(camera)
     scene.camera = camera
+    data.aplanat.bokeh.use = True
     render = scene.render
     render.resolution_x, render.resolution_y = resolution
     render.resolution_percentage = 100

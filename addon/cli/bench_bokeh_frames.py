@@ -49,6 +49,10 @@ class BokehFrame:
 class BokehScene(BenchScene):
     """The current scene, drawn with and without its highlights apart; as `BenchScene`."""
 
+    def __init__(self, scene):
+        super().__init__(scene)
+        scene.camera.data.aplanat.bokeh.use = True
+
     def splatted(self, samples, subsamples=4, method="ADAPTIVE", **bokeh):
         """Return the snapshot with highlights apart; settings as those of `BokehSettings`."""
         snapshot = self.sampled(method, samples, subsamples=subsamples, reference_bokeh=True)

@@ -49,6 +49,7 @@ editor = min((a for a in window().screen.areas if a.type == "VIEW_3D"), key=lamb
 editor.type = "PROPERTIES"
 editor.spaces.active.context = "DATA"
 camera().dof.use_dof = True
+camera().aplanat.bokeh.use = True
 camera().dof.aperture_blades = 6
 """
 

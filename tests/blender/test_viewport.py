@@ -99,6 +99,7 @@ def test_viewport_at_rest_has_the_bokeh_of_the_final_render(stage, tmp_path):
         "bpy.data.objects['thing4'].scale = (0.08, 0.08, 0.08)\n"
         # However quick the device is: a draft first.
         "module('engine.pipeline')._QUICK = 0.0\n"
+        "bpy.context.scene.camera.data.aplanat.bokeh.use = True\n"
         "bpy.context.scene.aplanat.use_reference_bokeh = True\n"
         "redraw(3, lambda i: setattr(bpy.context.scene.camera.location, 'x', 0.01 * (i + 1)))\n"
         # At once, before the view has been at rest for long.

@@ -28,6 +28,7 @@ def camera(empty_scene, aplanat_bpy):
     empty_scene.camera = obj
     data.dof.use_dof = True
     data.dof.focus_distance = 4.0
+    data.aplanat.bokeh.use = True
     return data
 
 
@@ -41,12 +42,12 @@ def read(bpy):
     return read_camera(depsgraph, depsgraph.scene.camera, FILM)
 
 
-def test_a_new_camera_draws_highlights_as_the_settings_start(camera, aplanat_bpy):
+def test_bokeh_starts_as_the_settings_do(camera, aplanat_bpy):
     assert read(aplanat_bpy).bokeh == BokehSettings()
 
 
-def test_switched_off_there_is_none(bokeh, aplanat_bpy):
-    bokeh.use = False
+def test_a_new_camera_has_none(bokeh, aplanat_bpy):
+    bokeh.property_unset("use")
     assert read(aplanat_bpy).bokeh is None
 
 

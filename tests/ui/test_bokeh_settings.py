@@ -29,6 +29,7 @@ def camera(empty_scene, aplanat_bpy):
     obj = aplanat_bpy.data.objects.new("Camera", data)
     aplanat_bpy.context.collection.objects.link(obj)
     empty_scene.camera = obj
+    data.aplanat.bokeh.use = True
     return data
 
 
