@@ -50,8 +50,8 @@ class BokehScene(BenchScene):
     """The current scene, drawn with and without its highlights apart; as `BenchScene`."""
 
     def __init__(self, scene):
-        super().__init__(scene)
         scene.camera.data.aplanat.bokeh.use = True
+        super().__init__(scene)
 
     def splatted(self, samples, subsamples=4, method="ADAPTIVE", **bokeh):
         """Return the snapshot with highlights apart; settings as those of `BokehSettings`."""
