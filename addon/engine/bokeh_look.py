@@ -7,6 +7,7 @@ All discs keep their energy. A profile and rims are made up for by tables; so is
 opening takes of the tiles of a real lens' pupil.
 """
 
+import atexit
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -174,6 +175,10 @@ def _texture(arrays):
     texture.filter_mode(True)
     texture.extend_mode("EXTEND")
     return texture
+
+
+# The device goes before Python does when the process ends; no texture may outlive it.
+atexit.register(_texture.cache_clear)
 
 
 def _appearance(appearance, iris):
