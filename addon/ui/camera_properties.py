@@ -6,8 +6,8 @@ from bpy.props import EnumProperty, PointerProperty, StringProperty
 from ..scene.lenses import shelf
 from . import lens_thumbnails
 from .bokeh_properties import APPEARANCE_NAMES, AplanatBokehSettings
-from .chromatic_properties import AplanatChromaticSettings, remember_for_lens
-from .lens_memory import remember
+from .chromatic_properties import AplanatChromaticSettings, values_as_dict, values_from_dict
+from .lens_memory import remember, set_values, values_of
 
 _LONGEST_TEXT = 255
 _THIN = "thin"
@@ -104,8 +104,13 @@ def _lens_changed(camera, _context):
     labels = _labels(camera)
     if camera.zoom_label and labels and camera.zoom_label not in labels:
         camera.zoom_label = ""
-    remember(camera, "bokeh", APPEARANCE_NAMES)
-    remember_for_lens(camera)
+    remember(
+        camera,
+        "bokeh",
+        lambda group: values_of(group, APPEARANCE_NAMES),
+        lambda group, values: set_values(group, APPEARANCE_NAMES, values),
+    )
+    remember(camera, "chromatic", values_as_dict, values_from_dict)
     camera.id_data.update_tag()
 
 

@@ -1,7 +1,5 @@
 """Chromatic aberration of a camera: what is stored, and what each lens remembers of it."""
 
-import json
-
 import bpy
 from bpy.props import (
     BoolProperty,
@@ -236,32 +234,3 @@ def values_from_dict(settings, values):
         except TypeError:
             # Written by another version.
             continue
-
-
-def remember_for_lens(camera_settings):
-    """Keep the settings for the lens that was chosen before; bring back those of the present one.
-
-    A lens that was not used yet takes over what is set.
-
-    Parameters
-    ----------
-    camera_settings : AplanatCameraSettings
-        `lens` is the new one, `chromatic_lens` the one before.
-    """
-    old, new = camera_settings.chromatic_lens, camera_settings.lens
-    if old == new:
-        return
-    memory = _memory(camera_settings.chromatic_memory)
-    memory[old] = values_as_dict(camera_settings.chromatic)
-    camera_settings.chromatic_memory = json.dumps(memory)
-    camera_settings.chromatic_lens = new
-    if isinstance(memory.get(new), dict):
-        values_from_dict(camera_settings.chromatic, memory[new])
-
-
-def _memory(text):
-    try:
-        found = json.loads(text) if text else {}
-    except ValueError:
-        return {}
-    return found if isinstance(found, dict) else {}

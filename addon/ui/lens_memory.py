@@ -39,7 +39,7 @@ def set_values(group, names, values):
             continue
 
 
-def remember(camera_settings, which, names):
+def remember(camera_settings, which, read, write):
     """Keep settings for the lens that was chosen before; bring back those of the present one.
 
     A lens that was not used yet takes over what is set.
@@ -51,19 +51,21 @@ def remember(camera_settings, which, names):
         remembered.
     which : str
         Name of the group of settings.
-    names : sequence of str
-        Of the settings in it that belong to a lens.
+    read : callable
+        From the group to a dict of what belongs to a lens, fit for JSON.
+    write : callable
+        Sets in the group what such a dict holds.
     """
     old, new = getattr(camera_settings, f"{which}_lens"), camera_settings.lens
     if old == new:
         return
     group = getattr(camera_settings, which)
     memory = _parsed(getattr(camera_settings, f"{which}_memory"))
-    memory[old] = values_of(group, names)
+    memory[old] = read(group)
     setattr(camera_settings, f"{which}_memory", json.dumps(memory))
     setattr(camera_settings, f"{which}_lens", new)
     if isinstance(memory.get(new), dict):
-        set_values(group, names, memory[new])
+        write(group, memory[new])
 
 
 def _parsed(text):
