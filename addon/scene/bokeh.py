@@ -81,7 +81,16 @@ def describe_bokeh(camera, real_lens, corner):
         vignetting=vignetting,
         profile_strength=settings.profile_strength,
     )
-    return bokeh, problems + distortion_problems
+    return bokeh, problems + distortion_problems + _not_drawn(camera, distortion)
+
+
+def _not_drawn(camera, distortion):
+    found = ()
+    if distortion:
+        found += ("distortion is not drawn by this version",)
+    if camera.aplanat.chromatic.use:
+        found += ("highlights drawn as bokeh show no chromatic aberration in this version",)
+    return found
 
 
 def corner_tangent(camera, scene):

@@ -119,7 +119,7 @@ def test_drawing_the_panel_again_costs_little(panel):
         "draw(2); shown = dict(previews._shown); result = draw(10)\n"
         "assert shown == previews._shown"
     )
-    # Measured 15 to 30 with software OpenGL on a busy machine; a picture a redraw would be 10 more.
+    # Loose, because machines are busy; that no picture is made anew is told above.
     assert milliseconds < 150
 
 
