@@ -20,6 +20,7 @@ from ..bokeh.pupil_tables import build_pupil_tables
 from ..bokeh.splat_profile import distance_from_h, profile_layers, rows_of_edge, rows_of_lens
 from ..device.textures import texture_2d, texture_array
 from ..device.uniforms import uniform_buffer
+from ..errors import AplanatError
 from ..optics.focus import focused
 from ..passes.splat import MOST_RIMS, SPLAT_PARAMS
 from ..scene.lens_profiles import lens_profile, lens_pupil
@@ -48,11 +49,14 @@ class BokehLook:
         By their names in the shader.
     blocks : tuple of GPUUniformBuf
         `SplatParams`, one for each wavelength that is drawn.
+    report : tuple of str
+        What is not as the camera asks, one sentence each.
     """
 
     variants: tuple[str, ...]
     textures: tuple
     blocks: tuple
+    report: tuple[str, ...] = ()
 
 
 def describe_look(plan):
@@ -118,6 +122,8 @@ def describe_look(plan):
 def make_look(plan):
     """Upload what the splats of a frame need.
 
+    Where the real lens cannot shape them, they are a thin lens'.
+
     Parameters
     ----------
     plan : FramePlan
@@ -127,11 +133,21 @@ def make_look(plan):
     -------
     BokehLook
     """
-    variants, arrays, params = describe_look(plan)
+    report = ()
+    try:
+        variants, arrays, params = describe_look(plan)
+    except AplanatError as error:
+        lens = plan.bokeh.real_lens
+        if lens is None:
+            raise
+        report = (f"lens '{lens.prescription.name}' shapes no bokeh, a thin lens does: {error}",)
+        variants, arrays, params = describe_look(
+            replace(plan, bokeh=replace(plan.bokeh, real_lens=None))
+        )
     textures = tuple((name, _texture(_Arrays(array))) for name, array in arrays.items())
     wavelength = {"wavelength": (1.0, 1.0, 1.0, 1.0 / plan.focus_distance), "lateral": (1, 0, 0, 0)}
     block = uniform_buffer(SPLAT_PARAMS.pack(**params, **wavelength))
-    return BokehLook(variants, textures, (block,))
+    return BokehLook(variants, textures, (block,), report)
 
 
 class _Lens:

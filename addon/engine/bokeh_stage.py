@@ -118,6 +118,8 @@ class BokehStage:
     Attributes
     ----------
     counts : HighlightCounts
+    report : tuple of str
+        What is not as the camera asks, one sentence each; known when discs have been drawn.
     """
 
     def __init__(self, plan, drawing, buffers, occluders, highlights_buffer):
@@ -127,6 +129,7 @@ class BokehStage:
         self._occluders = occluders
         self._highlights = highlights_buffer
         self.counts = HighlightCounts()
+        self.report = ()
         self.bytes = 0
 
     def run(self, fullscreen, targets, frame_view, stage=nullcontext):
@@ -352,12 +355,14 @@ class BokehStage:
         rays = None
         if visibility.counts.method == "SPLAT":
             rays = (visibility.layers, visibility.opacity, visibility.states, visibility.parameters)
+        look = make_look(self._plan)
+        self.report = look.report
         with target.bind():
             splat.splat(
                 geometry.square_batch(),
                 count,
                 (*sources, visibility.tiles, visibility.masks),
-                make_look(self._plan),
+                look,
                 frame_view,
                 rays,
             )

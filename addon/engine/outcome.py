@@ -166,11 +166,13 @@ class RenderOutcome:
         self.report.extend(line for line in dict.fromkeys(lines) if line not in self.report)
 
 
-# What became of the highlights of the last picture of each scene, by its name.
+# What became of the highlights of the last picture of each scene, and what of them is not as the
+# camera asks, by its name.
 _highlights = {}
+_problems = {}
 
 
-def note_highlights(scene, counts):
+def note_highlights(scene, counts, problems=()):
     """Remember what became of the highlights of a scene's picture, for the panel.
 
     Parameters
@@ -179,13 +181,21 @@ def note_highlights(scene, counts):
         Its name.
     counts : HighlightCounts or None
         None where none were searched.
+    problems : tuple of str
+        As `FrameRenderer.report` has them.
     """
     _highlights[scene] = dict(vars(counts)) if counts else None
+    _problems[scene] = problems
 
 
 def last_highlights(scene):
     """Return what `note_highlights` was told last of a scene, as a dict, or None."""
     return _highlights.get(scene)
+
+
+def last_problems(scene):
+    """Return which problems `note_highlights` was told last of a scene."""
+    return _problems.get(scene, ())
 
 
 _listeners = []

@@ -140,6 +140,11 @@ class FrameRenderer:
         """What became of the frame's highlights, as `HighlightCounts`; None without bokeh."""
         return self._bokeh.counts if self._bokeh else None
 
+    @property
+    def report(self):
+        """What is not drawn as the camera asks, one sentence each; known after a sample."""
+        return self._bokeh.report if self._bokeh else ()
+
     def _prepare_targets(self):
         size = (self.plan.width, self.plan.height)
         specs = self._target_specs()

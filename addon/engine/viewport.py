@@ -188,7 +188,7 @@ class Viewport:
             renderer = self._renderer
             if not renderer.finished():
                 self._refine(renderer)
-                note_highlights(depsgraph.scene.name, renderer.highlights)
+                note_highlights(depsgraph.scene.name, renderer.highlights, renderer.report)
             x, y, width, height = view.rectangle
             with state.confined(x, y, width, height):
                 renderer.resolve((x, y), view.pixel_size)

@@ -111,7 +111,8 @@ def _draw_notes(column, context, letters):
         draw_sentences(column, text, letters, icon="INFO")
     lens, _ = read_real_lens(camera)
     _, problems = describe_bokeh(camera, lens, corner_tangent(camera, context.scene))
-    for problem in problems:
+    # What only drawing tells is that of the last picture.
+    for problem in (*problems, *outcome.last_problems(context.scene.name)):
         draw_alert(column, f"{problem[0].upper()}{problem[1:]}.", letters)
 
 

@@ -9,6 +9,7 @@ from addon.engine.plan import plan_frame
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
 from addon.scene.snapshot import BokehSettings
+from tests.splat_pictures import library_lens
 
 from .conftest import make_renderer, triangles_snapshot
 
@@ -124,3 +125,20 @@ def test_a_quick_bokeh_has_no_draft(renderer, snapshot):
     assert not renderer.bokeh_drafted
     renderer.advance(4)
     assert renderer.finished()
+
+
+def test_a_lens_that_cannot_focus_so_near_is_told_and_a_thin_one_draws(renderer, snapshot):
+    # The same blur from a focus nearer than the focal length of the lens.
+    near = replace(snapshot.camera, lens=ThinLens(0.003, 0.03, Iris()))
+    lens = library_lens("double-gauss-50mm-f2")
+    pictures, reports = [], []
+    for camera in (near, replace(near, real_lens=lens)):
+        begin(renderer, replace(snapshot, camera=camera))
+        renderer.advance(1)
+        reports.append(renderer.report)
+        refine(renderer)
+        pictures.append(bokeh_of(renderer))
+        reports.append(renderer.report)
+    assert pictures[0].any() and np.array_equal(*pictures)
+    assert reports[:2] == [(), ()]
+    assert all("double" in problem.lower() for (problem,) in reports[2:])

@@ -81,3 +81,20 @@ def test_the_same_frame_twice_has_the_same_highlights(bpy_of):
     scene.camera.data.dof.focus_distance = 0.5 * LAMP_DEPTH
     first, second = (render(bpy_of, "ADAPTIVE", 4)[0] for _ in range(2))
     assert first["Bokeh"].tobytes() == second["Bokeh"].tobytes()
+
+
+def test_a_lens_that_cannot_focus_so_near_leaves_the_discs_to_a_thin_lens(bpy_of):
+    scene = half_hidden(SIZE)
+    camera = scene.camera.data
+    # Nearer than the focal length of the lens.
+    camera.dof.focus_distance, camera.dof.aperture_fstop = 0.03, 16.0
+    thin, work = render(bpy_of, "ADAPTIVE", 4)
+    assert work.highlights["splatted"] > 0
+    camera.aplanat.lens = "double-gauss-50mm-f2"
+    drawn, _ = render(bpy_of, "ADAPTIVE", 4)
+    assert np.array_equal(drawn["Combined"], thin["Combined"])
+    (problem,) = outcome.last_problems(scene.name)
+    assert "double" in problem.lower() and "focus farther away" in problem
+    camera.dof.focus_distance = 6.0
+    render(bpy_of, "ADAPTIVE", 4)
+    assert outcome.last_problems(scene.name) == ()
