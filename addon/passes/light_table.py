@@ -24,7 +24,7 @@ def light_texels(lights):
     for row, light in zip(texels, lights, strict=False):
         row[0] = (*light.position, KINDS[light.kind])
         row[1] = (*light.radiance, light.radius)
-        row[2] = (*light.direction, float(light.soft_falloff))
+        row[2] = (*light.direction, light.soft_falloff + 2.0 * (not light.highlights))
         row[3] = (light.diffuse_factor, light.specular_factor, *light.cone)
         row[4] = (*light.axes[0], light.half_size[0])
         row[5] = (*light.axes[1], light.half_size[1])

@@ -8,6 +8,9 @@ import numpy as np
 
 from .surface_graph import Constant
 
+# Of a white surface at most: tables of what lobes reflect are not exact.
+_REFLECTANCE = 1.1
+
 
 def brightest(content):
     """Bound the radiance of every group's surfaces.
@@ -20,12 +23,15 @@ def brightest(content):
     -------
     list of tuple of float
         For each group, one bound for each slot of its mesh that has triangles: of the largest
-        channel; inf where the surface is lit or the graph tells nothing.
+        channel, without the light of lamps that never gives highlights; inf where the graph tells
+        nothing.
     """
     known = {}
+    reflected = _brightest_reflection(content)
     return [
         tuple(
-            _bound(content, known, group, slot) for slot, _, _ in content.meshes[group.mesh].slots
+            _bound(content, known, reflected, group, slot)
+            for slot, _, _ in content.meshes[group.mesh].slots
         )
         for group in content.groups
     ]
@@ -79,17 +85,25 @@ def _is_zero(source):
     return isinstance(source, Constant) and not any(source.value)
 
 
-def _bound(content, known, group, slot):
+def _brightest_reflection(content):
+    """Return how bright a white surface may be by the light that falls on it."""
+    if content.world.image or any(light.highlights for light in content.lights):
+        return np.inf
+    return _REFLECTANCE * max(map(abs, content.world.color))
+
+
+def _bound(content, known, reflected, group, slot):
     if group.holdout:
         return 0.0
     key = (group.materials[slot], group.mesh)
     if key not in known:
         graph = content.materials[key[0]].graph
-        known[key] = _graph_bound(graph, content.meshes[group.mesh], content.images)
+        mesh = content.meshes[group.mesh]
+        known[key] = _graph_bound(graph, mesh, content.images, reflected)
     return known[key]
 
 
-def _graph_bound(graph, mesh, images):
+def _graph_bound(graph, mesh, images, reflected):
     if graph.surface is None:
         return 0.0
     bounds = []
@@ -105,7 +119,13 @@ def _graph_bound(graph, mesh, images):
             bound = 0.0
         elif node.kind == "emission":
             color, strength = of(inputs["Color"]), of(inputs["Strength"])
-            bound = color * strength if color and strength else 0.0
+            bound = _product(color, strength)
+        elif node.kind in {"diffuse", "glossy"}:
+            bound = _product(of(inputs["Color"]), reflected)
+        elif node.kind == "principled":
+            # Colours above white count as white.
+            color, strength = of(inputs["Emission Color"]), of(inputs["Emission Strength"])
+            bound = reflected + _product(color, strength)
         elif node.kind == "mix_shader":
             bound = max(of(inputs["Shader"]), of(inputs["Shader_001"]))
         elif node.kind == "add_shader":
@@ -120,6 +140,10 @@ def _graph_bound(graph, mesh, images):
             bound = np.inf
         bounds.append(float(bound))
     return bounds[graph.surface.node]
+
+
+def _product(a, b):
+    return a * b if a and b else 0.0
 
 
 def _attribute_bound(mesh, name):

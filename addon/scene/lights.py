@@ -54,6 +54,7 @@ def read_light(light, matrix):
             direction=_floats(-axes[2]),
             diffuse_factor=light.diffuse_factor,
             specular_factor=light.specular_factor,
+            highlights=light.aplanat.highlights != "NEVER",
             **values,
         ),
         notes,

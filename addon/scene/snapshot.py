@@ -209,6 +209,8 @@ class Light:
         the beam; for a spot scaled as the cone is.
     half_size : tuple of 2 float
         Of an area light's rectangle, in m.
+    highlights : bool
+        False: what surfaces reflect of it is never splatted, however bright it is.
     """
 
     kind: str
@@ -222,6 +224,7 @@ class Light:
     cone: tuple[float, float] = (0.0, 0.0)
     axes: tuple[tuple[float, float, float], ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
     half_size: tuple[float, float] = (0.0, 0.0)
+    highlights: bool = True
 
 
 @dataclass(frozen=True)

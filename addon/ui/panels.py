@@ -239,6 +239,19 @@ class APLANAT_MATERIAL_PT_settings(EnginePanel, bpy.types.Panel):
         column.prop(context.material.aplanat, "highlights")
 
 
+class APLANAT_LIGHT_PT_bokeh(EnginePanel, bpy.types.Panel):
+    """Whether a light's reflections are bokeh."""
+
+    bl_label = "Bokeh"
+    bl_context = "data"
+    bl_parent_id = "DATA_PT_EEVEE_light"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw the choice."""
+        self.column().prop(context.light.aplanat, "highlights")
+
+
 CLASSES = (
     APLANAT_RENDER_PT_sampling,
     APLANAT_RENDER_PT_level_of_detail,
@@ -249,6 +262,7 @@ CLASSES = (
     APLANAT_VIEWLAYER_PT_cryptomatte,
     APLANAT_OBJECT_PT_ray_visibility,
     APLANAT_MATERIAL_PT_settings,
+    APLANAT_LIGHT_PT_bokeh,
 )
 
 register, unregister = bpy.utils.register_classes_factory(CLASSES)

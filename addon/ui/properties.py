@@ -214,8 +214,14 @@ class AplanatViewLayerSettings(bpy.types.PropertyGroup):
     )
 
 
-def _material_changed(settings, _context):
+def _data_changed(settings, _context):
     settings.id_data.update_tag()
+
+
+_HIGHLIGHTS = (
+    ("AUTOMATIC", "Automatic", "Where it is bright and blurred enough"),
+    ("NEVER", "Never", "It is sampled as everything else, however bright it is"),
+)
 
 
 class AplanatMaterialSettings(bpy.types.PropertyGroup):
@@ -225,13 +231,24 @@ class AplanatMaterialSettings(bpy.types.PropertyGroup):
         name="Highlights",
         description="Whether the light of surfaces with this material is drawn as bokeh where it is"
         " brighter than the camera's threshold",
-        items=(
-            ("AUTOMATIC", "Automatic", "Where it is bright and blurred enough"),
-            ("NEVER", "Never", "It is sampled as everything else, however bright it is"),
-        ),
+        items=_HIGHLIGHTS,
         default="AUTOMATIC",
         override={"LIBRARY_OVERRIDABLE"},
-        update=_material_changed,
+        update=_data_changed,
+    )
+
+
+class AplanatLightSettings(bpy.types.PropertyGroup):
+    """What only Aplanat knows of a light."""
+
+    highlights: EnumProperty(
+        name="Highlights",
+        description="Whether what surfaces reflect of this light is drawn as bokeh where it is"
+        " brighter than the camera's threshold",
+        items=_HIGHLIGHTS,
+        default="AUTOMATIC",
+        override={"LIBRARY_OVERRIDABLE"},
+        update=_data_changed,
     )
 
 
@@ -239,6 +256,7 @@ CLASSES = (
     AplanatSceneSettings,
     AplanatViewLayerSettings,
     AplanatMaterialSettings,
+    AplanatLightSettings,
     AplanatBokehSettings,
     AplanatSpectrumBar,
     AplanatChromaticSettings,
@@ -256,6 +274,9 @@ def register():
     bpy.types.Material.aplanat = PointerProperty(
         type=AplanatMaterialSettings, override={"LIBRARY_OVERRIDABLE"}
     )
+    bpy.types.Light.aplanat = PointerProperty(
+        type=AplanatLightSettings, override={"LIBRARY_OVERRIDABLE"}
+    )
     bpy.types.Camera.aplanat = PointerProperty(
         type=AplanatCameraSettings, override={"LIBRARY_OVERRIDABLE"}
     )
@@ -264,6 +285,7 @@ def register():
 def unregister():
     """Undo `register`."""
     del bpy.types.Camera.aplanat
+    del bpy.types.Light.aplanat
     del bpy.types.Material.aplanat
     del bpy.types.ViewLayer.aplanat
     del bpy.types.Scene.aplanat

@@ -6,26 +6,27 @@ struct Closure {
   vec3 radiance;       // scene linear, towards the eye
   vec3 transmittance;  // share of what is straight behind the surface
   float holdout;       // share of the picture that becomes a hole
+  vec3 unsplit;        // of the radiance, light of lamps that is never splatted
 };
 
 Closure closure_none()
 {
-  return Closure(vec3(0.0), vec3(0.0), 0.0);
+  return Closure(vec3(0.0), vec3(0.0), 0.0, vec3(0.0));
 }
 
 Closure closure_emission(vec3 color, float strength)
 {
-  return Closure(color * strength, vec3(0.0), 0.0);
+  return Closure(color * strength, vec3(0.0), 0.0, vec3(0.0));
 }
 
 Closure closure_transparent(vec3 color)
 {
-  return Closure(vec3(0.0), max(color, vec3(0.0)), 0.0);
+  return Closure(vec3(0.0), max(color, vec3(0.0)), 0.0, vec3(0.0));
 }
 
 Closure closure_holdout()
 {
-  return Closure(vec3(0.0), vec3(0.0), 1.0);
+  return Closure(vec3(0.0), vec3(0.0), 1.0, vec3(0.0));
 }
 
 Closure closure_mix(Closure a, Closure b, float factor)
@@ -33,20 +34,24 @@ Closure closure_mix(Closure a, Closure b, float factor)
   float t = clamp(factor, 0.0, 1.0);
   return Closure(mix(a.radiance, b.radiance, t),
                  mix(a.transmittance, b.transmittance, t),
-                 mix(a.holdout, b.holdout, t));
+                 mix(a.holdout, b.holdout, t),
+                 mix(a.unsplit, b.unsplit, t));
 }
 
 Closure closure_add(Closure a, Closure b)
 {
-  return Closure(
-      a.radiance + b.radiance, a.transmittance + b.transmittance, a.holdout + b.holdout);
+  return Closure(a.radiance + b.radiance,
+                 a.transmittance + b.transmittance,
+                 a.holdout + b.holdout,
+                 a.unsplit + b.unsplit);
 }
 
 // A surface of which only the share `alpha` is there.
 Closure closure_cover(Closure a, float alpha)
 {
   float t = clamp(alpha, 0.0, 1.0);
-  return Closure(a.radiance * t, mix(vec3(1.0), a.transmittance, t), a.holdout * t);
+  return Closure(
+      a.radiance * t, mix(vec3(1.0), a.transmittance, t), a.holdout * t, a.unsplit * t);
 }
 
 // Share of the light from behind that a pixel's decision by chance lets through.

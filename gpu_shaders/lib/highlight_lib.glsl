@@ -26,10 +26,22 @@ vec3 highlight_excess(vec3 radiance, float threshold)
   return radiance * (1.0 - highlight_kept(radiance, threshold));
 }
 
+// The same of light of which a part is never splatted.
+vec3 highlight_excess(vec3 radiance, vec3 unsplit, float threshold)
+{
+  return highlight_excess(radiance - unsplit, threshold);
+}
+
 // Radiance without the splatted part, to full precision however bright it is.
 vec3 highlight_base(vec3 radiance, float share, float threshold)
 {
   return radiance * mix(1.0, highlight_kept(radiance, threshold), share);
+}
+
+// The same of light of which a part is never splatted.
+vec3 highlight_base(vec3 radiance, vec3 unsplit, float share, float threshold)
+{
+  return unsplit + highlight_base(radiance - unsplit, share, threshold);
 }
 
 // What an encoded picture may have shown before its whites were cut off.

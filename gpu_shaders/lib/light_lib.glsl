@@ -15,6 +15,7 @@ struct Light {
   float radius;    // m; sun: sine of the disk's half angle
   vec3 direction;  // the way the light travels, unit length
   float soft;      // 1: a disk that faces the shaded point; 0: a sphere
+  float unsplit;   // 1: what is seen of it on surfaces is never splatted as a highlight
   vec2 factors;    // of diffuse and specular light
   vec2 cone;       // spot: cosine of the half angle, 1 / width of the edge in cosines;
                    // area: tangent of half the spread, its normalisation (0 for all directions)
@@ -41,7 +42,8 @@ Light light_fetch(sampler2D lights_tx, int row)
   light.radiance = b.xyz;
   light.radius = b.w;
   light.direction = c.xyz;
-  light.soft = c.w;
+  light.soft = mod(c.w, 2.0);
+  light.unsplit = step(2.0, c.w);
   light.factors = d.xy;
   light.cone = d.zw;
   light.axis_u = vec3(0.0);

@@ -68,12 +68,15 @@ void main()
   }
   Closure closure = surface_closure();
   float opacity = 1.0;
-  vec3 excess = highlight_excess(closure.radiance, highlight_buf.split.x);
+  vec3 excess = highlight_excess(closure.radiance, closure.unsplit, highlight_buf.split.x);
 #ifdef TRANSPARENT
   opacity = 1.0 - closure_through(closure);
 #ifndef GLOW_APART
   // What the lens samples split: the light of those that chance lets stand.
-  excess = highlight_excess(closure.radiance / max(opacity, 1e-6), highlight_buf.split.x) * opacity;
+  float there = max(opacity, 1e-6);
+  excess = highlight_excess(
+      closure.radiance / there, closure.unsplit / there, highlight_buf.split.x);
+  excess *= opacity;
 #endif
 #endif
   if (max(excess.r, max(excess.g, excess.b)) <= 0.0) {

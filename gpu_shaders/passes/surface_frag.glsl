@@ -17,11 +17,11 @@
 #ifdef HIGHLIGHTS
 #include "lib/highlight_lib.glsl"
 
-vec3 without_highlights(vec3 radiance)
+vec3 without_highlights(Closure closure)
 {
   float depth = -(view_buf.view * vec4(world_position, 1.0)).z;
   float share = highlight_share(coc_radius_px(depth, view_buf.lens), highlight_buf.split.y);
-  return highlight_base(radiance, share, highlight_buf.split.x);
+  return highlight_base(closure.radiance, closure.unsplit, share, highlight_buf.split.x);
 }
 #endif
 
@@ -36,7 +36,7 @@ void main()
   Closure closure = surface_closure();
 #ifdef GLOW
 #ifdef HIGHLIGHTS
-  closure.radiance = without_highlights(closure.radiance);
+  closure.radiance = without_highlights(closure);
 #endif
   out_color = vec4(closure.radiance, 0.0);
 #ifdef MATTES
@@ -47,6 +47,7 @@ void main()
 #ifdef TRANSPARENT
 #ifdef GLOW_APART
   closure.radiance = vec3(0.0);
+  closure.unsplit = vec3(0.0);
 #endif
   float through = closure_through(closure);
   if (through > 0.0) {
@@ -61,11 +62,12 @@ void main()
     // What is left of the surface stands for the rest, too.
     float scale = 1.0 / max(1.0 - through, 1e-6);
     closure.radiance *= scale;
+    closure.unsplit *= scale;
     hole = min(hole * scale, 1.0);
   }
 #endif
 #ifdef HIGHLIGHTS
-  closure.radiance = without_highlights(closure.radiance);
+  closure.radiance = without_highlights(closure);
 #endif
   out_color = vec4(closure.radiance, 1.0 - hole);
 #ifdef MATTES

@@ -37,6 +37,12 @@ struct Lobe {
   bool repeats;  // light scattered more than once between the facets is added
 };
 
+// Light that a surface sends to the eye.
+struct Reflected {
+  vec3 light;
+  vec3 unsplit;  // of it, light of lamps that is never splatted
+};
+
 Shading surface_shading()
 {
   Shading s;
@@ -70,14 +76,15 @@ vec3 environment_direction(vec3 direction)
               dot(environment_buf.rotation_z.xyz, direction));
 }
 
-// Radiance of a white Lambertian surface.
-vec3 diffuse_light(Shading s)
+// Of a white Lambertian surface.
+Reflected diffuse_light(Shading s)
 {
   vec3 sum = environment_buf.color.rgb;
   if (environment_buf.color.w > 0.5) {
     vec2 place = direction_to_octahedron(environment_direction(s.normal));
     sum *= environment_level(environment_levels_tx, place, ENVIRONMENT_DIFFUSE);
   }
+  vec3 unsplit = vec3(0.0);
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
     if (light.kind == LIGHT_NONE) {
@@ -85,9 +92,11 @@ vec3 diffuse_light(Shading s)
     }
     Illumination incoming = light_illuminate(light, s.position);
     float cosine = horizon_cosine(dot(s.normal, incoming.towards), incoming.sin2);
-    sum += incoming.irradiance * (light.factors.x * cosine / PI);
+    vec3 reflected = incoming.irradiance * (light.factors.x * cosine / PI);
+    sum += reflected;
+    unsplit += reflected * light.unsplit;
   }
-  return sum;
+  return Reflected(sum, unsplit);
 }
 
 // The world in a direction, averaged over a lobe of a roughness.
@@ -165,7 +174,7 @@ vec3 environment_reflection(Shading s, float roughness, Lobe a, vec3 repeat_a, L
 }
 
 // Light reflected by two lobes of one roughness.
-vec3 glossy_light(Shading s, float roughness, Lobe a, Lobe b)
+Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
 {
   vec3 albedo = ggx_albedo(ggx_tx, s.cos_view, roughness);
   vec3 repeat_a = lobe_repeat(a, albedo);
@@ -182,6 +191,7 @@ vec3 glossy_light(Shading s, float roughness, Lobe a, Lobe b)
     }
   }
   float alpha = max(roughness * roughness, MIN_ALPHA);
+  vec3 unsplit = vec3(0.0);
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
     if (light.kind == LIGHT_NONE) {
@@ -206,15 +216,18 @@ vec3 glossy_light(Shading s, float roughness, Lobe a, Lobe b)
     float cos_h = clamp(dot(s.normal, normalize(incoming.towards + s.view)), 0.0, 1.0);
     float lobe = ggx_distribution_over_disk(cos_h, reach, alpha) *
                  ggx_visibility(s.cos_view, cos_light, alpha) * cos_light;
-    vec3 reflected = lobes_reflect(a, repeat_a, b, repeat_b, cos_d);
-    sum += incoming.irradiance * (light.factors.y * lobe) * reflected;
+    vec3 reflected = incoming.irradiance * (light.factors.y * lobe) *
+                     lobes_reflect(a, repeat_a, b, repeat_b, cos_d);
+    sum += reflected;
+    unsplit += reflected * light.unsplit;
   }
-  return sum;
+  return Reflected(sum, unsplit);
 }
 
 Closure closure_diffuse(vec3 color)
 {
-  return Closure(color * diffuse_light(surface_shading()), vec3(0.0), 0.0);
+  Reflected reflected = diffuse_light(surface_shading());
+  return Closure(color * reflected.light, vec3(0.0), 0.0, color * reflected.unsplit);
 }
 
 Closure closure_glossy(vec3 color, float roughness, bool repeats)
@@ -227,7 +240,8 @@ Closure closure_glossy(vec3 color, float roughness, bool repeats)
   vec3 repeat_color = repeats ? ggx_multiple_scattering(albedo, clamp(c, 0.0, 1.0)) : vec3(1.0);
   Lobe lobe = Lobe(c * repeat_color, vec3(1.0), 0.0, false);
   Lobe none = Lobe(vec3(0.0), vec3(0.0), 0.0, false);
-  return Closure(glossy_light(s, r, lobe, none), vec3(0.0), 0.0);
+  Reflected reflected = glossy_light(s, r, lobe, none);
+  return Closure(reflected.light, vec3(0.0), 0.0, reflected.unsplit);
 }
 
 Closure closure_principled(vec3 base_color,
@@ -255,14 +269,19 @@ Closure closure_principled(vec3 base_color,
   vec3 albedo = ggx_albedo(ggx_tx, s.cos_view, r);
   Lobe metal_lobe = Lobe(vec3(metal), base, 0.0, true);
   Lobe dielectric = Lobe(vec3(1.0 - metal), clamp(f0 * tint, 0.0, 1.0), eta, true);
-  vec3 light = glossy_light(s, r, metal_lobe, dielectric);
+  Reflected reflected = glossy_light(s, r, metal_lobe, dielectric);
   if (metal < 1.0) {
     // The diffuse layer gets what the coat of the dielectric does not reflect.
     vec3 taken = lobe_albedo(dielectric, albedo);
     float left = (1.0 - metal) * clamp(1.0 - max(taken.r, max(taken.g, taken.b)), 0.0, 1.0);
-    light += base * left * diffuse_light(s);
+    Reflected diffuse = diffuse_light(s);
+    reflected.light += base * left * diffuse.light;
+    reflected.unsplit += base * left * diffuse.unsplit;
   }
-  return Closure(light + emission_color * emission_strength, vec3(0.0), 0.0);
+  return Closure(reflected.light + emission_color * emission_strength,
+                 vec3(0.0),
+                 0.0,
+                 reflected.unsplit);
 }
 
 #else

@@ -1,6 +1,7 @@
 """A camera's bokeh as a value: what its settings become, and what they ask for in vain."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -273,6 +274,24 @@ def test_a_material_may_never_shine_as_bokeh(camera, empty_scene, aplanat_bpy):
         assert second.uid != first.uid
         (third,) = look()
         assert third is second
+
+
+def test_a_lamp_may_never_shine_as_bokeh(empty_scene, aplanat_bpy):
+    bpy = aplanat_bpy
+    lamp = bpy.data.lights.new("Lamp", "POINT")
+    lamp.energy = 100.0
+    scenes.add(bpy, "Lamp", lamp)
+    with scenes.told_of_updates(bpy, SceneExtractor()) as extractor:
+
+        def look():
+            depsgraph = bpy.context.evaluated_depsgraph_get()
+            return extractor.extract_content(depsgraph).lights
+
+        (first,) = look()
+        assert first.highlights
+        lamp.aplanat.highlights = "NEVER"
+        (second,) = look()
+        assert second == replace(first, highlights=False)
 
 
 def test_the_reference_method_samples_highlights_unless_told_otherwise(empty_scene):

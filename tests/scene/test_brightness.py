@@ -1,5 +1,7 @@
 """Bounds of how bright surfaces may be."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,9 +10,11 @@ from addon.scene.snapshot import (
     ImageSnapshot,
     InstanceGroup,
     InstanceTable,
+    Light,
     MaterialSnapshot,
     MeshSnapshot,
     SceneContent,
+    World,
     next_uid,
 )
 from addon.scene.surface_graph import Constant, Link, ShaderNode, SurfaceGraph, emission_graph
@@ -18,7 +22,10 @@ from addon.scene.surface_graph import Constant, Link, ShaderNode, SurfaceGraph, 
 IMAGE = 77
 
 
-def bound(graph, attributes=None, images=None, holdout=False):
+SUN = Light("SUN", (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), (1.0, 1.0, 1.0))
+
+
+def bound(graph, attributes=None, images=None, holdout=False, lights=(), world=None):
     mesh = MeshSnapshot(
         next_uid(),
         "m",
@@ -34,6 +41,8 @@ def bound(graph, attributes=None, images=None, holdout=False):
         materials={material.uid: material},
         instances=InstanceTable(np.eye(4, dtype=np.float32)[None], np.zeros(1, np.float32)),
         groups=(InstanceGroup(mesh.uid, (material.uid,), 0, 1, holdout),),
+        lights=lights,
+        world=world or World(),
     )
     ((found,),) = brightest(content)
     return found
@@ -79,7 +88,9 @@ def test_mixed_surfaces_are_as_bright_as_the_brighter_and_added_ones_as_both():
 
 def test_lit_and_unknown_surfaces_may_be_of_any_brightness():
     lit = ShaderNode("diffuse", (("Color", Constant((0.1, 0.1, 0.1))),))
-    assert bound(SurfaceGraph((lit,), Link(0, "BSDF"))) == np.inf
+    graph = SurfaceGraph((lit,), Link(0, "BSDF"))
+    assert bound(graph, lights=(SUN,)) == np.inf
+    assert bound(graph, world=World((1.0, 1.0, 1.0), image=IMAGE)) == np.inf
     unknown = ShaderNode("math")
     graph = SurfaceGraph((unknown, emission(Link(0, "Value"))), Link(1, "Emission"))
     assert bound(graph) == np.inf
@@ -98,6 +109,18 @@ def principled(metallic, specular, strength=0.0):
         ("Emission Strength", Constant((strength,))),
     )
     return SurfaceGraph((ShaderNode("principled", inputs),), Link(0, "BSDF"))
+
+
+def test_lamps_that_give_no_highlights_do_not_count():
+    dark = replace(SUN, highlights=False)
+    gloss = ShaderNode("glossy", (("Color", Constant((0.5, 2.0, 0.5))),))
+    graph = SurfaceGraph((gloss,), Link(0, "BSDF"))
+    assert bound(graph, lights=(dark,)) == 0.0
+    assert bound(graph, lights=(dark, SUN)) == np.inf
+    # A world of one colour is reflected, no brighter than the surface is white.
+    assert 0.6 <= bound(graph, lights=(dark,), world=World((0.1, 0.3, 0.2))) < 0.7
+    world = World((0.5, 0.5, 0.5))
+    assert 3.5 <= bound(principled(0.0, Constant((0.5,)), 3.0), world=world) < 3.6
 
 
 def test_only_gloss_looks_different_from_elsewhere():

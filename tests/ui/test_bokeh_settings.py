@@ -214,11 +214,13 @@ def test_panels_are_for_aplanat_only():
     assert bokeh_presets.APLANAT_OT_bokeh_preset_add.bl_description
 
 
-def test_a_material_starts_with_automatic_highlights(aplanat_bpy, empty_scene):
+def test_materials_and_lights_start_with_automatic_highlights(aplanat_bpy, empty_scene):
     material = aplanat_bpy.data.materials.new("Material")
-    assert material.aplanat.highlights == "AUTOMATIC"
-    (prop,) = [p for p in material.aplanat.bl_rna.properties if p.identifier == "highlights"]
-    assert prop.description and all(item.description for item in prop.enum_items)
+    light = aplanat_bpy.data.lights.new("Light", "SPOT")
+    for data in (material, light):
+        assert data.aplanat.highlights == "AUTOMATIC"
+        (prop,) = [p for p in data.aplanat.bl_rna.properties if p.identifier == "highlights"]
+        assert prop.description and all(item.description for item in prop.enum_items)
 
 
 def test_nothing_stays_after_unregistering(aplanat_bpy):
@@ -229,5 +231,6 @@ def test_nothing_stays_after_unregistering(aplanat_bpy):
     try:
         assert not bpy.utils.preset_paths("aplanat/bokeh")
         assert not hasattr(bpy.types.Material, "aplanat")
+        assert not hasattr(bpy.types.Light, "aplanat")
     finally:
         addon.register()
