@@ -59,6 +59,12 @@ def join(parts):
     -------
     str
     """
+    return _join(SHADER_ROOT, tuple(parts))
+
+
+# As many as there are shapes of node trees; a scene asks for each of them once a surface.
+@cache
+def _join(_root, parts):
     return _remember(located_parts(parts))
 
 
@@ -106,18 +112,24 @@ def located_lines(path):
     return _expand(path, set())
 
 
-def _expand(path, seen):
-    seen.add(path)
-    file = SHADER_ROOT / path
+@cache
+def _read(root, path):
+    """Return the lines of a file, each with the path that it includes or None."""
+    file = root / path
     try:
         text = file.read_text(encoding="utf-8")
     except OSError as error:
         raise ShaderCompileError(path, f"{file}: {error.strerror}") from error
+    matches = [(line, _INCLUDE.match(line)) for line in text.splitlines()]
+    return [(line, match and match.group(1)) for line, match in matches]
+
+
+def _expand(path, seen):
+    seen.add(path)
     lines = []
-    for number, line in enumerate(text.splitlines(), start=1):
-        match = _INCLUDE.match(line)
-        if not match:
+    for number, (line, included) in enumerate(_read(SHADER_ROOT, path), start=1):
+        if included is None:
             lines.append((line, path, number))
-        elif match.group(1) not in seen:
-            lines.extend(_expand(match.group(1), seen))
+        elif included not in seen:
+            lines.extend(_expand(included, seen))
     return lines

@@ -35,3 +35,11 @@ def test_a_missing_include_is_named(shaders):
     (shaders / "a.glsl").write_text('#include "gone.glsl"\n')
     with pytest.raises(ShaderCompileError, match=r"gone\.glsl"):
         shader_source.load("a.glsl")
+
+
+def test_a_text_is_put_together_once(shaders):
+    (shaders / "a.glsl").write_text("first\n")
+    parts = ("a.glsl", shader_source.Text("int generated;"))
+    assert shader_source.join(parts) is shader_source.join(list(parts))
+    other = shader_source.join(("a.glsl", shader_source.Text("int other;")))
+    assert other != shader_source.join(parts)
