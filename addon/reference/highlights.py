@@ -52,7 +52,7 @@ def highlights(layers, raster):
     Parameters
     ----------
     layers : sequence of (ndarray, ndarray)
-        Light above the threshold, shape (height, width, 3), and window depth, shape (height,
+        Light to be splatted, shape (height, width, 3), and window depth, shape (height,
         width), of each layer; bottom row first.
     raster : Raster
 
@@ -78,13 +78,13 @@ def highlights(layers, raster):
 def _pixel(color, window_depth, raster, row, column):
     fine = raster.subpixels
     block = (slice(row * fine, (row + 1) * fine), slice(column * fine, (column + 1) * fine))
-    excess = color[block].reshape(-1, 3).astype(float)
-    bright = excess.max(axis=1) > 0.0
+    light = color[block].reshape(-1, 3).astype(float)
+    bright = light.max(axis=1) > 0.0
     if not bright.any():
         return [], False
     y, x = np.mgrid[block]
     places = np.stack([x, y], axis=-1).reshape(-1, 2)[bright] + 0.5
-    excess, depth = excess[bright], raster.depth(window_depth[block].ravel()[bright])
+    light, depth = light[bright], raster.depth(window_depth[block].ravel()[bright])
     coc = raster.coc(depth)
     share = highlight_share(coc, raster.least_coc)
     blurred = share > 0.0
@@ -96,12 +96,12 @@ def _pixel(color, window_depth, raster, row, column):
         near = coc < 0.5 * (low + high)
         groups = [blurred & near, blurred & ~near]
     size = np.array(window_depth.shape[::-1])
-    sources = [_source(places[g], excess[g], depth[g], share[g], raster, size) for g in groups]
+    sources = [_source(places[g], light[g], depth[g], share[g], raster, size) for g in groups]
     return sources, not blurred.all()
 
 
-def _source(places, excess, depth, share, raster, size):
-    weight = excess.max(axis=1) * share
+def _source(places, light, depth, share, raster, size):
+    weight = light.max(axis=1) * share
     clip = (places * weight[:, None]).sum(axis=0) / weight.sum() / size * 2.0 - 1.0
     mean_depth = weight.sum() / (weight / depth).sum()
     scale = np.diag(raster.projection)[:2]
@@ -110,5 +110,5 @@ def _source(places, excess, depth, share, raster, size):
     else:
         xy = (clip + raster.projection[:2, 2]) / scale * mean_depth
     area = 1.0 / raster.subpixels**2
-    energy = (excess * share[:, None]).sum(axis=0) * area
+    energy = (light * share[:, None]).sum(axis=0) * area
     return [*xy, mean_depth, np.sqrt(len(places) * area), *energy, 0.0]

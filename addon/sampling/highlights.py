@@ -5,9 +5,13 @@ do not fill the disc, the light above a threshold is therefore taken out of the 
 as a disc of its own. Nothing is lost: at every surface the radiance `I`
 with the signed circle of confusion `C` (px) is divided into
 
-``highlight = share(C) I max(0, 1 - threshold / max(I))`` and ``base = I - highlight``,
+``base = I (1 - share(C)) + share(C) kept(I)`` and ``highlight = I - base``,
 
 ``share(C) = smoothstep(c0, 1.5 c0, |C|)``, ``c0 = max(2, sqrt(samples / (4 pi)))``.
+
+``kept(I)`` is ``I`` up to the threshold and nothing from twice the threshold on. Whatever samples
+kept of a lamp would be a bright dot in each of them, and most of the noise of all. A gain multiplies
+only what lies above the threshold.
 
 The same functions for the graphics device are in ``lib/highlight_lib.glsl``.
 """
@@ -58,21 +62,24 @@ def highlight_share(coc_px, least):
     return t * t * (3.0 - 2.0 * t)
 
 
-def highlight_excess(radiance, threshold):
-    """Return the light above the threshold, in the colour of the whole.
+def highlight_light(radiance, threshold, gain=1.0):
+    """Return the light that is splatted where the share is 1, in the colour of the whole.
 
     Parameters
     ----------
     radiance : ndarray of shape (..., 3)
     threshold : float
         Of the largest channel; greater than 0.
+    gain : float
+        Of what lies above the threshold.
 
     Returns
     -------
     ndarray of shape (..., 3)
     """
     radiance = np.asarray(radiance)
-    return radiance * (1.0 - _kept(radiance, threshold))
+    below = _below(radiance, threshold)
+    return radiance * (below - _kept(radiance, threshold) + gain * (1.0 - below))
 
 
 def highlight_base(radiance, share, threshold):
@@ -88,7 +95,7 @@ def highlight_base(radiance, share, threshold):
     Returns
     -------
     ndarray of shape (..., 3)
-        ``radiance - share * highlight_excess(radiance, threshold)``, without the loss of digits
+        ``radiance - share * highlight_light(radiance, threshold)``, without the loss of digits
         that this difference has for radiances far above the threshold.
     """
     radiance, share = np.asarray(radiance), np.asarray(share)[..., None]
@@ -119,6 +126,11 @@ def amplify(radiance, amplification):
     return radiance * (1.0 + amplification * luminance[..., None] ** 10)
 
 
-def _kept(radiance, threshold):
+def _below(radiance, threshold):
     peak = np.maximum(radiance.max(axis=-1, keepdims=True), 1e-30)
     return np.minimum(threshold / peak, 1.0)
+
+
+def _kept(radiance, threshold):
+    below = _below(radiance, threshold)
+    return below * np.clip(2.0 - 1.0 / below, 0.0, 1.0)

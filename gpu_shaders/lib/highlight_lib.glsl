@@ -14,22 +14,30 @@ float highlight_share(float coc_px, float least_px)
 }
 
 // Share of the radiance that lies below the threshold.
-float highlight_kept(vec3 radiance, float threshold)
+float highlight_below(vec3 radiance, float threshold)
 {
   float peak = max(max(radiance.r, max(radiance.g, radiance.b)), 1e-30);
   return min(threshold / peak, 1.0);
 }
 
-// Light above the threshold, in the colour of the whole.
-vec3 highlight_excess(vec3 radiance, float threshold)
+// Share of a highlight that the lens samples keep: nothing from twice the threshold on.
+float highlight_kept(vec3 radiance, float threshold)
 {
-  return radiance * (1.0 - highlight_kept(radiance, threshold));
+  float below = highlight_below(radiance, threshold);
+  return below * clamp(2.0 - 1.0 / below, 0.0, 1.0);
+}
+
+// Light that is splatted, in the colour of the whole; what lies above the threshold times the gain.
+vec3 highlight_light(vec3 radiance, float threshold, float gain)
+{
+  float below = highlight_below(radiance, threshold);
+  return radiance * (below - highlight_kept(radiance, threshold) + gain * (1.0 - below));
 }
 
 // The same of light of which a part is never splatted.
-vec3 highlight_excess(vec3 radiance, vec3 unsplit, float threshold)
+vec3 highlight_light(vec3 radiance, vec3 unsplit, float threshold, float gain)
 {
-  return highlight_excess(radiance - unsplit, threshold);
+  return highlight_light(radiance - unsplit, threshold, gain);
 }
 
 // Radiance without the splatted part, to full precision however bright it is.

@@ -61,7 +61,7 @@ void main()
   radiance = highlight_base(radiance, highlight_buf.world.z, highlight_buf.split.x);
 #endif
 #ifdef EXCESS
-  radiance = highlight_excess(radiance, highlight_buf.split.x);
+  radiance = highlight_light(radiance, highlight_buf.split.x, highlight_buf.split.z);
 #endif
   out_color = vec4(radiance, 1.0);
 }

@@ -132,7 +132,7 @@ void emit(Highlight found, uint index)
     return;
   }
   imageStore(a_img, place, vec4(xy, depth, sqrt(found.texels * area)));
-  imageStore(b_img, place, vec4(found.energy * (area * highlight_buf.split.z), lens_view.z));
+  imageStore(b_img, place, vec4(found.energy * area, lens_view.z));
 }
 #endif
 

@@ -68,21 +68,21 @@ void main()
   }
   Closure closure = surface_closure();
   float opacity = 1.0;
-  vec3 excess = highlight_excess(closure.radiance, closure.unsplit, highlight_buf.split.x);
+  vec2 split = vec2(highlight_buf.split.x, highlight_buf.split.z);
+  vec3 light = highlight_light(closure.radiance, closure.unsplit, split.x, split.y);
 #ifdef TRANSPARENT
   opacity = 1.0 - closure_through(closure);
 #ifndef GLOW_APART
   // What the lens samples split: the light of those that chance lets stand.
   float there = max(opacity, 1e-6);
-  excess = highlight_excess(
-      closure.radiance / there, closure.unsplit / there, highlight_buf.split.x);
-  excess *= opacity;
+  light = highlight_light(closure.radiance / there, closure.unsplit / there, split.x, split.y);
+  light *= opacity;
 #endif
 #endif
-  if (max(excess.r, max(excess.g, excess.b)) <= 0.0) {
+  if (max(light.r, max(light.g, light.b)) <= 0.0) {
     discard;
   }
-  out_color = vec4(excess, opacity);
+  out_color = vec4(light, opacity);
 #endif
 }
 #endif

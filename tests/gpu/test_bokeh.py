@@ -17,7 +17,7 @@ from addon.engine.plan import plan_frame
 from addon.passes import highlights, splat, surface
 from addon.reference.highlights import Raster
 from addon.reference.highlights import highlights as twin
-from addon.sampling.highlights import highlight_excess
+from addon.sampling.highlights import highlight_light
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
 from addon.scene.snapshot import BokehSettings
@@ -310,7 +310,7 @@ def test_a_lone_lamp_keeps_its_energy_in_a_slow_pan(diameter_px):
         area = 0.5 * abs(a[0] * b[1] - a[1] * b[0]) / pixel**2
         snapshot = triangles_snapshot([corners], [light], WIDTH, HEIGHT, LENS, 4)
         picture = render_snapshot(with_bokeh(snapshot, passes=("Bokeh",)))["Bokeh"]
-        found.append(energy(picture)[0] / (area * (light[0] - 1.0)))
+        found.append(energy(picture)[0] / (area * light[0]))
     assert found == pytest.approx([1.0] * len(found), abs=0.01)
 
 
@@ -343,19 +343,21 @@ def test_the_search_ends_with_the_first_empty_layer():
     assert drawn[0] == drawn[1]
 
 
-def test_gain_multiplies_the_bokeh_alone():
-    once, twice = (render_snapshot(with_bokeh(lamps(), gain=gain)) for gain in (1.0, 2.0))
-    assert energy(twice["Bokeh"]) == pytest.approx(2 * energy(once["Bokeh"]), rel=1e-6)
-    assert twice["Defocus"].tobytes() == once["Defocus"].tobytes()
+def test_gain_multiplies_what_lies_above_the_threshold():
+    gains = (0.0, 1.0, 2.0)
+    none, once, twice = (render_snapshot(with_bokeh(lamps(), gain=gain)) for gain in gains)
+    above = energy(once["Bokeh"]) - energy(none["Bokeh"])
+    assert energy(twice["Bokeh"]) - energy(once["Bokeh"]) == pytest.approx(above, rel=1e-5)
+    assert twice["Defocus"].tobytes() == none["Defocus"].tobytes()
 
 
 def test_the_split_on_the_device_is_that_of_the_twin():
     # A lamp that fills the frame, far out of focus: every sample keeps the same.
     corners = [lamp(0.0, 0.0, 1.0, 9.0)]
-    light = (30.0, 3.0, 0.3)
+    light = (3.0, 0.3, 0.03)
     snapshot = triangles_snapshot(corners, [light], 16, 16, ThinLens(1.0, 3.0), 1)
     kept = render_snapshot(with_bokeh(snapshot, threshold=2.0))["Defocus"]
-    expected = np.array(light) - highlight_excess(np.array(light), 2.0)
+    expected = np.array(light) - highlight_light(np.array(light), 2.0)
     assert kept[..., :3].reshape(-1, 3) == pytest.approx(np.tile(expected, (256, 1)), rel=1e-6)
 
 

@@ -6,7 +6,7 @@ import pytest
 from addon.sampling.highlights import (
     amplify,
     highlight_base,
-    highlight_excess,
+    highlight_light,
     highlight_share,
     least_coc,
 )
@@ -24,15 +24,15 @@ def test_base_and_highlight_add_up_to_the_whole(share):
     base = highlight_base(radiance, np.full(len(radiance), share), 1.0)
     # Rounding of doubles.
     np.testing.assert_allclose(
-        base + share * highlight_excess(radiance, 1.0), radiance, rtol=1e-14, atol=0
+        base + share * highlight_light(radiance, 1.0), radiance, rtol=1e-14, atol=0
     )
 
 
 def test_nothing_below_the_threshold_is_splatted():
     radiance = radiances()
     dark = radiance.max(axis=1) <= 2.0
-    assert (highlight_excess(radiance, 2.0)[dark] == 0.0).all()
-    assert (highlight_excess(radiance, 2.0)[~dark].max(axis=1) > 0.0).all()
+    assert (highlight_light(radiance, 2.0)[dark] == 0.0).all()
+    assert (highlight_light(radiance, 2.0)[~dark].max(axis=1) > 0.0).all()
 
 
 def test_base_keeps_the_colour_and_ends_at_the_threshold():
@@ -46,7 +46,27 @@ def test_base_keeps_the_colour_and_ends_at_the_threshold():
 def test_base_of_single_precision_is_exact_for_very_bright_light():
     radiance = np.array([[1e5, 3e4, 0.0]], np.float32)
     base = highlight_base(radiance, np.ones(1, np.float32), np.float32(1.0))
-    assert base[0] == pytest.approx([1.0, 0.3, 0.0], rel=1e-6)
+    assert (base == 0.0).all()
+    half = highlight_base(radiance, np.full(1, 0.5, np.float32), np.float32(1.0))
+    assert half[0] == pytest.approx(0.5 * radiance[0], rel=1e-6)
+
+
+def test_samples_keep_less_of_brighter_light_and_nothing_of_lamps():
+    grey = np.linspace(0.0, 5.0, 501)[:, None] * np.ones(3)
+    kept = highlight_base(grey, np.ones(501), 2.0)[:, 0]
+    np.testing.assert_allclose(kept[:201], grey[:201, 0])
+    assert (np.diff(kept[200:401]) < 0.0).all()
+    assert np.abs(np.diff(kept)).max() < 0.011  # no step
+    assert (kept[400:] == 0.0).all()
+
+
+def test_gain_is_of_what_lies_above_the_threshold():
+    radiance = radiances()
+    base = highlight_base(radiance, np.ones(len(radiance)), 1.0)
+    clipped = base + highlight_light(radiance, 1.0, 0.0)
+    np.testing.assert_allclose(clipped.max(axis=1), np.minimum(radiance.max(axis=1), 1.0))
+    twice = base + highlight_light(radiance, 1.0, 2.0)
+    np.testing.assert_allclose(twice - clipped, 2.0 * (radiance - clipped), atol=1e-9)
 
 
 def test_share_rises_smoothly_from_least_radius():
