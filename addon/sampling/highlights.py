@@ -10,7 +10,7 @@ with the signed circle of confusion `C` (px) is divided into
 ``share(C) = smoothstep(c0, 1.5 c0, |C|)``, ``c0 = max(2, sqrt(samples / (4 pi)))``.
 
 ``kept(I)`` is ``I`` up to the threshold and nothing from twice the threshold on. Whatever samples
-kept of a lamp would be a bright dot in each of them, and most of the noise of all. A gain multiplies
+kept of a lamp would be a bright dot in each of them, and most of the noise. A gain multiplies
 only what lies above the threshold.
 
 The same functions for the graphics device are in ``lib/highlight_lib.glsl``.
