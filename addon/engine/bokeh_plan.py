@@ -189,7 +189,7 @@ def plan_bokeh(snapshot, plan):
         world_depth=_INFINITY * max(plan.focus_distance, 1.0),
         iris=lens.iris,
         real_lens=None if plan.orthographic else snapshot.camera.real_lens,
-        filter_width=_filter_width(film.filter_kind, film.filter_size_px),
+        filter_width=filter_width(film.filter_kind, film.filter_size_px),
     )
 
 
@@ -258,8 +258,8 @@ def _margin(plan, settings, largest):
     return tuple(int(np.ceil(min(largest * n, limit))) + _RIM for n in narrowing)
 
 
-def _filter_width(kind, size_px):
-    """Return the width of the box with the variance of a pixel filter along an axis."""
+def filter_width(kind, size_px):
+    """Return the width of the box with the variance of a pixel filter along an axis, px."""
     reach = 2.0 * size_px
     places = (np.arange(1024) + 0.5) / 1024 * 2.0 * reach - reach
     density = filter_density(places, kind, size_px)

@@ -10,15 +10,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..device import geometry, readback, state
+from ..device import geometry, readback
 from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
-from ..passes import accumulate, background, chromatic, cryptomatte, data, resolve, surface
+from ..passes import accumulate, background, chromatic, cryptomatte, surface
 from ..sampling.chromatic import LEAST_SCALE
 from . import render_passes
 from .bokeh_plan import draft_of
 from .bokeh_stage import BokehStage, highlight_buffer
 from .bokeh_visibility import SceneOccluders
+from .frame_pictures import FramePictures
 from .scene_drawing import SceneDrawing
 from .subsampling import SubsampleBlur
 
@@ -49,7 +50,7 @@ class FrameRenderer:
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
         self._content = self._levels = self._drawing = self._blur = self._plain = None
-        self._target = self._bokeh = self._occluders = None
+        self._target = self._bokeh = self._occluders = self._pictures = None
         self._graded = {}
         self._targets = self._refining = None
         self._bokeh_seconds = np.inf
@@ -101,6 +102,15 @@ class FrameRenderer:
                 self._draft = self._stage(replace(plan, bokeh=draft_of(plan.bokeh)))
         self.bokeh_drafted = self._draft is not None
         self._prepare_targets()
+        self._pictures = FramePictures(
+            plan,
+            self._content,
+            self._buffers,
+            self._drawing,
+            self._view,
+            self._targets,
+            self._fullscreen,
+        )
         self._restart_plain(plan, snapshot)
 
     def _restart_plain(self, plan, snapshot):
@@ -167,7 +177,7 @@ class FrameRenderer:
             TargetSpec("sample", "RGBA32F", scale=fine),
             TargetSpec("sample_depth", "DEPTH_COMPONENT32F", scale=fine),
             TargetSpec("sum", "RGBA32F"),
-            TargetSpec("image", "RGBA32F"),
+            *FramePictures.target_specs(self.plan),
         ]
         if self.plan.bokeh:
             specs.append(TargetSpec("bokeh", "RGBA32F"))
@@ -323,40 +333,12 @@ class FrameRenderer:
         pixel_size : int
             Side of the square that shows one pixel.
         """
-        self._resolve("sum", origin, pixel_size, with_bokeh=True)
-
-    def _resolve(self, total, origin=(0, 0), pixel_size=1, with_bokeh=False):
-        state.overwrite()
-        weight = self._weight() if total == "sum" else self._mean_weight()
-        bokeh = self._targets["bokeh"] if self._bokeh and with_bokeh else None
-        resolve.resolve(self._fullscreen, self._targets[total], weight, origin, pixel_size, bokeh)
-
-    def _weight(self):
-        # A first sample whose places all lie outside a narrow box filter weighs nothing.
-        weight = self.plan.weight(self.samples_done)
-        if isinstance(weight, tuple):
-            return tuple(w or 1.0 for w in weight)
-        return weight or 1.0
-
-    def _mean_weight(self):
-        weight = self._weight()
-        return weight[3] if isinstance(weight, tuple) else weight
+        self._pictures.resolve(self.samples_done, origin, pixel_size)
 
     def read_image(self):
         """Return the picture so far, shape (height, width, 4), bottom row first."""
         self._targets.forget_framebuffers()
-        return self._read_combined()
-
-    def _read_combined(self):
-        picture = self._read_sum("sum", "image")
-        # Added here and not on the device, so that it is the sum of the two passes to the last bit.
-        return picture + self._read_bokeh() if self._bokeh else picture
-
-    def _read_bokeh(self):
-        if not self._bokeh:
-            return np.zeros((self.plan.height, self.plan.width, 4), np.float32)
-        framebuffer = self._targets.framebuffer("bokeh")
-        return readback.read_color(framebuffer, self.plan.width, self.plan.height)
+        return self._pictures.read_combined(self.samples_done)
 
     def pass_groups(self):
         """Return the plan's passes in groups that are best read together.
@@ -384,81 +366,28 @@ class FrameRenderer:
         """
         names = self.plan.passes if names is None else names
         self._targets.forget_framebuffers()
-        pictures = self._read_data(render_passes.made_by(names, "DATA"))
+        made, done = self._pictures, self.samples_done
+        pictures = made.read_data(render_passes.made_by(names, "DATA"))
         for name in names:
             if name == "Combined":
-                pictures[name] = self._read_combined()
+                pictures[name] = made.read_combined(done)
             elif name == "Defocus":
-                pictures[name] = self._read_sum("sum", "image")
+                pictures[name] = made.read_defocus(done)
             elif name == "Bokeh":
-                pictures[name] = self._read_bokeh()
+                pictures[name] = made.read_bokeh()
             elif name == "Focus Matte":
-                focus = self._read_sum("focus_sum", "image")
-                pictures[name] = np.ascontiguousarray(focus[..., :1])
+                pictures[name] = made.read_focus_matte(done)
             elif name == "Fringe":
                 pictures[name] = self._read_fringe()
             elif name not in pictures:
-                pictures[name] = self._read_cryptomatte(name[:-2], int(name[-2:]))
+                pictures[name] = made.read_cryptomatte(name, done)
         return {name: pictures[name] for name in names}
 
     def _read_fringe(self):
-        picture = np.ascontiguousarray(self._read_sum("sum", "image")[..., :3])
+        picture = self._pictures.read_combined(self.samples_done)[..., :3]
         if self._plain is None:
-            return np.zeros_like(picture)
+            return np.zeros_like(picture, order="C")
         return picture - self._plain.read_image()[..., :3]
-
-    def _read_sum(self, total, image):
-        framebuffer = self._targets.framebuffer(image)
-        with framebuffer.bind():
-            self._resolve(total)
-        return readback.read_color(framebuffer, self.plan.width, self.plan.height)
-
-    def _read_cryptomatte(self, kind, index):
-        framebuffer = self._targets.framebuffer("image")
-        with framebuffer.bind():
-            state.overwrite()
-            cryptomatte.draw_ranks(
-                self._fullscreen,
-                self._targets["tables"],
-                self._cryptomattes,
-                kind,
-                index,
-                self._mean_weight(),
-            )
-        return readback.read_color(framebuffer, self.plan.width, self.plan.height)
-
-    def _read_data(self, names):
-        if not names:
-            return {}
-        plan = self.plan
-        slots = data.targets(names)
-        draws = self._drawing.full_detail_draws(data.target(names))
-        bindings = [("data_buf", data.data_params(
-            plan.previous, plan.next, plan.width, plan.height, plan.alpha_threshold
-        ))]  # fmt: skip
-        if "Vector" in names:
-            tables = self._buffers.neighbouring_instances(self._content.instances)
-            bindings += zip(("previous_tx", "next_tx"), tables, strict=True)
-        instances = self._buffers.instances
-        if "Detail" in names:
-            instances = self._drawing.detail_table()
-        specs = [TargetSpec(name, "RGBA32F") for name in slots]
-        specs.append(TargetSpec("depth", "DEPTH_COMPONENT32F"))
-        with Targets(plan.width, plan.height, specs) as targets:
-            empty = data.empty_values(plan.empty_coc)
-            for name in slots:
-                targets.clear(name, empty[name])
-            framebuffer = targets.framebuffer(*slots, depth="depth")
-            with framebuffer.bind():
-                framebuffer.clear(depth=1.0)
-                state.opaque()
-                data.draw(draws, self._view, instances, tuple(bindings))
-            self._drawing.counts.draw_calls += len(draws)
-            pictures = {
-                name: readback.read_color(targets.framebuffer(name), plan.width, plan.height)
-                for name in {data.PLACES[name][0] for name in names}
-            }
-        return {name: _channels(pictures, *data.PLACES[name]) for name in names}
 
     def texture_bytes(self):
         """Return how many bytes targets, images and instances hold on the device."""
@@ -479,16 +408,12 @@ class FrameRenderer:
         if self._plain:
             self._plain.release()
         self._plain = self._buffers = self._drawing = self._blur = self._graded = None
-        self._bokeh = self._whole = self._draft = self._occluders = None
+        self._bokeh = self._whole = self._draft = self._occluders = self._pictures = None
 
     def _release_targets(self):
         if self._targets is not None:
             self._targets.release()
             self._targets = None
-
-
-def _channels(pictures, target, first, count):
-    return np.ascontiguousarray(pictures[target][..., first : first + count])
 
 
 def _chromatic_resources(plan):

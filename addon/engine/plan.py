@@ -10,6 +10,7 @@ from ..sampling.spectral_samples import wavelengths_for
 from ..sampling.subsamples import subsample_offsets
 from .bokeh_plan import BokehPlan, plan_bokeh
 from .chromatic import ChromaticPlan, plan_chromatic
+from .distortion import DistortionPlan, plan_distortion
 from .quality import settle
 
 # Diagonals of the picture over the diameter of the largest circle of confusion that counts as
@@ -33,7 +34,7 @@ class FramePlan:
     Parameters
     ----------
     width, height : int
-        Of the rendered region, in pixels.
+        Of the rendered region, in pixels; with distortion those of the raster that is drawn.
     origin : tuple of 2 int
         Lower left pixel of the region in the picture.
     view : ndarray of shape (4, 4)
@@ -82,6 +83,8 @@ class FramePlan:
         None: every sample stands for all wavelengths.
     plain : FramePlan or None
         The same frame without chromatic aberration, where Fringe needs it.
+    distortion : DistortionPlan or None
+        How the picture is made of the raster that is drawn; None: it is that raster.
     """
 
     width: int
@@ -112,6 +115,13 @@ class FramePlan:
     bokeh: BokehPlan | None = None
     chromatic: ChromaticPlan | None = None
     plain: "FramePlan | None" = None
+    distortion: DistortionPlan | None = None
+
+    @property
+    def size(self):
+        """Width and height of the picture, in pixels."""
+        made = self.distortion or self
+        return made.width, made.height
 
     @property
     def samples(self):
@@ -285,6 +295,17 @@ def plan_frame(snapshot):
     -------
     FramePlan
     """
+    distortion, drawn = plan_distortion(snapshot)
+    plan = _plan_raster(drawn)
+    if distortion is None:
+        return plan
+    film = snapshot.film
+    sharp = sharp_radius(film.width, film.height) * distortion.fineness
+    bent = {"distortion": distortion, "sharp_radius": sharp}
+    return replace(plan, plain=plan.plain and replace(plan.plain, **bent), **bent)
+
+
+def _plan_raster(snapshot):
     sampling = snapshot.sampling
     if sampling.method == "ADAPTIVE" and sampling.target_error is not None:
         # Of wavelengths, several tell how far they reach.

@@ -1,10 +1,12 @@
-"""From the sum of the samples to the picture (methods 1)."""
+"""From the sum of the samples to the picture (methods 1), through its distortion (methods 13)."""
+
+import numpy as np
 
 from ..device import shader_source
 from ..device.shaders import ShaderInfo, compile_shader
 
 
-def _info(with_bokeh, by_channel):
+def _info(with_bokeh, by_channel, distorted):
     return ShaderInfo(
         name="aplanat_resolve",
         vertex=shader_source.load("passes/fullscreen_vert.glsl"),
@@ -16,12 +18,17 @@ def _info(with_bokeh, by_channel):
             ("VEC4" if by_channel else "FLOAT", "scale"),
             ("IVEC2", "origin"),
             ("INT", "pixel_size"),
+            *(
+                (("VEC4", name) for name in ("to_field", "from_field", "model"))
+                if distorted
+                else ()
+            ),
         ),
-        defines=(("BOKEH", "1"),) * with_bokeh,
+        defines=(("BOKEH", "1"),) * with_bokeh + (("DISTORTED", "1"),) * distorted,
     )
 
 
-def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1, bokeh=None):
+def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1, bokeh=None, distortion=None):
     """Draw the mean of the samples into the bound frame buffer.
 
     Parameters
@@ -37,9 +44,11 @@ def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1, bokeh=None):
         Side of the square of the frame buffer that shows one pixel of the picture.
     bokeh : GPUTexture or None
         Added to the mean.
+    distortion : DistortionPlan or None
+        Where the picture's pixels lie in the textures; None: they are those of the textures.
     """
     by_channel = isinstance(weight, tuple)
-    shader = compile_shader(_info(bokeh is not None, by_channel))
+    shader = compile_shader(_info(bokeh is not None, by_channel, distortion is not None))
     shader.bind()
     shader.uniform_sampler("sum_tx", total)
     if bokeh is not None:
@@ -48,4 +57,11 @@ def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1, bokeh=None):
     shader.uniform_float("scale", scale)
     shader.uniform_int("origin", origin)
     shader.uniform_int("pixel_size", pixel_size)
+    if distortion is not None:
+        shader.uniform_float("to_field", distortion.to_field.tolist())
+        shader.uniform_float("from_field", distortion.from_field.tolist())
+        # The standard deviation of the filter's box.
+        blur = distortion.filter_width / np.sqrt(12.0)
+        square = distortion.radius**2
+        shader.uniform_float("model", (distortion.k, square, distortion.fineness, float(blur)))
     fullscreen.draw(shader)

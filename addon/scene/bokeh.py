@@ -27,6 +27,8 @@ _RINGING_WAVELENGTHS = 9
 # tangent: some lenses see nothing farther out.
 _FIELDS = 9
 _WIDEST_FIELD = 2.0
+# Of the division model: twice the frame for a barrel, and twice its pixels for a pincushion.
+_STRONGEST = (-0.5, 0.25)
 # Along a side of an iris' picture, in texels: finer than the largest disc's table.
 _LARGEST_IRIS = 1024
 
@@ -81,13 +83,11 @@ def describe_bokeh(camera, real_lens, corner):
         vignetting=vignetting,
         profile_strength=settings.profile_strength,
     )
-    return bokeh, problems + distortion_problems + _not_drawn(camera, distortion)
+    return bokeh, problems + distortion_problems + _not_drawn(camera)
 
 
-def _not_drawn(camera, distortion):
+def _not_drawn(camera):
     found = ()
-    if distortion:
-        found += ("distortion is not drawn by this version",)
     if camera.aplanat.chromatic.use:
         found += ("highlights drawn as bokeh show no chromatic aberration in this version",)
     return found
@@ -250,7 +250,12 @@ def _read_distortion(settings, real_lens, corner):
         )
     except AplanatError as error:
         return 0.0, (f"lens '{prescription.name}' has no distortion that could be used: {error}",)
-    return k * corner**2, ()
+    wanted = k * corner**2
+    drawn = min(max(wanted, _STRONGEST[0]), _STRONGEST[1])
+    if drawn != wanted:
+        told = f"has a distortion of K = {wanted:.3g}; {drawn:g} is drawn"
+        return drawn, (f"lens '{prescription.name}' {told}",)
+    return wanted, ()
 
 
 @lru_cache(maxsize=64)

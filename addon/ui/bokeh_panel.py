@@ -105,7 +105,10 @@ def counts_as_lines(counts):
 def _draw_notes(column, context, letters):
     camera, sampling = context.camera, context.scene.aplanat
     if not camera.dof.use_dof:
-        draw_sentences(column, "Bokeh is seen with Depth of Field only.", letters, icon="INFO")
+        text = "Bokeh is seen with Depth of Field only."
+        if camera.aplanat.bokeh.distortion_source != "NONE":
+            text += " Distortion is seen without, too."
+        draw_sentences(column, text, letters, icon="INFO")
     elif sampling.method == "REFERENCE" and not sampling.use_reference_bokeh:
         text = "The reference method samples highlights as everything else."
         draw_sentences(column, text, letters, icon="INFO")

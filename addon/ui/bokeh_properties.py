@@ -235,9 +235,10 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
     )
     distortion_source: EnumProperty(
         name="Distortion",
-        description="Where discs are moved to. The rest of the picture stays as it is",
+        description="How the lens bends straight lines: of the whole picture, in all its passes,"
+        " with and without depth of field, as long as Bokeh is switched on",
         items=(
-            ("NONE", "None", "They stay where they are"),
+            ("NONE", "None", "Straight lines stay straight"),
             ("DIVISION", "Division Model", "By one number"),
             ("LENS", "Real Lens", "That number, fitted to the real lens"),
         ),
@@ -247,9 +248,10 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
     distortion: FloatProperty(
         name="K",
         description="Coefficient of the division model, for distances as shares of that from the"
-        " middle of the picture to its corner: negative is a barrel, positive a pincushion",
+        " middle of the picture to its corner: negative is a barrel, which shows more of the scene"
+        " than the frame holds, positive a pincushion",
         default=-0.1,
-        min=-1.0,
+        min=-0.5,
         max=0.25,
         step=1,
         precision=3,

@@ -158,7 +158,16 @@ def test_distortion_by_number_and_by_the_lens(camera, bokeh, aplanat_bpy, empty_
     found = read(aplanat_bpy)
     # A Tessar of 50 mm has a barrel of well below 1 % in the corner of 36 x 24 mm.
     assert -0.01 < found.bokeh.distortion < 0.0
-    assert found.report == ("camera 'Camera': distortion is not drawn by this version",)
+    assert found.report == ()
+
+
+def test_a_lens_that_bends_more_than_can_be_drawn_says_so(camera, bokeh, aplanat_bpy, monkeypatch):
+    camera.aplanat.lens = TESSAR
+    bokeh.distortion_source = "LENS"
+    monkeypatch.setattr("addon.scene.bokeh._distortion_of_lens", lambda *_: -3.0)
+    found = read(aplanat_bpy)
+    assert found.bokeh.distortion == -0.5
+    assert "-0.5 is drawn" in found.report[0]
 
 
 def test_distortion_of_a_lens_grows_with_the_square_of_the_picture(camera, bokeh, aplanat_bpy):
