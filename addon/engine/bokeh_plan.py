@@ -14,6 +14,7 @@ from ..sampling.iris import Iris
 from ..sampling.pixel_filter import filter_density
 from ..scene.brightness import brightest, mirrors
 from ..scene.snapshot import BokehSettings, LensSettings
+from ..scene.surface_graph import Constant
 from .bokeh_search import (
     LEAST_SUBPIXELS,
     corners_of,
@@ -47,6 +48,8 @@ class BokehPlan:
         Group and slot of the surfaces that may be brighter than the threshold.
     mirroring : frozenset of (int, int)
         Those of them that look different from different places on the lens.
+    uneven : frozenset of int
+        Groups with shining surfaces whose light differs from place to place.
     least_coc : float
         Radius of the circle of confusion from which on light is splatted, px.
     width, height : int
@@ -79,6 +82,7 @@ class BokehPlan:
     settings: BokehSettings
     shining: frozenset[tuple[int, int]]
     mirroring: frozenset[tuple[int, int]]
+    uneven: frozenset[int]
     least_coc: float
     width: int
     height: int
@@ -174,6 +178,7 @@ def plan_bokeh(snapshot, plan):
         settings=settings,
         shining=shining,
         mirroring=mirroring,
+        uneven=_uneven(snapshot.content, shining),
         least_coc=least,
         width=width,
         height=height,
@@ -241,6 +246,19 @@ def _shining(content, threshold):
 def _mirroring(content, shining):
     """Return which of the surfaces look different from different places on the lens."""
     return frozenset(key for key in shining if mirrors(graph_of(content, key)))
+
+
+def _uneven(content, shining):
+    """Return the groups with shining surfaces that are more than one even emission."""
+    return frozenset(
+        key[0]
+        for key in shining
+        if not all(
+            node.kind == "emission"
+            and all(isinstance(source, Constant) for _, source in node.inputs)
+            for node in graph_of(content, key).nodes
+        )
+    )
 
 
 def _largest_coc(content, plan, seen):

@@ -21,6 +21,10 @@ LEAST_ALLOWANCE = 0.5
 # matte colours with soft highlights), 2 more for twice as much.
 _ALLOWANCE, _CONTRAST = 1.5, 0.25
 _MOST_ALLOWANCE = 4.5
+# Highlights are found at full detail and taken out of the samples as those are drawn: where colours
+# or light are blurred from vertex to vertex, more or less would be taken out than is splatted. On a
+# ball that mirrors lamps 1.5 more left 0.06 % of the picture's light, 3 less than rounding.
+_HIGHLIGHT_ALLOWANCE = 3.0
 
 # Smaller objects that are partly in focus save less by being coarser where they blur than the draw
 # calls of their own that they need then.
@@ -277,12 +281,25 @@ def level_for_sample(levels, sample, samples):
     return (lower + coarser).astype(np.int64)
 
 
-def allowances(content):
-    """Return the `color_allowance` of every instance, shape (I,)."""
+def allowances(content, plan):
+    """Return by how many levels every instance is drawn finer for the sake of its light.
+
+    Parameters
+    ----------
+    content : SceneContent
+    plan : FramePlan
+
+    Returns
+    -------
+    ndarray of shape (I,)
+    """
     found = np.zeros(len(content.instances.world))
-    for group in content.groups:
-        contrast = content.meshes[group.mesh].color_contrast
-        found[group.first : group.first + group.count] = color_allowance(contrast)
+    uneven = plan.bokeh.uneven if plan.bokeh else ()
+    for number, group in enumerate(content.groups):
+        allowance = color_allowance(content.meshes[group.mesh].color_contrast)
+        if number in uneven:
+            allowance += _HIGHLIGHT_ALLOWANCE
+        found[group.first : group.first + group.count] = allowance
     return found
 
 
@@ -309,7 +326,7 @@ def meshes_with_levels(content, plan):
     full = np.zeros(len(seen.radius))
     for group, mesh in zip(content.groups, meshes, strict=True):
         full[group.first : group.first + group.count] = len(mesh.triangles)
-    chosen = choose_levels(seen, full, plan, plan.level_bias + allowances(content))
+    chosen = choose_levels(seen, full, plan, plan.level_bias + allowances(content, plan))
     coarser = (chosen > 0.0) | may_grade(seen, full, plan)
     wanted = {
         mesh.uid

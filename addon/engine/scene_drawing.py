@@ -82,7 +82,6 @@ class SceneDrawing:
             [level.triangles for level in buffers.mesh_levels(group.mesh)]
             for group in content.groups
         ]
-        self._allowances = allowances(content)
         self._by_level = _by_level(self._draws)
         self._glows_by_level = _by_level(self._glows)
         # Decided by chance a sample, or added to what is behind: such surfaces share nothing.
@@ -134,6 +133,9 @@ class SceneDrawing:
         plan = self._plan
         wanted = plan.level_bias is not None and plan.coc_scale != 0.0
         rows = np.flatnonzero(self._visible & (self.levels == 0.0)) if wanted else ()
+        if plan.bokeh:
+            # Whose highlights are taken out of the samples exactly.
+            rows = [row for row in rows if self._group_of[row] not in plan.bokeh.uneven]
         self._graded.find([int(row) for row in rows], self._group_of, plan)
 
     def _choose_levels(self, seen):
@@ -142,7 +144,7 @@ class SceneDrawing:
         if plan.level_bias is None or not deepest.any():
             return np.zeros(len(self._corners))
         full = np.array([counts[0] for counts in self._triangles], float)[self._group_of]
-        bias = plan.level_bias + self._allowances
+        bias = plan.level_bias + allowances(self._content, plan)
         return np.minimum(choose_levels(seen, full, plan, bias), deepest)
 
     def _order_rows(self):
