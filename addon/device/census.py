@@ -21,6 +21,7 @@ TEXEL_BYTES = {
     "R16F": 2,
     "R8": 1,
     "R32UI": 4,
+    "RG32UI": 8,
     "DEPTH_COMPONENT32F": 4,
 }
 

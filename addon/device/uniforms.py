@@ -30,10 +30,17 @@ def uniform_buffer(data):
 
 
 def bind_resource(shader, name, resource):
-    """Bind a uniform block or a texture, whichever `resource` is, to the bound shader."""
+    """Bind a uniform block, a whole number or a texture, whichever `resource` is.
+
+    Textures are images where the name ends in ``_img``, else they are sampled.
+    """
     import gpu
 
     if isinstance(resource, gpu.types.GPUUniformBuf):
         shader.uniform_block(name, resource)
+    elif isinstance(resource, int):
+        shader.uniform_int(name, resource)
+    elif name.endswith("_img"):
+        shader.image(name, resource)
     else:
         shader.uniform_sampler(name, resource)

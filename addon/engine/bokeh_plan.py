@@ -239,7 +239,9 @@ def _shining(content, threshold):
             zip(content.groups, brightest(content), strict=True)
         )
         for (slot, _, _), bound in zip(content.meshes[group.mesh].slots, bounds, strict=True)
-        if bound > threshold and content.materials[group.materials[slot]].highlights
+        if bound > threshold
+        and content.materials[group.materials[slot]].highlights
+        and not group.holdout
     )
 
 

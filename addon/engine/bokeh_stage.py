@@ -8,15 +8,13 @@ has come to rest.
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ..device import geometry, readback
 from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
-from ..passes import background, clusters, highlights, peel, splat, surface
+from ..passes import clusters, highlights, splat, surface
 from .bokeh_clusters import similarity_of
+from .bokeh_listing import HighlightSearch
 from .bokeh_look import make_look
-from .bokeh_search import tiles_of
 from .bokeh_visibility import BokehVisibility
 
 # Highlights that the list has room for at first.
@@ -53,30 +51,6 @@ class HighlightCounts:
     culled_cone: int = 0
     masked: int = 0
     splatted: int = 0
-
-
-@dataclass(frozen=True)
-class _Search:
-    """Surfaces that are searched for highlights in one way.
-
-    Parameters
-    ----------
-    surfaces : frozenset of (int, int)
-        Group and slot.
-    world : bool
-        Instead of surfaces, the world.
-    part : tuple of 4 int
-        Of the raster.
-    subpixels : int
-    views : list of (tuple of 2 float, int)
-        Place on the lens, m, and the region that it stands for.
-    """
-
-    surfaces: frozenset
-    world: bool
-    part: tuple[int, int, int, int]
-    subpixels: int
-    views: list
 
 
 def highlight_buffer(bokeh):
@@ -182,31 +156,21 @@ class BokehStage:
         """Return the list of highlights, two textures, and how many they are."""
         room = _FIRST_LIST
         while True:
-            with Targets(2, 1, [TargetSpec("total", "R32UI")]) as totals:
-                total = totals["total"]
-                total.clear(format="UINT", value=(0,))
-                specs = [TargetSpec(name, "RGBA32F") for name in "ab"]
-                lists = Targets(highlights.COLUMNS, room // highlights.COLUMNS, specs)
-                for search in self._searches():
-                    tiles = tiles_of(search.part, search.subpixels)
-                    if not tiles:
-                        continue
-                    _, _, width, height = tiles[0]
-                    with Targets(width, height, self._specs(search, height)) as layers:
-                        for tile in tiles:
-                            self._list_tile(search, tile, layers, lists, total, fullscreen)
-                        self.bytes = max(self.bytes, layers.bytes)
-                        # The layers are given back only after the device has read them.
-                        _totals(total)
-                count, sharp = _totals(total)
-            if count <= room:
+            specs = [TargetSpec(name, "RGBA32F") for name in "ab"]
+            lists = Targets(highlights.COLUMNS, room // highlights.COLUMNS, specs)
+            search = HighlightSearch(
+                self._plan, self._drawing, self._buffers, self._highlights, (lists["a"], lists["b"])
+            )
+            search.run(fullscreen)
+            self.bytes = max(self.bytes, search.bytes)
+            if search.count <= room:
                 break
             lists.release()
-            room = highlights.COLUMNS * -(-count // highlights.COLUMNS)
+            room = highlights.COLUMNS * -(-search.count // highlights.COLUMNS)
         held.append(lists)
-        self.counts.found = count + sharp
-        self.counts.culled_size = sharp
-        return (lists["a"], lists["b"]), count
+        self.counts.found = search.count + search.sharp
+        self.counts.culled_size = search.sharp
+        return (lists["a"], lists["b"]), search.count
 
     def _merge(self, sources, count, held):
         """Merge similar highlights, as the model asks for; returns the list and its length."""
@@ -227,37 +191,6 @@ class BokehStage:
         self.counts.clustered = count
         return sources, count
 
-    def _searches(self):
-        """Return what is searched in which way: what looks the same from anywhere, and the rest."""
-        bokeh = self._plan.bokeh
-        places = [tuple(place) for place in (bokeh.lens_views * self._plan.lens_extent).tolist()]
-        views = list(zip(places, range(1, len(places) + 1), strict=True))
-        alone = [((0.0, 0.0), 0)]
-        steady = bokeh.shining - bokeh.mirroring
-        searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone)]
-        if bokeh.mirroring:
-            several = views if len(views) > 1 else alone
-            fine = bokeh.mirroring_subpixels
-            searches.append(_Search(bokeh.mirroring, False, bokeh.whole, fine, several))
-        if bokeh.world:
-            searches.append(_Search(frozenset(), True, bokeh.whole, bokeh.world_subpixels, alone))
-        return searches
-
-    def _list_tile(self, search, tile, layers, lists, total, fullscreen):
-        """List what a tile shows, view by view and layer by layer, as long as there is more."""
-        view = uniform_buffer(self._raster_params(tile, layers, search.subpixels))
-        for lens, region in search.views:
-            found = _totals(total) if search.surfaces else None
-            peel_layers = self._peel_world if search.world else self._peel
-            for layer in peel_layers(search, layers, view, lens, fullscreen):
-                shape = (tile[2:], search.subpixels, lens, region)
-                peeled = highlights.PeeledRaster((layer,), view, self._highlights, *shape)
-                highlights.count(peeled, layers["counts"], layers["rows"], total)
-                highlights.emit(peeled, layers["counts"], layers["rows"], (lists["a"], lists["b"]))
-                before, found = found, _totals(total)
-                if found == before:
-                    break
-
     def _hide(self, sources, count, held):
         """Find what hides the sources from the lens, as `Visibility`."""
         visibility = BokehVisibility(self._plan, self._occluders, self._buffers)
@@ -276,81 +209,6 @@ class BokehStage:
             found = replace(found, masks=soft["masks"])
         return found
 
-    @staticmethod
-    def _specs(search, height):
-        fine = search.subpixels
-        # A layer and the one before it.
-        colors = ["world"] if search.world else ["light_color_0", "light_color_1"]
-        depths = [] if search.world else ["light_depth_0", "light_depth_1", "scene_depth"]
-        specs = [TargetSpec(name, "RGBA32F", scale=fine) for name in colors]
-        specs += [TargetSpec(name, "DEPTH_COMPONENT32F", scale=fine) for name in depths]
-        specs.append(TargetSpec("counts", "R32UI", 1))
-        specs.append(TargetSpec("rows", "R32UI", size=(height, 2)))
-        return specs
-
-    def _raster_params(self, tile, layers, subpixels):
-        plan, bokeh = self._plan, self._plan.bokeh
-        x, y, _, _ = tile
-        width, height = layers.width, layers.height
-        crop = np.eye(4)
-        crop[0, 0], crop[1, 1] = bokeh.width / width, bokeh.height / height
-        crop[0, 3] = (bokeh.width - 2 * x - width) / width
-        crop[1, 3] = (bokeh.height - 2 * y - height) / height
-        return surface.VIEW_PARAMS.pack(
-            view=plan.view,
-            view_inverse=np.linalg.inv(plan.view),
-            projection=crop @ bokeh.projection,
-            lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
-            film=(width * subpixels, height * subpixels, 0.0, 0.0),
-        )
-
-    def _peel(self, search, layers, view, lens, fullscreen):
-        """Draw what is brighter than the threshold, layer by layer.
-
-        Yields
-        ------
-        tuple of 2 GPUTexture
-            Light and depth of a layer, to be read before the next.
-        """
-        drawing = self._drawing
-        shining = drawing.full_detail_draws(peel.HIGHLIGHTS, search.surfaces)
-        if not shining:
-            return
-        before, layer = (("light_color_1", "light_depth_1"), ("light_color_0", "light_depth_0"))
-        nothing = layers.framebuffer(before[0], depth=before[1])
-        with nothing.bind():
-            nothing.clear(color=(0.0, 0.0, 0.0, 0.0), depth=0.0)
-        # The first layer's colour is drawn over by its highlights.
-        opaque = drawing.full_detail_draws(peel.OPAQUE)
-        self._draw_layer(layers, view, opaque, before[1:], (layer[0], "scene_depth"), lens)
-        for _ in range(self._plan.bokeh.layers):
-            self._draw_layer(layers, view, shining, (*before[::-1], "scene_depth"), layer, lens)
-            yield tuple(layers[name] for name in layer)
-            before, layer = layer, before
-
-    def _peel_world(self, search, layers, view, lens, fullscreen):
-        """Draw what of the world is brighter than the threshold; yields it, without a depth."""
-        with layers.framebuffer("world").bind():
-            background.draw_excess(
-                fullscreen,
-                view,
-                self._buffers.environment_buffer,
-                self._buffers.environment_image,
-                self._highlights,
-            )
-        yield layers["world"], None
-
-    def _draw_layer(self, layers, view, draws, textures, layer, lens):
-        color, depth = layer
-        framebuffer = layers.framebuffer(color, depth=depth)
-        with framebuffer.bind():
-            framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
-            read = [layers[name] for name in textures]
-            instances = self._buffers.instances
-            peel.draw_layer(draws, view, instances, read, self._highlights, lens)
-        self._drawing.counts.draw_calls += len(draws)
-        self._drawing.counts.triangles += sum(d.triangles * d.count for d in draws)
-
     def _splat(self, sources, count, visibility, target, frame_view):
         rays = None
         if visibility.counts.method == "SPLAT":
@@ -368,11 +226,6 @@ class BokehStage:
             )
         # What it reads is given back only after the device has read it.
         readback.wait(target)
-
-
-def _totals(total):
-    """Read how many highlights have been listed, and how many texels were too sharp."""
-    return tuple(int(n) for n in np.asarray(total.read()).ravel()[:2])
 
 
 def _bolder(similarity):

@@ -284,6 +284,10 @@ class SceneDrawing:
         """Return the targets that drawing needs beside the sample's."""
         return self._shared.specs()
 
+    def surfaces(self):
+        """Return group and slot of all surfaces."""
+        return frozenset((draw.group, draw.slot) for draw in (*self._draws, *self._glows))
+
     def full_detail_draws(self, target, wanted=None):
         """Return the draws, at full detail, of what can be seen, for another target.
 

@@ -2,13 +2,16 @@
 
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
+from ..device.uniforms import bind_resource
 from . import chromatic
 from .environment import ENVIRONMENT_PARAMS
+from .highlights import APPEND_CONSTANTS, APPEND_DEFINES, APPEND_IMAGES
 from .surface import HIGHLIGHT_PARAMS, VIEW_PARAMS
 
 
 def _info(define, in_wavelengths=False):
     split = define is not None
+    lists = define == "EXCESS"
     uniforms = [("ViewParams", "view_buf"), ("EnvironmentParams", "environment_buf")]
     uniforms += [("HighlightParams", "highlight_buf")] * split
     structs = VIEW_PARAMS.source + ENVIRONMENT_PARAMS.source
@@ -18,11 +21,12 @@ def _info(define, in_wavelengths=False):
         fragment=shader_source.load("passes/background_frag.glsl"),
         typedefs=structs + HIGHLIGHT_PARAMS.source * split,
         attributes=(("VEC2", "pos"),),
-        outputs=(("VEC4", "out_color"),),
+        outputs=(("VEC4", "out_color"),) * (not lists),
         samplers=(("FLOAT_2D", "environment_tx"),),
+        images=APPEND_IMAGES * lists,
         uniforms=tuple(uniforms),
-        push_constants=(("VEC4", "lens_sample"),),
-        defines=((define, "1"),) if split else (),
+        push_constants=(("VEC4", "lens_sample"), *APPEND_CONSTANTS * lists),
+        defines=((define, "1"),) * split + APPEND_DEFINES * lists,
     )
     return chromatic.declared(info) if in_wavelengths else info
 
@@ -57,19 +61,22 @@ def draw(
     _draw(fullscreen, define, *world, lens_sample, highlights, wavelength)
 
 
-def draw_excess(fullscreen, view_buffer, environment_buffer, image, highlights):
-    """Draw the light of the world's image above the threshold, seen from the lens' centre.
+def list_highlights(fullscreen, view_buffer, environment_buffer, image, split, lists):
+    """Append to lists the light of the world's image above the threshold.
 
     Parameters
     ----------
     fullscreen, view_buffer, environment_buffer, image
-        As for `draw`.
-    highlights : GPUUniformBuf
+        As for `draw`; seen from the lens' centre.
+    split : GPUUniformBuf
         `HighlightParams`.
+    lists : passes.highlights.FragmentLists
+        Cleared.
     """
     state.overwrite()
     center = (0.0, 0.0, 0.0, 0.0)
-    _draw(fullscreen, "EXCESS", view_buffer, environment_buffer, image, center, highlights)
+    world = (view_buffer, environment_buffer, image)
+    _draw(fullscreen, "EXCESS", *world, center, split, bindings=lists.bindings())
 
 
 def _draw(
@@ -79,8 +86,9 @@ def _draw(
     environment_buffer,
     image,
     lens_sample,
-    highlights,
+    highlights=None,
     wavelength=None,
+    bindings=(),
 ):
     shader = compile_shader(_info(define, wavelength is not None))
     shader.bind()
@@ -92,4 +100,6 @@ def _draw(
     shader.uniform_float("lens_sample", lens_sample)
     if wavelength is not None:
         wavelength.bind(shader)
+    for name, resource in bindings:
+        bind_resource(shader, name, resource)
     fullscreen.draw(shader)

@@ -4,7 +4,7 @@ A test leaves a highlight out (its disc is outside the frame, nothing of the len
 that it is seen whole (no surface of the peeled layers before it, no triangles in its cone). Only
 what is decided beyond doubt changes its way: the picture stays the same.
 
-The results lie in tables as the list of highlights does, `highlights.COLUMNS` columns wide.
+The results lie in tables as the list of highlights does, `prefix_sums.COLUMNS` columns wide.
 
 References
 ----------
@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from ..device import shader_source
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from ..device.uniform_block import UniformStruct
-from .highlights import COLUMNS
+from . import prefix_sums
+from .prefix_sums import COLUMNS
 
 VISIBILITY_PARAMS = UniformStruct("shared/visibility_params.glsl", "VisibilityParams")
 TILE_LAYOUT = UniformStruct("shared/tile_layout.glsl", "TileLayout")
@@ -38,7 +39,6 @@ COUNT_PAIRS = 17
 COUNT_GROUPS = 18
 
 _THREADS = 64
-_SCAN_THREADS = 256
 _GROUP = 8
 
 _DEFINES = (("SOURCE_COLUMNS", str(COLUMNS)),)
@@ -137,24 +137,6 @@ def _cone_info(group, fill):
             *[("FILL", "1")] * fill,
         ),
         local_size=(_THREADS, 1, 1),
-    )
-
-
-def _scan_info(totals):
-    images = [("R32UI", "UINT_2D", "totals_img", ("READ", "WRITE"))]
-    images += [("R32UI", "UINT_2D", "keys_img", ("READ", "WRITE"))] * (not totals)
-    return ShaderInfo(
-        name="aplanat_bokeh_scan",
-        compute=shader_source.load("passes/bokeh_culling_scan_comp.glsl"),
-        typedefs=f"shared uint sums[{_SCAN_THREADS}];\n",
-        images=tuple(images),
-        push_constants=(("INT", "rows"),) * totals,
-        defines=(
-            *_DEFINES,
-            ("THREADS", str(_SCAN_THREADS)),
-            *[("TOTALS", "1")] * totals,
-        ),
-        local_size=(_SCAN_THREADS, 1, 1),
     )
 
 
@@ -357,28 +339,7 @@ def mark_sizes(count, parameters, tables):
 
 def scan(tables):
     """Turn the keys into prefix sums over all of them."""
-    scan_table(tables.keys, tables.totals)
-
-
-def scan_table(numbers, totals):
-    """Turn a table of numbers into prefix sums: within its rows, and of the rows.
-
-    Parameters
-    ----------
-    numbers : GPUTexture
-        R32UI, `COLUMNS` wide.
-    totals : GPUTexture
-        R32UI, `COLUMNS` wide: gets for each row what comes before it.
-    """
-    for over_rows in (False, True):
-        shader = compile_shader(_scan_info(over_rows))
-        shader.bind()
-        shader.image("totals_img", totals)
-        if over_rows:
-            shader.uniform_int("rows", numbers.height)
-        else:
-            shader.image("keys_img", numbers)
-        dispatch(shader, 1 if over_rows else numbers.height, 1)
+    prefix_sums.add_up(tables.keys, tables.totals)
 
 
 def place_tiles(count, layout, kind, tables, tiles, masked):

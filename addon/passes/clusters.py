@@ -24,8 +24,8 @@ from ..device import shader_source
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from ..device.targets import Targets, TargetSpec
 from ..device.uniform_block import UniformStruct
-from . import bokeh_culling
-from .highlights import COLUMNS
+from . import bokeh_culling, prefix_sums
+from .prefix_sums import COLUMNS
 
 CLUSTER_PARAMS = UniformStruct("shared/cluster_params.glsl", "ClusterParams")
 
@@ -316,7 +316,7 @@ class _Run:
 
     def _scan(self):
         tables = self._tables
-        bokeh_culling.scan_table(tables["starts"], tables["totals"])
+        prefix_sums.add_up(tables["starts"], tables["totals"])
 
     def _step(self, info, textures=(), constants=None, **renamed):
         given = dict(textures)

@@ -1,157 +1,289 @@
-"""From peeled layers to a list of highlights, in an order that is always the same (methods 9).
+"""From drawn surfaces to a list of highlights, in an order that is always the same (methods 9).
 
-Highlights are counted for every pixel, the counts are added up row by row and over the rows, and
-each pixel then writes its own to where they belong. The list lies in two textures of `COLUMNS`
-columns: x, y, depth (camera space, m) and extent (px); energy (radiance times pixels) and the
-region of the lens that the highlight stands for: 0 for all of it.
+Surfaces that shine are drawn once, into a raster with several texels a pixel; each fragment
+brighter than the threshold is appended to its texel's list, whatever lies in front. The texels'
+lists are then put in order, the highlights of each pixel counted, the counts added up, and each
+pixel writes its own to where they belong. Only tiles in which anything shines take part.
+
+The list of highlights lies in two textures of `COLUMNS` columns: x, y, depth (camera space, m) and
+extent (px); energy (radiance times pixels) and the region of the lens that the highlight stands
+for: 0 for all of it.
+
+References
+----------
+Yang, Hensley, Gruen and Thibieroz, *Real-time concurrent linked list construction on the GPU*,
+EGSR 2010.
 """
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..device import shader_source
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
+from ..device.targets import Targets, TargetSpec
+from ..device.textures import texture_2d
+from . import prefix_sums
+from .prefix_sums import COLUMNS
 from .surface import HIGHLIGHT_PARAMS, VIEW_PARAMS
 
-# Of the textures that hold the list.
-COLUMNS = 1024
+# Side of a tile, px.
+TILE = 8
 
-_GROUP = 8
-_ROWS = 64
-_THREADS = 256
+_THREADS = 64
+# Groups along the first axis of a dispatch, at most.
+_GROUPS = 16384
+
+_DEFINES = (("SOURCE_COLUMNS", f"{COLUMNS}u"),)
+_NUMBERS = ("R32UI", "UINT_2D")
+
+# What a shader that includes passes/highlights_append.glsl declares.
+APPEND_IMAGES = (
+    (*_NUMBERS, "used_img", ("READ", "WRITE")),
+    (*_NUMBERS, "heads_img", ("READ", "WRITE")),
+    (*_NUMBERS, "tiles_img", ("WRITE",)),
+    ("RGBA32F", "FLOAT_2D", "light_img", ("WRITE",)),
+    ("RG32UI", "UINT_2D", "nodes_img", ("WRITE",)),
+)
+APPEND_CONSTANTS = (("INT", "capacity"), ("INT", "tile_texels"))
+APPEND_DEFINES = _DEFINES
+
+# Behind dispatches, Blender lets the device finish what it writes to images; behind draws it does
+# not.
+_FINISH = ShaderInfo(
+    name="aplanat_highlights_finish",
+    compute="void main()\n{\n  imageStore(sharp_img, ivec2(1, 0), uvec4(0u));\n}\n",
+    images=((*_NUMBERS, "sharp_img", ("WRITE",)),),
+    local_size=(1, 1, 1),
+)
 
 
-def _gather_info(subpixels, world, emits):
-    defines = [("SUBPIXELS", str(subpixels)), ("SOURCE_COLUMNS", f"{COLUMNS}u")]
-    defines += [("WORLD", "1")] * world + [("EMIT", "1")] * emits
-    access = ("READ",) if emits else ("WRITE",)
-    images = [("R32UI", "UINT_2D_ARRAY", "counts_img", access)]
+def _order_info(world):
+    samplers = [("UINT_2D", "nodes_tx")] + [("FLOAT_2D", "scene_tx")] * (not world)
+    return ShaderInfo(
+        name="aplanat_highlights_order",
+        compute=shader_source.load("passes/highlights_order_comp.glsl"),
+        typedefs=VIEW_PARAMS.source + HIGHLIGHT_PARAMS.source,
+        samplers=tuple(samplers),
+        images=(
+            (*_NUMBERS, "heads_img", ("READ", "WRITE")),
+            (*_NUMBERS, "order_img", ("READ", "WRITE")),
+            ("RGBA32F", "FLOAT_2D", "light_img", ("READ", "WRITE")),
+        ),
+        uniforms=(("ViewParams", "view_buf"), ("HighlightParams", "highlight_buf")),
+        push_constants=(("INT", "number"), *(("INT", "layers"),) * (not world)),
+        defines=_DEFINES + (("WORLD", "1"),) * world,
+        local_size=(_THREADS, 1, 1),
+    )
+
+
+def _gather_info(emits):
+    samplers = [("FLOAT_2D", "listed_tx"), ("FLOAT_2D", "light_tx")]
+    samplers += [("UINT_2D", "heads_tx"), ("UINT_2D", "order_tx")]
+    samplers += [("UINT_2D", "starts_tx"), ("UINT_2D", "totals_tx")] * emits
+    images = [(*_NUMBERS, name, ("READ", "WRITE")) for name in ("starts_img", "sharp_img")]
     if emits:
-        images.append(("R32UI", "UINT_2D", "rows_img", ("READ",)))
-        images.append(("RGBA32F", "FLOAT_2D", "a_img", ("WRITE",)))
-        images.append(("RGBA32F", "FLOAT_2D", "b_img", ("WRITE",)))
-    samplers = [("FLOAT_2D", "color_tx")] + [("FLOAT_2D", "depth_tx")] * (not world)
+        images = [("RGBA32F", "FLOAT_2D", name, ("WRITE",)) for name in ("a_img", "b_img")]
+    constants = [("INT", "tiles"), ("INT", "subpixels")]
+    constants += [("INT", "first"), ("VEC4", "lens_view")] * emits
     return ShaderInfo(
         name="aplanat_highlights",
         compute=shader_source.load("passes/highlights_comp.glsl"),
-        typedefs=VIEW_PARAMS.source + HIGHLIGHT_PARAMS.source,
+        typedefs=VIEW_PARAMS.source,
         samplers=tuple(samplers),
         images=tuple(images),
-        uniforms=(("ViewParams", "view_buf"), ("HighlightParams", "highlight_buf")),
-        push_constants=(("INT", "layer"), ("IVEC2", "size"), *(("VEC4", "lens_view"),) * emits),
-        defines=tuple(defines),
-        local_size=(_GROUP, _GROUP, 1),
+        uniforms=(("ViewParams", "view_buf"),),
+        push_constants=tuple(constants),
+        defines=(*_DEFINES, ("TILE", str(TILE)), *(("EMIT", "1"),) * emits),
+        local_size=(TILE, TILE, 1),
     )
 
 
-def _rows_info(totals):
-    images = [("R32UI", "UINT_2D", "rows_img", ("READ", "WRITE"))]
-    if totals:
-        images.append(("R32UI", "UINT_2D", "count_img", ("READ", "WRITE")))
-    else:
-        images.append(("R32UI", "UINT_2D_ARRAY", "counts_img", ("READ", "WRITE")))
-    defines = (("TOTALS", "1"), ("THREADS", str(_THREADS))) if totals else ()
-    return ShaderInfo(
-        name="aplanat_highlights_rows",
-        compute=shader_source.load("passes/highlights_rows_comp.glsl"),
-        typedefs=f"shared uvec2 sums[{_THREADS}];\n" * totals,
-        images=tuple(images),
-        push_constants=(("IVEC3", "size"),),
-        defines=defines,
-        local_size=(_THREADS if totals else _ROWS, 1, 1),
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class PeeledRaster:
-    """Layers that highlights are listed from.
+@dataclass(frozen=True)
+class SearchedRaster:
+    """How a raster was drawn that highlights are listed from.
 
     Parameters
     ----------
-    layers : sequence of (GPUTexture, GPUTexture or None)
-        Light above the threshold and window depth of each layer; the world has no depth.
     view, split : GPUUniformBuf
         `ViewParams` and `HighlightParams` of the raster.
-    size : tuple of 2 int
-        Of the part that counts, from the lower left corner, in pixels.
     subpixels : int
         Texels along a side of a pixel.
+    layers : int
+        Fragments of a texel that are listed.
     lens : tuple of 2 float
-        Place on the lens that it is seen from, m.
+        Place on the lens that it was seen from, m.
     region : int
         Of the lens, that it stands for; 0 is all of it.
     """
 
-    layers: tuple
     view: object
     split: object
-    size: tuple[int, int]
     subpixels: int
+    layers: int
     lens: tuple[float, float] = (0.0, 0.0)
     region: int = 0
 
 
-def count(raster, counts, rows, total):
-    """Count the highlights and find where each row's begin.
+class FragmentLists:
+    """The fragments of a raster that are brighter than the threshold, texel by texel.
 
     Parameters
     ----------
-    raster : PeeledRaster
-    counts : GPUTexture
-        R32UI array with a layer for each, of the raster's size in pixels or larger.
-    rows : GPUTexture
-        R32UI, a column for each of the raster's rows, two rows a layer.
-    total : GPUTexture
-        R32UI, 2 x 1: the number of highlights so far and of those too sharp to be splatted.
+    width, height : int
+        Of the raster in pixels.
+    subpixels : int
+    capacity : int
+        Fragments that there is room for; rounded up to whole rows.
     """
-    for number in range(len(raster.layers)):
-        _gather(raster, number, (("counts_img", counts),))
-    shader = compile_shader(_rows_info(totals=False))
-    shader.bind()
-    shader.image("counts_img", counts)
-    shader.image("rows_img", rows)
-    shader.uniform_int("size", (*raster.size, len(raster.layers)))
-    dispatch(shader, -(-raster.size[1] // _ROWS), len(raster.layers))
-    shader = compile_shader(_rows_info(totals=True))
-    shader.bind()
-    shader.image("rows_img", rows)
-    shader.image("count_img", total)
-    shader.uniform_int("size", (*raster.size, len(raster.layers)))
-    dispatch(shader, 1, 1)
+
+    def __init__(self, width, height, subpixels, capacity):
+        rows = -(-capacity // COLUMNS)
+        self.capacity = rows * COLUMNS
+        self._tile_texels = TILE * subpixels
+        side = tuple(-(-n // TILE) for n in (width, height))
+        self.targets = Targets(
+            COLUMNS,
+            rows,
+            [
+                TargetSpec("heads", "R32UI", size=(width * subpixels, height * subpixels)),
+                TargetSpec("used", "R32UI", size=(1, 1)),
+                TargetSpec("tiles", "R32UI", size=side),
+                TargetSpec("light", "RGBA32F"),
+                TargetSpec("nodes", "RG32UI"),
+                TargetSpec("order", "R32UI"),
+                TargetSpec("sharp", "R32UI", size=(2, 1)),
+            ],
+        )
+
+    def clear(self):
+        """Empty the lists."""
+        for name in ("heads", "used", "tiles"):
+            self.targets[name].clear(format="UINT", value=(0,))
+
+    def bindings(self):
+        """Return what a shader binds that appends: names and textures or numbers."""
+        names = [name for _, _, name, _ in APPEND_IMAGES]
+        images = [(name, self.targets[name.removesuffix("_img")]) for name in names]
+        return (*images, ("capacity", self.capacity), ("tile_texels", self._tile_texels))
+
+    def read(self):
+        """Wait for the device.
+
+        Returns
+        -------
+        number : int
+            Of fragments; may be more than there was room for.
+        tiles : ndarray of shape (N, 2)
+            Column and row of those in which anything shines.
+        """
+        shader = compile_shader(_FINISH)
+        shader.bind()
+        shader.image("sharp_img", self.targets["sharp"])
+        dispatch(shader, 1, 1)
+        number = int(np.asarray(self.targets["used"].read()).ravel()[0])
+        tiles = self.targets["tiles"]
+        shines = np.asarray(tiles.read()).reshape(tiles.height, tiles.width)
+        return number, np.argwhere(shines)[:, ::-1]
+
+    def release(self):
+        """Give the textures back to the device."""
+        self.targets.release()
 
 
-def emit(raster, counts, rows, sources):
-    """Write the highlights that `count` has counted, behind those counted before.
+def order(raster, lists, number, scene=None):
+    """Put the fragments of each texel in order, without what nothing of the lens sees.
 
     Parameters
     ----------
-    raster, counts, rows
-        As for `count`.
+    raster : SearchedRaster
+    lists : FragmentLists
+    number : int
+        Of fragments.
+    scene : GPUTexture or None
+        Window depth of the nearest opaque surface; None: the fragments are the world's.
+    """
+    shader = compile_shader(_order_info(scene is None))
+    shader.bind()
+    shader.uniform_sampler("nodes_tx", lists.targets["nodes"])
+    for name in ("heads", "order", "light"):
+        shader.image(f"{name}_img", lists.targets[name])
+    shader.uniform_block("view_buf", raster.view)
+    shader.uniform_block("highlight_buf", raster.split)
+    shader.uniform_int("number", number)
+    if scene is not None:
+        shader.uniform_sampler("scene_tx", scene)
+        shader.uniform_int("layers", raster.layers)
+    _dispatch(shader, -(-number // _THREADS))
+
+
+def emit(raster, lists, tiles, sources, first):
+    """Write the highlights of a raster behind those listed before.
+
+    Parameters
+    ----------
+    raster : SearchedRaster
+    lists : FragmentLists
+        In order.
+    tiles : ndarray of shape (N, 2)
+        As of `FragmentLists.read`.
     sources : tuple of 2 GPUTexture
         RGBA32F, `COLUMNS` wide; what they have no room for is left out.
+    first : int
+        Highlights listed before.
+
+    Returns
+    -------
+    count : int
+        Highlights listed now.
+    sharp : int
+        Pixels with light too sharp to be splatted.
     """
-    images = (
-        ("counts_img", counts),
-        ("rows_img", rows),
-        *zip(("a_img", "b_img"), sources, strict=True),
-    )
-    for number in range(len(raster.layers)):
-        _gather(raster, number, images)
+    rows = -(-len(tiles) // COLUMNS)
+    listed = np.zeros((rows * COLUMNS, 4), np.float32)
+    listed[: len(tiles), :2] = tiles
+    listed = texture_2d(listed.reshape(rows, COLUMNS, 4))
+    # One more row, for the sum of all.
+    height = -(-len(tiles) * TILE**2 // COLUMNS) + 1
+    specs = [
+        TargetSpec("starts", "R32UI"),
+        TargetSpec("totals", "R32UI", size=(COLUMNS, -(-height // COLUMNS))),
+    ]
+    sharp = lists.targets["sharp"]
+    with Targets(COLUMNS, height, specs) as tables:
+        starts, totals = tables["starts"], tables["totals"]
+        for texture in (starts, sharp):
+            texture.clear(format="UINT", value=(0,))
+        images = (("starts_img", starts), ("sharp_img", sharp))
+        _gather(raster, lists, listed, len(tiles), images)
+        prefix_sums.add_up(starts, totals)
+        images = zip(("a_img", "b_img"), sources, strict=True)
+        _gather(raster, lists, listed, len(tiles), images, (starts, totals, first))
+        # Also waits until the device has read the tables.
+        count = int(np.asarray(totals.read()).ravel()[height - 1])
+        return count, int(np.asarray(sharp.read()).ravel()[0])
 
 
-def _gather(raster, number, images):
-    color, depth = raster.layers[number]
-    emits = len(images) > 1
-    shader = compile_shader(_gather_info(raster.subpixels, depth is None, emits))
+def _gather(raster, lists, listed, tiles, images, places=None):
+    shader = compile_shader(_gather_info(places is not None))
     shader.bind()
-    shader.uniform_sampler("color_tx", color)
-    if depth is not None:
-        shader.uniform_sampler("depth_tx", depth)
+    shader.uniform_sampler("listed_tx", listed)
+    for name in ("light", "heads", "order"):
+        shader.uniform_sampler(f"{name}_tx", lists.targets[name])
     for name, image in images:
         shader.image(name, image)
     shader.uniform_block("view_buf", raster.view)
-    shader.uniform_block("highlight_buf", raster.split)
-    shader.uniform_int("layer", number)
-    shader.uniform_int("size", raster.size)
-    if emits:
+    shader.uniform_int("tiles", tiles)
+    shader.uniform_int("subpixels", raster.subpixels)
+    if places is not None:
+        starts, totals, first = places
+        shader.uniform_sampler("starts_tx", starts)
+        shader.uniform_sampler("totals_tx", totals)
+        shader.uniform_int("first", first)
         shader.uniform_float("lens_view", (*raster.lens, float(raster.region), 0.0))
-    dispatch(shader, -(-raster.size[0] // _GROUP), -(-raster.size[1] // _GROUP))
+    _dispatch(shader, tiles)
+
+
+def _dispatch(shader, groups):
+    across = min(groups, _GROUPS)
+    dispatch(shader, across, -(-groups // across))

@@ -1,8 +1,7 @@
-"""Peeling the scene into layers, seen by a pinhole at a place on the lens (methods 9).
+"""What a pinhole at a place on the lens sees, and what lies behind it (methods 9).
 
-A layer holds, in every texel, the nearest surface behind the layer before: of all surfaces
-(`OCCLUDERS`), of the opaque ones (`OPAQUE`), or only of what is brighter than the threshold
-(`HIGHLIGHTS`).
+`OCCLUDERS`: layers of all surfaces, each the nearest behind the layer before. `OPAQUE`: depth of
+the nearest opaque surface. `HIGHLIGHTS`: lists of all fragments brighter than the threshold.
 
 References
 ----------
@@ -12,7 +11,7 @@ Everitt, *Interactive order-independent transparency*, NVIDIA 2001.
 from dataclasses import replace
 
 from ..device import state
-from . import surface
+from . import highlights, surface
 
 OCCLUDERS = surface.SurfaceTarget(
     "passes/peel_frag.glsl",
@@ -21,36 +20,66 @@ OCCLUDERS = surface.SurfaceTarget(
     defines=("OCCLUDERS",),
     shades=False,
 )
-OPAQUE = replace(OCCLUDERS, defines=("OCCLUDERS", "OPAQUE_ONLY"))
+OPAQUE = replace(OCCLUDERS, outputs=(), samplers=(), defines=("OPAQUE_ONLY",))
 HIGHLIGHTS = surface.SurfaceTarget(
     "passes/peel_frag.glsl",
-    (("VEC4", "out_color"),),
-    samplers=(("FLOAT_2D", "front_tx"), ("FLOAT_2D", "front_color_tx"), ("FLOAT_2D", "scene_tx")),
+    (),
+    images=highlights.APPEND_IMAGES,
+    push_constants=highlights.APPEND_CONSTANTS,
+    values=highlights.APPEND_DEFINES,
     splits=True,
 )
 
 
-def draw_layer(draws, view_buffer, instances, textures, highlights=None, lens=(0.0, 0.0)):
-    """Draw one layer into the bound frame buffer.
+def draw_layer(draws, view_buffer, instances, textures):
+    """Draw one layer of occluders into the bound frame buffer.
 
     Parameters
     ----------
     draws : list of Draw
-        Of `surface.build_draws` for one of the targets.
+        Of `surface.build_draws` for `OCCLUDERS`.
     view_buffer : GPUUniformBuf
         `ViewParams` of the raster.
     instances : GPUTexture
         The instance table.
-    textures : sequence of GPUTexture
-        As the target's samplers: depth of the layer before, all 0 for the first; for highlights
-        also the layer before and the depth of the nearest opaque surface.
-    highlights : GPUUniformBuf or None
-        `HighlightParams`, for highlights.
+    textures : sequence of 1 GPUTexture
+        Depth of the layer before, all 0 for the first.
+    """
+    state.opaque()
+    bindings = tuple(zip(("front_tx",), textures, strict=True))
+    surface.draw_sample(draws, view_buffer, instances, (0.0, 0.0, 0.0, 0.0), 0, bindings)
+
+
+def draw_opaque(draws, view_buffer, instances, lens):
+    """Draw the depth of opaque surfaces into the bound frame buffer.
+
+    Parameters
+    ----------
+    draws : list of Draw
+        For `OPAQUE`.
+    view_buffer, instances
+        As for `draw_layer`.
     lens : tuple of 2 float
         Place on the lens that the scene is seen from, m.
     """
     state.opaque()
-    names = ("front_tx", "front_color_tx", "scene_tx")
-    bindings = tuple(zip(names[: len(textures)], textures, strict=True))
+    surface.draw_sample(draws, view_buffer, instances, (*lens, 0.0, 0.0), 0)
+
+
+def list_highlights(draws, view_buffer, instances, lens, lists, split):
+    """Append to lists what is brighter than the threshold; draws the depth of what is opaque.
+
+    Parameters
+    ----------
+    draws : list of Draw
+        For `HIGHLIGHTS`.
+    view_buffer, instances, lens
+        As for `draw_opaque`.
+    lists : highlights.FragmentLists
+        Cleared.
+    split : GPUUniformBuf
+        `HighlightParams`.
+    """
+    state.opaque()
     sample = (*lens, 0.0, 0.0)
-    surface.draw_sample(draws, view_buffer, instances, sample, 0, bindings, highlights)
+    surface.draw_sample(draws, view_buffer, instances, sample, 0, lists.bindings(), split)

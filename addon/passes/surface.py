@@ -48,8 +48,12 @@ class SurfaceTarget:
         Declarations of its own uniform blocks.
     uniforms, samplers : tuple of (str, str)
         Its own ones, bound once a shader through `draw_sample`'s `bindings`.
+    images : tuple of tuples
+        Its own ones, as those of `device.shaders.ShaderInfo`, bound as samplers are.
     push_constants : tuple of (str, str)
         Its own ones.
+    values : tuple of (str, str)
+        Defines with a value.
     names_material : bool
         Its fragment shader reads the push constant `material_id`.
     shades : bool
@@ -68,7 +72,9 @@ class SurfaceTarget:
     structs: str = ""
     uniforms: tuple[tuple[str, str], ...] = ()
     samplers: tuple[tuple[str, str], ...] = ()
+    images: tuple[tuple, ...] = ()
     push_constants: tuple[tuple[str, str], ...] = ()
+    values: tuple[tuple[str, str], ...] = ()
     names_material: bool = False
     shades: bool = True
     splits: bool = False
@@ -192,7 +198,7 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
     if "HAS_VECTOR" in defines and deforms:
         defines.append("HAS_DEFORMATION")
         attributes += [("VEC3", "pos_previous"), ("VEC3", "pos_next")]
-    defines = dict.fromkeys(defines, "1")
+    defines = dict.fromkeys(defines, "1") | dict(target.values)
     for key in dict.fromkeys((code.attributes if shades else ()) + own):
         name = attribute_identifier(key)
         kind = attribute_type(mesh_attributes[key].shape[1])
@@ -235,6 +241,7 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
             varyings=tuple(varyings),
             outputs=target.outputs,
             samplers=tuple(samplers),
+            images=target.images,
             uniforms=tuple(uniforms),
             push_constants=tuple(push_constants),
             defines=tuple(defines.items()),
@@ -363,8 +370,8 @@ def draw_sample(
     lens_sample : sequence of 4 float
         Place on the lens in m, jitter in clip units.
     sample_index : int
-    bindings : iterable of (str, GPUUniformBuf or GPUTexture)
-        Of the target's own uniform blocks and samplers.
+    bindings : iterable of (str, GPUUniformBuf, GPUTexture or int)
+        Of the target's own uniform blocks, samplers, images and whole numbers.
     highlights : GPUUniformBuf or None
         `HighlightParams`, for a target that splits light.
     wavelength : chromatic.ChromaticSample, optional

@@ -1,4 +1,4 @@
-"""The list of highlights of peeled layers, pixel by pixel: the twin of `passes.highlights`."""
+"""The list of highlights of a raster, pixel by pixel: the twin of `passes.highlights`."""
 
 from dataclasses import dataclass
 
@@ -8,11 +8,15 @@ from ..sampling.highlights import highlight_share
 
 # Circles of confusion that differ by more are not averaged, px.
 _COC_TOLERANCE = 1.0
+# Those that differ by less see the same surfaces in front, px.
+_SAME_VIEW = 1.0
+# Highlights of a pixel; side of a tile, px.
+_MOST, _TILE = 8, 8
 
 
 @dataclass(frozen=True, eq=False)
 class Raster:
-    """How a peeled raster was drawn.
+    """How a raster was drawn.
 
     Parameters
     ----------
@@ -25,6 +29,8 @@ class Raster:
         See `sampling.highlights`.
     subpixels : int
         Texels along a side of a pixel.
+    layers : int
+        Fragments of a texel that are listed.
     """
 
     projection: np.ndarray
@@ -33,6 +39,7 @@ class Raster:
     coc_scale: float
     least_coc: float
     subpixels: int
+    layers: int = 4
 
     def depth(self, window_depth):
         """Return the depth along the axis of depth buffer values, m."""
@@ -46,57 +53,77 @@ class Raster:
         return defocus if self.orthographic else defocus / depth
 
 
-def highlights(layers, raster):
-    """List the highlights of peeled layers.
+def highlights(fragments, scene, raster):
+    """List the highlights of a raster.
 
     Parameters
     ----------
-    layers : sequence of (ndarray, ndarray)
-        Light to be splatted, shape (height, width, 3), and window depth, shape (height,
-        width), of each layer; bottom row first.
+    fragments : sequence of (ndarray, ndarray, ndarray)
+        Of each texel, in any order: light to be splatted, shape (height, width, 3), window
+        depth and whether it is opaque, shape (height, width); bottom row first.
+    scene : ndarray of shape (height, width)
+        Window depth of the nearest opaque surface.
     raster : Raster
 
     Returns
     -------
     sources : ndarray of shape (N, 8)
-        x, y, depth, extent, red, green, blue, region; by layer, row, column and circle of
-        confusion.
+        x, y, depth, extent, red, green, blue, region; by tile, row, column and circle of confusion.
     sharp : int
         Pixels with light too sharp to be splatted.
     """
+    height, width = scene.shape
     found, sharp = [], 0
-    for color, window_depth in layers:
-        rows, columns = (side // raster.subpixels for side in window_depth.shape)
-        for row in range(rows):
-            for column in range(columns):
-                pixel, too_sharp = _pixel(color, window_depth, raster, row, column)
-                found += pixel
-                sharp += too_sharp
+    rows, columns = np.mgrid[0 : height // raster.subpixels, 0 : width // raster.subpixels]
+    rows, columns = rows.ravel(), columns.ravel()
+    for k in np.lexsort((columns, rows, columns // _TILE, rows // _TILE)):
+        pixel, too_sharp = _pixel(fragments, scene, raster, rows[k], columns[k])
+        found += pixel
+        sharp += too_sharp
     return np.array(found).reshape(-1, 8), sharp
 
 
-def _pixel(color, window_depth, raster, row, column):
+def _seen(fragments, scene, raster, texel):
+    """Return the fragments of a texel that something of the lens may see, from front to back."""
+    listed = [
+        (float(depth[texel]), color[texel].astype(float), bool(opaque[texel]))
+        for color, depth, opaque in fragments
+        if color[texel].max() > 0.0
+    ]
+    kept = []
+    for fragment in sorted(listed, key=lambda each: each[0]):
+        depth = fragment[0]
+        hiding = [scene[texel]] if scene[texel] < depth - 2e-7 else []
+        hiding += [kept[-1][0]] if kept and kept[-1][2] else []
+        cocs = raster.coc(raster.depth(np.array([*hiding, depth])))
+        if (np.abs(cocs[:-1] - cocs[-1]) >= _SAME_VIEW).all() and len(kept) < raster.layers:
+            kept.append(fragment)
+    return kept
+
+
+def _pixel(fragments, scene, raster, row, column):
     fine = raster.subpixels
-    block = (slice(row * fine, (row + 1) * fine), slice(column * fine, (column + 1) * fine))
-    light = color[block].reshape(-1, 3).astype(float)
-    bright = light.max(axis=1) > 0.0
-    if not bright.any():
+    texels = [(row * fine + y, column * fine + x) for y in range(fine) for x in range(fine)]
+    listed = [
+        (texel, depth, color)
+        for texel in texels
+        for depth, color, _ in _seen(fragments, scene, raster, texel)
+    ]
+    if not listed:
         return [], False
-    y, x = np.mgrid[block]
-    places = np.stack([x, y], axis=-1).reshape(-1, 2)[bright] + 0.5
-    light, depth = light[bright], raster.depth(window_depth[block].ravel()[bright])
+    places = np.array([texel[::-1] for texel, _, _ in listed]) + 0.5
+    depth = raster.depth(np.array([depth for _, depth, _ in listed]))
+    light = np.array([color for _, _, color in listed])
     coc = raster.coc(depth)
     share = highlight_share(coc, raster.least_coc)
     blurred = share > 0.0
-    if not blurred.any():
-        return [], True
-    low, high = coc[blurred].min(), coc[blurred].max()
-    groups = [blurred]
-    if high - low > _COC_TOLERANCE:
-        near = coc < 0.5 * (low + high)
-        groups = [blurred & near, blurred & ~near]
-    size = np.array(window_depth.shape[::-1])
-    sources = [_source(places[g], light[g], depth[g], share[g], raster, size) for g in groups]
+    sources, left = [], blurred
+    while left.any():
+        last = len(sources) == _MOST - 1
+        group = left & (coc < (np.inf if last else coc[left].min() + _COC_TOLERANCE))
+        each = (places[group], light[group], depth[group], share[group])
+        sources.append(_source(*each, raster, np.array(scene.shape[::-1])))
+        left = left & ~group
     return sources, not blurred.all()
 
 
@@ -111,4 +138,5 @@ def _source(places, light, depth, share, raster, size):
         xy = (clip + raster.projection[:2, 2]) / scale * mean_depth
     area = 1.0 / raster.subpixels**2
     energy = (light * share[:, None]).sum(axis=0) * area
-    return [*xy, mean_depth, np.sqrt(len(places) * area), *energy, 0.0]
+    covered = len(np.unique(places, axis=0))
+    return [*xy, mean_depth, np.sqrt(covered * area), *energy, 0.0]

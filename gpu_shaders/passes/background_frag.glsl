@@ -1,14 +1,18 @@
 // The world at infinity as one place on the lens sees it, where no surface is.
 // Inputs: view_buf; lens_sample (xy: place on the lens, m; zw: sub-pixel jitter in clip units);
 // environment_buf; environment_tx (equirectangular, scene linear); with HIGHLIGHTS, where the light
-// that is splatted is left out, and with EXCESS, the light that may be, highlight_buf.
+// that is splatted is left out, and with EXCESS, where the light that may be is listed, highlight_buf
+// and what highlights_append needs.
 // CHROMATIC: as in surface_vert.
-// Outputs: opaque scene-linear colour; with EXCESS the light above the threshold.
+// Outputs: opaque scene-linear colour; with EXCESS lists of fragments: light above the threshold.
 // Source: methods 1: the ray from the lens' place through the pixel's point of the focus plane.
 #include "lib/environment_lib.glsl"
 #include "lib/texture_lib.glsl"
 #if defined(HIGHLIGHTS) || defined(EXCESS)
 #include "lib/highlight_lib.glsl"
+#endif
+#ifdef EXCESS
+#include "passes/highlights_append.glsl"
 #endif
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
@@ -61,7 +65,11 @@ void main()
   radiance = highlight_base(radiance, highlight_buf.world.z, highlight_buf.split.x);
 #endif
 #ifdef EXCESS
-  radiance = highlight_light(radiance, highlight_buf.split.x, highlight_buf.split.z);
-#endif
+  vec3 light = highlight_light(radiance, highlight_buf.split.x, highlight_buf.split.z);
+  if (max(light.r, max(light.g, light.b)) > 0.0) {
+    append_fragment(ivec2(gl_FragCoord.xy), light, 1.0, true);
+  }
+#else
   out_color = vec4(radiance, 1.0);
+#endif
 }

@@ -1,23 +1,62 @@
-// Highlights of one peeled layer. First they are counted for each pixel; then, once it is known
-// where each row's list begins (highlights_rows), EMIT writes them.
-// The sub-pixels of a pixel are one highlight, or two where they lie so far apart in depth that
-// their circles of confusion differ.
-// Inputs: color_tx (light above the threshold), depth_tx (window depth); view_buf (of the peeled
-// raster), highlight_buf; layer; size (of the part of the raster that counts, px); with EMIT rows_img
-// and lens_view (xy: place on the lens that it was seen from, m; z: region of the lens that it stands
-// for). WORLD: the world at infinity, no depth.
-// Outputs: counts_img: highlights of a pixel, and those too sharp to be splatted times 256; EMIT
-// reads the highlights of a pixel and how many come before it in its row, times 4, and fills a_img
-// (x, y and depth in camera space, m; side of the square it stands for, px) and b_img (energy:
-// radiance times pixels; region of the lens).
+// Highlights of the pixels of a raster. First they are counted for each pixel; then, once it is known
+// where each pixel's list begins (prefix_sums_comp), EMIT writes them.
+// The light that a pixel shows is one highlight, or several where it lies so far apart in depth that
+// its circles of confusion differ.
+// A group of threads for each tile with light.
+// Inputs: listed_tx (tiles: x, y); heads_tx, order_tx, light_tx (see highlights_order_comp); view_buf
+// (of the raster); tiles (how many), subpixels (along a side of a pixel); with EMIT starts_tx and
+// totals_tx (prefix sums of what was counted), first (highlights listed before) and lens_view (xy:
+// place on the lens that it was seen from, m; z: region of the lens that it stands for).
+// Outputs: starts_img (highlights of each pixel, tile by tile) and sharp_img (pixels with light too
+// sharp to be splatted); EMIT fills a_img (x, y and depth in camera space, m; side of the square it
+// stands for, px) and b_img (energy: radiance times pixels; region of the lens).
 // Source: methods 9 (J20 section 4.1).
-#include "lib/depth_lib.glsl"
-#include "lib/highlight_lib.glsl"
+#include "lib/fragment_list_lib.glsl"
 #include "lib/lens_lib.glsl"
 
 // Circles of confusion that differ by more are not averaged, px.
 #define COC_TOLERANCE 1.0
+// Highlights of a pixel; the last is of all that is left.
+#define MOST 8u
 
+float largest(vec3 color)
+{
+  return max(color.r, max(color.g, color.b));
+}
+
+uint first_of(ivec2 texel)
+{
+  return texelFetch(heads_tx, texel, 0).x & ~IN_ORDER;
+}
+
+uint next_of(uint number)
+{
+  return texelFetch(order_tx, list_texel(number - 1u), 0).x;
+}
+
+// Least circle of confusion of a pixel's light from `from` on, and the largest; the largest is the
+// less where there is none.
+vec2 coc_range(ivec2 pixel, float from, out bool sharp)
+{
+  vec2 range = vec2(1e30, -1e30);
+  sharp = false;
+  for (int i = 0; i < subpixels * subpixels; i++) {
+    ivec2 texel = pixel * subpixels + ivec2(i % subpixels, i / subpixels);
+    for (uint number = first_of(texel); number != 0u; number = next_of(number)) {
+      vec4 light = texelFetch(light_tx, list_texel(number - 1u), 0);
+      float coc = coc_radius_px(light.a, view_buf.lens);
+      if (largest(light.rgb) <= 0.0) {
+        sharp = true;
+      }
+      else if (coc >= from) {
+        range = vec2(min(range.x, coc), max(range.y, coc));
+      }
+    }
+  }
+  return range;
+}
+
+#ifdef EMIT
 struct Highlight {
   vec3 energy;
   float weight;
@@ -26,94 +65,37 @@ struct Highlight {
   float texels;
 };
 
-float texel_depth(ivec2 texel)
-{
-#ifdef WORLD
-  return highlight_buf.world.x;
-#else
-  float window_depth = texelFetch(depth_tx, texel, 0).x;
-  return depth_from_window(window_depth, view_buf.projection, view_buf.lens);
-#endif
-}
-
-float share_of(float coc)
-{
-#ifdef WORLD
-  return highlight_buf.world.z;
-#else
-  return highlight_share(coc, highlight_buf.split.y);
-#endif
-}
-
-float largest(vec3 color)
-{
-  return max(color.r, max(color.g, color.b));
-}
-
-// Circles of confusion of a pixel's highlights, least and largest; the largest is the less where
-// there are none. Bright texels that are too sharp are counted.
-vec2 coc_range(ivec2 pixel, out bool sharp)
-{
-  vec2 range = vec2(1e30, -1e30);
-  sharp = false;
-  for (int y = 0; y < SUBPIXELS; y++) {
-    for (int x = 0; x < SUBPIXELS; x++) {
-      ivec2 texel = pixel * SUBPIXELS + ivec2(x, y);
-      if (largest(texelFetch(color_tx, texel, 0).rgb) <= 0.0) {
-        continue;
-      }
-      float coc = coc_radius_px(texel_depth(texel), view_buf.lens);
-      if (share_of(coc) > 0.0) {
-        range = vec2(min(range.x, coc), max(range.y, coc));
-      }
-      else {
-        sharp = true;
-      }
-    }
-  }
-  return range;
-}
-
-uint highlights_of(vec2 range)
-{
-  if (range.y < range.x) {
-    return 0u;
-  }
-  return (range.y - range.x > COC_TOLERANCE) ? 2u : 1u;
-}
-
-#ifdef EMIT
-// The texels of a pixel whose circles of confusion lie in [from, to).
+// The light of a pixel whose circles of confusion lie in [from, to).
 Highlight gather(ivec2 pixel, float from, float to)
 {
   Highlight found = Highlight(vec3(0.0), 0.0, vec2(0.0), 0.0, 0.0);
-  for (int y = 0; y < SUBPIXELS; y++) {
-    for (int x = 0; x < SUBPIXELS; x++) {
-      ivec2 texel = pixel * SUBPIXELS + ivec2(x, y);
-      vec3 excess = texelFetch(color_tx, texel, 0).rgb;
-      float peak = largest(excess);
-      if (peak <= 0.0) {
-        continue;
+  for (int i = 0; i < subpixels * subpixels; i++) {
+    ivec2 texel = pixel * subpixels + ivec2(i % subpixels, i / subpixels);
+    float covered = 0.0;
+    for (uint number = first_of(texel); number != 0u; number = next_of(number)) {
+      vec4 light = texelFetch(light_tx, list_texel(number - 1u), 0);
+      float coc = coc_radius_px(light.a, view_buf.lens);
+      if (coc >= from && coc < to) {
+        // Nothing of what is too sharp.
+        float weight = largest(light.rgb);
+        found.energy += light.rgb;
+        found.weight += weight;
+        found.place += (vec2(texel) + 0.5) * weight;
+        found.inverse_depth += weight / light.a;
+        covered = (weight > 0.0) ? 1.0 : covered;
       }
-      float depth = texel_depth(texel);
-      float coc = coc_radius_px(depth, view_buf.lens);
-      float share = share_of(coc);
-      if (share <= 0.0 || coc < from || coc >= to) {
-        continue;
-      }
-      float weight = peak * share;
-      found.energy += excess * share;
-      found.weight += weight;
-      found.place += (vec2(texel) + 0.5) * weight;
-      found.inverse_depth += weight / depth;
-      found.texels += 1.0;
     }
+    found.texels += covered;
   }
   return found;
 }
 
 void emit(Highlight found, uint index)
 {
+  if (found.weight <= 0.0) {
+    // Counted, but for rounding not found again.
+    found = Highlight(vec3(0.0), 1.0, 0.5 * view_buf.film.xy, 1.0 / view_buf.lens.x, 1.0);
+  }
   vec2 clip = found.place / found.weight / view_buf.film.xy * 2.0 - 1.0;
   float depth = found.weight / found.inverse_depth;
   vec2 scale = vec2(view_buf.projection[0][0], view_buf.projection[1][1]);
@@ -126,39 +108,56 @@ void emit(Highlight found, uint index)
   }
   // Where it is, not where it appears from that place.
   xy += lens_view.xy * (view_buf.lens.x - depth) / view_buf.lens.x;
-  float area = 1.0 / float(SUBPIXELS * SUBPIXELS);
-  ivec2 place = ivec2(index % SOURCE_COLUMNS, index / SOURCE_COLUMNS);
+  float area = 1.0 / float(subpixels * subpixels);
+  ivec2 place = list_texel(index);
   if (place.y >= imageSize(a_img).y) {
     return;
   }
   imageStore(a_img, place, vec4(xy, depth, sqrt(found.texels * area)));
   imageStore(b_img, place, vec4(found.energy * area, lens_view.z));
 }
+
+uint place_of(uint index)
+{
+  ivec2 texel = list_texel(index);
+  return texelFetch(starts_tx, texel, 0).x + texelFetch(totals_tx, list_texel(uint(texel.y)), 0).x;
+}
 #endif
 
 void main()
 {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size))) {
+  uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  ivec2 lane = ivec2(gl_LocalInvocationID.xy);
+  if (tile >= uint(tiles)) {
     return;
   }
-#ifdef EMIT
-  uint before = imageLoad(counts_img, ivec3(pixel, layer)).x;
-  uint count = before & 3u;
-  if (count == 0u) {
-    return;
-  }
-  uint index = imageLoad(rows_img, ivec2(pixel.y, layer)).x + (before >> 2u);
+  ivec2 pixel = ivec2(texelFetch(listed_tx, list_texel(tile), 0).xy) * TILE + lane;
+  uint index = tile * uint(TILE * TILE) + uint(lane.y * TILE + lane.x);
   bool sharp;
-  vec2 range = coc_range(pixel, sharp);
-  float middle = (count == 1u) ? 1e30 : 0.5 * (range.x + range.y);
-  emit(gather(pixel, -1e30, middle), index);
-  if (count == 2u) {
-    emit(gather(pixel, middle, 1e30), index + 1u);
+#ifdef EMIT
+  uint start = place_of(index);
+  uint count = place_of(index + 1u) - start;
+  float from = -1e30;
+  for (uint k = 0u; k < count; k++) {
+    float to = 1e30;
+    if (count > 1u) {
+      from = coc_range(pixel, from, sharp).x;
+      to = (k + 1u < count) ? from + COC_TOLERANCE : 1e30;
+    }
+    emit(gather(pixel, from, to), uint(first) + start + k);
+    from = to;
   }
 #else
-  bool sharp;
-  uint count = highlights_of(coc_range(pixel, sharp));
-  imageStore(counts_img, ivec3(pixel, layer), uvec4(count + (sharp ? 256u : 0u)));
+  vec2 range = coc_range(pixel, -1e30, sharp);
+  uint count = (range.y < range.x) ? 0u : 1u;
+  bool ignored;
+  while (range.y >= range.x + COC_TOLERANCE && count < MOST) {
+    range = coc_range(pixel, range.x + COC_TOLERANCE, ignored);
+    count++;
+  }
+  imageStore(starts_img, list_texel(index), uvec4(count));
+  if (sharp) {
+    imageAtomicAdd(sharp_img, ivec2(0), 1u);
+  }
 #endif
 }

@@ -1,34 +1,33 @@
-// One layer of what a pinhole at the lens' centre sees: the nearest surface behind the layer before.
-// OCCLUDERS: of all surfaces, as their opacity. Otherwise of highlights alone, so that no number of
-// dark surfaces in front makes a layer miss them; whether anything of the lens sees them is found
-// later. Only what is hidden by a surface so close in front that no place on the lens looks behind
-// it is left out here.
-// Inputs: varyings of surface_vert; view_buf; front_tx (depth of the layer before); for highlights
-// also front_color_tx (the layer before), scene_tx (depth of the nearest opaque surface) and
-// highlight_buf; what the generated surface_closure() reads.
-// Outputs: light above the threshold that would reach the eye through nothing else (rgb), opacity
-// (a).
-// Source: Everitt, Interactive order-independent transparency, 2001; methods 9.
-#include "lib/depth_lib.glsl"
+// What a pinhole on the lens sees, beyond the nearest surface.
+// OCCLUDERS: one layer of all surfaces, the nearest behind the layer before, as their opacity.
+// OPAQUE_ONLY: the depth of the nearest opaque surface.
+// Otherwise: all that is brighter than the threshold, in lists for each texel, so that no surface in
+// front makes it miss any, and the depth of what is opaque.
+// Inputs: varyings of surface_vert; view_buf; OCCLUDERS: front_tx (depth of the layer before);
+// highlights: highlight_buf, and what highlights_append needs; what the generated surface_closure()
+// reads.
+// Outputs: opacity (a); or lists of fragments: light above the threshold that would reach the eye
+// through nothing else.
+// Source: Everitt, Interactive order-independent transparency, 2001; Yang et al., Real-time
+// concurrent linked list construction on the GPU, EGSR 2010; methods 9.
 #include "lib/highlight_lib.glsl"
-#include "lib/lens_lib.glsl"
 
-// Circles of confusion that differ by less than this see the same surfaces in front, px.
-#define SAME_VIEW 1.0
-// Of a depth buffer: steps by which two shaders may differ in the depth of one surface.
-#define DEPTH_STEPS 2e-7
+// Less is seen through.
+#define OPAQUE_FROM 0.999
 
-#ifdef OCCLUDERS
+#if defined(OCCLUDERS) || defined(OPAQUE_ONLY)
 void main()
 {
+#ifdef OCCLUDERS
   if (gl_FragCoord.z <= texelFetch(front_tx, ivec2(gl_FragCoord.xy), 0).x) {
     discard;
   }
+#endif
   float opacity = 1.0;
 #if defined(TRANSPARENT) && !defined(HOLDOUT)
   opacity = 1.0 - closure_through(surface_closure());
 #ifdef OPAQUE_ONLY
-  if (opacity < 0.999) {
+  if (opacity < OPAQUE_FROM) {
     discard;
   }
 #endif
@@ -36,36 +35,15 @@ void main()
     discard;
   }
 #endif
+#ifdef OCCLUDERS
   out_color = vec4(0.0, 0.0, 0.0, opacity);
+#endif
 }
 #else
-// Whether an opaque surface in front hides what lies behind it from the whole lens.
-bool hides(float front, float window_depth)
-{
-  float near = depth_from_window(front, view_buf.projection, view_buf.lens);
-  float far = depth_from_window(window_depth, view_buf.projection, view_buf.lens);
-  return abs(coc_radius_px(near, view_buf.lens) - coc_radius_px(far, view_buf.lens)) < SAME_VIEW;
-}
+#include "passes/highlights_append.glsl"
 
 void main()
 {
-#ifdef HOLDOUT
-  discard;
-#else
-  ivec2 texel = ivec2(gl_FragCoord.xy);
-  float z = gl_FragCoord.z;
-  float front = texelFetch(front_tx, texel, 0).x;
-  if (z <= front) {
-    discard;
-  }
-  // Before the surface's own code, which may be long.
-  float scene = texelFetch(scene_tx, texel, 0).x;
-  if (scene < z - DEPTH_STEPS && hides(scene, z)) {
-    discard;
-  }
-  if (texelFetch(front_color_tx, texel, 0).a >= 0.999 && hides(front, z)) {
-    discard;
-  }
   Closure closure = surface_closure();
   float opacity = 1.0;
   vec2 split = vec2(highlight_buf.split.x, highlight_buf.split.z);
@@ -79,10 +57,13 @@ void main()
   light *= opacity;
 #endif
 #endif
-  if (max(light.r, max(light.g, light.b)) <= 0.0) {
+  if (max(light.r, max(light.g, light.b)) > 0.0) {
+    append_fragment(ivec2(gl_FragCoord.xy), light, gl_FragCoord.z, opacity >= OPAQUE_FROM);
+  }
+#ifdef TRANSPARENT
+  if (opacity < OPAQUE_FROM) {
     discard;
   }
-  out_color = vec4(light, opacity);
 #endif
 }
 #endif

@@ -7,11 +7,12 @@ import pytest
 
 from addon.bokeh.iris_mask import BladedIris
 from addon.bokeh.opening import opening_layers
-from addon.device import geometry, readback
+from addon.device import geometry, readback, shader_source
+from addon.device.shaders import ShaderInfo, compile_shader, dispatch
 from addon.device.targets import Targets, TargetSpec
 from addon.device.textures import texture_2d, texture_array
-from addon.device.uniforms import uniform_buffer
-from addon.engine import bokeh_search
+from addon.device.uniforms import bind_resource, uniform_buffer
+from addon.engine import bokeh_listing, bokeh_search
 from addon.engine.bokeh_look import BokehLook
 from addon.engine.plan import plan_frame
 from addon.passes import highlights, splat, surface
@@ -67,28 +68,48 @@ def energy(picture):
 SUBPIXELS = 3
 COC_SCALE, FOCUS, LEAST = 30.0, 3.0, 2.5
 
+# What surfaces do, for light and depths that are given.
+APPEND = """
+void main()
+{
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(texel, textureSize(color_tx, 0)))) {
+    return;
+  }
+  vec4 color = texelFetch(color_tx, texel, 0);
+  if (max(color.r, max(color.g, color.b)) > 0.0) {
+    append_fragment(texel, color.rgb, texelFetch(depth_tx, texel, 0).x, color.a > 0.5);
+  }
+}
+"""
 
-def peeled(seed, parallel, width=21, height=13):
-    """Return layers with highlights in some texels, at depths that differ a little or much."""
+
+def fragments_of(seed, parallel, width=21, height=13):
+    """Return fragments of some texels, at depths that differ a little or much, and what hides."""
     rng = np.random.default_rng(seed)
     projection = (orthographic if parallel else perspective)(width, height)
     shape = (height * SUBPIXELS, width * SUBPIXELS)
-    layers = []
-    for _ in range(2):
+
+    def window(depth):
+        clip = projection @ np.stack([0 * depth, 0 * depth, -depth, 0 * depth + 1], axis=1)
+        return (clip[:, 2] / clip[:, 3] * 0.5 + 0.5).astype(np.float32)
+
+    fragments = []
+    for _ in range(3):
         depth = np.where(
             rng.random(shape) < 0.5, rng.uniform(1, 2, shape), rng.uniform(2, 9, shape)
         )
-        clip = projection @ np.stack([0 * depth, 0 * depth, -depth, 0 * depth + 1], axis=1)
-        window = (clip[:, 2] / clip[:, 3] * 0.5 + 0.5).astype(np.float32)
         color = (10.0 ** rng.uniform(-2, 5, (*shape, 3))).astype(np.float32)
         color[rng.random(shape) < 0.7] = 0.0
-        layers.append((color, window))
-    return layers, Raster(projection, parallel, FOCUS, COC_SCALE, LEAST, SUBPIXELS)
+        fragments.append((color, window(depth), rng.random(shape) < 0.5))
+    scene = window(rng.uniform(1, 9, shape))
+    raster = Raster(projection, parallel, FOCUS, COC_SCALE, LEAST, SUBPIXELS, 2)
+    return fragments, scene, raster
 
 
-def list_on_device(layers, raster):
-    """Return the list of highlights and the numbers of them and of sharp ones."""
-    height, width = (side // raster.subpixels for side in layers[0][1].shape)
+def list_on_device(fragments, scene, raster, capacity=4096):
+    """Return the list of highlights and the number of sharp ones."""
+    height, width = (side // raster.subpixels for side in scene.shape)
     view = uniform_buffer(
         surface.VIEW_PARAMS.pack(
             view=np.eye(4),
@@ -104,33 +125,47 @@ def list_on_device(layers, raster):
             world=(0.0, 0.0, 0.0, 0.0),
         )
     )
-    textures = [
-        (
-            texture_2d(np.concatenate([color, color[..., :1]], axis=2)),
-            texture_2d(depth[..., None], "R32F"),
+    append = compile_shader(
+        ShaderInfo(
+            name="append",
+            compute=shader_source.join(
+                ("passes/highlights_append.glsl", shader_source.Text(APPEND))
+            ),
+            samplers=(("FLOAT_2D", "color_tx"), ("FLOAT_2D", "depth_tx")),
+            images=highlights.APPEND_IMAGES,
+            push_constants=highlights.APPEND_CONSTANTS,
+            defines=highlights.APPEND_DEFINES,
+            local_size=(8, 8, 1),
         )
-        for color, depth in layers
-    ]
-    peeled = highlights.PeeledRaster(textures, view, split, (width, height), raster.subpixels)
-    with (
-        Targets(width, height, [TargetSpec("counts", "R32UI", len(layers))]) as counts,
-        Targets(height, 2 * len(layers), [TargetSpec("rows", "R32UI")]) as rows,
-        Targets(2, 1, [TargetSpec("total", "R32UI")]) as total,
-        Targets(1024, 8, [TargetSpec(name, "RGBA32F") for name in "ab"]) as lists,
-    ):
-        total["total"].clear(format="UINT", value=(0,))
-        highlights.count(peeled, counts["counts"], rows["rows"], total["total"])
-        found, sharp = np.asarray(total["total"].read()).ravel()[:2].tolist()
-        highlights.emit(peeled, counts["counts"], rows["rows"], (lists["a"], lists["b"]))
-        columns = [readback.read_color(lists.framebuffer(name), 1024, 8) for name in "ab"]
+    )
+    lists = highlights.FragmentLists(width, height, raster.subpixels, capacity)
+    lists.clear()
+    for color, depth, opaque in fragments:
+        append.bind()
+        texels = texture_2d(np.concatenate([color, opaque[..., None]], axis=2))
+        depths = texture_2d(depth[..., None], "R32F")
+        append.uniform_sampler("color_tx", texels)
+        append.uniform_sampler("depth_tx", depths)
+        for name, resource in lists.bindings():
+            bind_resource(append, name, resource)
+        dispatch(append, *(-(-side // 8) for side in scene.shape[::-1]))
+    number, tiles = lists.read()
+    assert number == sum((color.max(axis=2) > 0.0).sum() for color, _, _ in fragments)
+    seen = highlights.SearchedRaster(view, split, raster.subpixels, raster.layers)
+    with Targets(1024, 8, [TargetSpec(name, "RGBA32F") for name in "ab"]) as sources:
+        scene = texture_2d(scene[..., None], "R32F")
+        highlights.order(seen, lists, number, scene)
+        found, sharp = highlights.emit(seen, lists, tiles, (sources["a"], sources["b"]), 0)
+        columns = [readback.read_color(sources.framebuffer(name), 1024, 8) for name in "ab"]
+    lists.release()
     return np.concatenate([c.reshape(-1, 4)[:found] for c in columns], axis=1), sharp
 
 
 @pytest.mark.parametrize("parallel", [False, True])
 def test_highlights_are_listed_as_by_the_twin(parallel):
-    layers, raster = peeled(2, parallel)
-    found, sharp = list_on_device(layers, raster)
-    expected, expected_sharp = twin(layers, raster)
+    drawn = fragments_of(2, parallel)
+    found, sharp = list_on_device(*drawn)
+    expected, expected_sharp = twin(*drawn)
     assert sharp == expected_sharp > 0
     assert len(found) == len(expected) > 500
     # Depths come from a depth buffer of 32 bits, and near the least radius, where the share grows
@@ -141,18 +176,22 @@ def test_highlights_are_listed_as_by_the_twin(parallel):
 
 
 def test_the_list_holds_the_energy_of_the_picture():
-    layers, raster = peeled(4, False)
-    found, _ = list_on_device(layers, replace(raster, least_coc=1e-6))
-    total = sum(color.astype(np.float64).sum(axis=(0, 1)) for color, _ in layers)
-    # Every light is blurred more than nothing; to the bar of 1e-5.
+    fragments, scene, raster = fragments_of(4, False)
+    # Nothing in front, nothing opaque, and every light is blurred more than nothing.
+    fragments = [(color, depth, np.zeros_like(opaque)) for color, depth, opaque in fragments]
+    found, _ = list_on_device(
+        fragments, np.ones_like(scene), replace(raster, least_coc=1e-6, layers=3)
+    )
+    total = sum(color.astype(np.float64).sum(axis=(0, 1)) for color, _, _ in fragments)
+    # To the bar of 1e-5.
     assert found[:, 4:7].astype(np.float64).sum(axis=0) == pytest.approx(
         total / SUBPIXELS**2, rel=1e-5
     )
 
 
 def test_the_list_is_the_same_every_time():
-    layers, raster = peeled(6, False)
-    first, second = (list_on_device(layers, raster)[0] for _ in range(2))
+    drawn = fragments_of(6, False)
+    first, second = (list_on_device(*drawn)[0] for _ in range(2))
     assert first.tobytes() == second.tobytes()
 
 
@@ -333,14 +372,27 @@ def test_tiles_find_what_the_whole_raster_does(monkeypatch):
     assert tiles == pytest.approx(whole, abs=1e-5 * float(whole.max()))
 
 
-def test_the_search_ends_with_the_first_empty_layer():
+def test_surfaces_are_searched_once_however_many_layers_there_are():
     drawn = []
-    for layers in (4, 32):
+    for layers in (1, 32):
         renderer = make_renderer(with_bokeh(lamps(), layers=layers))
         renderer.advance(1)
         drawn.append(renderer.counts.draw_calls)
         renderer.release()
     assert drawn[0] == drawn[1]
+
+
+def test_more_fragments_than_there_is_room_for_are_all_found(monkeypatch):
+    whole = render_snapshot(with_bokeh(lamps()))["Bokeh"]
+    monkeypatch.setattr(bokeh_listing, "_LEAST_ROOM", 1 << 10)
+    monkeypatch.setattr(bokeh_listing, "_ROOM", 0.0)
+    again = render_snapshot(with_bokeh(lamps()))["Bokeh"]
+    assert again.tobytes() == whole.tobytes()
+    # Now the tile is divided.
+    monkeypatch.setattr(bokeh_listing, "_MOST_ROOM", 1 << 10)
+    divided = render_snapshot(with_bokeh(lamps()))["Bokeh"]
+    # The same highlights in another order.
+    assert divided == pytest.approx(whole, abs=1e-5 * float(whole.max()))
 
 
 def test_gain_multiplies_what_lies_above_the_threshold():

@@ -1,0 +1,124 @@
+// Puts the fragments of each texel in order, from front to back, and leaves out those that nothing
+// of the lens sees: right behind an opaque surface or an opaque highlight. All others stay, whatever
+// is in front: what hides them from which part of the lens is found later.
+// A thread for each fragment; that of a texel's last one does the texel.
+// Inputs: nodes_tx, heads_img, light_img (see highlights_append); scene_tx (window depth of the
+// nearest opaque surface); view_buf (of the raster), highlight_buf; number (of fragments); layers
+// (that are kept of a texel). WORLD: the world at infinity, nothing in front.
+// Outputs: heads_img (first of a texel, with IN_ORDER), order_img (next of each); light_img: light that
+// is splatted, 0 of what is too sharp, and depth along the axis, m.
+// Source: methods 9 (J20 section 4.1).
+#include "lib/depth_lib.glsl"
+#include "lib/fragment_list_lib.glsl"
+#include "lib/highlight_lib.glsl"
+#include "lib/lens_lib.glsl"
+
+// Circles of confusion that differ by less than this see the same surfaces in front, px.
+#define SAME_VIEW 1.0
+// Of a depth buffer: steps by which two shaders may differ in the depth of one surface.
+#define DEPTH_STEPS 2e-7
+
+float depth_of(float window_depth)
+{
+  return depth_from_window(window_depth, view_buf.projection, view_buf.lens);
+}
+
+float largest(vec3 color)
+{
+  return max(color.r, max(color.g, color.b));
+}
+
+// Whether an opaque surface in front hides what lies behind it from the whole lens.
+bool hides(float front, float window_depth)
+{
+  float near = coc_radius_px(depth_of(front), view_buf.lens);
+  float far = coc_radius_px(depth_of(window_depth), view_buf.lens);
+  return abs(near - far) < SAME_VIEW;
+}
+
+#ifndef WORLD
+struct Fragment {
+  uint number;  // 0 is none
+  vec4 light;
+  bool opaque;
+};
+
+// The nearest fragment behind another one that something of the lens may see. Of two at one depth,
+// the brighter.
+Fragment next_behind(uint first, Fragment front, float scene)
+{
+  Fragment best = Fragment(0u, vec4(0.0, 0.0, 0.0, 2.0), false);
+  for (uint number = first; number != 0u;) {
+    ivec2 place = list_texel(number - 1u);
+    uvec2 node = texelFetch(nodes_tx, place, 0).xy;
+    vec4 light = imageLoad(light_img, place);
+    bool nearer = light.a < best.light.a;
+    nearer = nearer || (light.a == best.light.a && largest(light.rgb) > largest(best.light.rgb));
+    bool hidden = scene < light.a - DEPTH_STEPS && hides(scene, light.a);
+    hidden = hidden || (front.opaque && hides(front.light.a, light.a));
+    if (light.a > front.light.a && nearer && !hidden) {
+      best = Fragment(number, light, (node.x & KEY_OPAQUE) != 0u);
+    }
+    number = node.y;
+  }
+  return best;
+}
+#endif
+
+// The same light as the splats need it.
+vec4 splatted(vec4 light)
+{
+#ifdef WORLD
+  return vec4(light.rgb * highlight_buf.world.z, highlight_buf.world.x);
+#else
+  float depth = depth_of(light.a);
+  float coc = coc_radius_px(depth, view_buf.lens);
+  return vec4(light.rgb * highlight_share(coc, highlight_buf.split.y), depth);
+#endif
+}
+
+void main()
+{
+  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * threads;
+  if (index >= uint(number)) {
+    return;
+  }
+  uvec2 node = texelFetch(nodes_tx, list_texel(index), 0).xy;
+  ivec2 texel = key_texel(node.x);
+  uint first = imageLoad(heads_img, texel).x;
+  if (first != index + 1u) {
+    return;
+  }
+#ifdef WORLD
+  uint start = first;
+  imageStore(order_img, list_texel(index), uvec4(0u));
+#else
+  float scene = texelFetch(scene_tx, texel, 0).x;
+  Fragment front = Fragment(0u, vec4(0.0), false);
+  uint start = 0u;
+  int most = (node.y == 0u) ? 1 : layers;
+  for (int layer = 0; layer < most; layer++) {
+    Fragment next = next_behind(first, front, scene);
+    if (next.number == 0u) {
+      break;
+    }
+    if (front.number == 0u) {
+      start = next.number;
+    }
+    else {
+      imageStore(order_img, list_texel(front.number - 1u), uvec4(next.number));
+    }
+    front = next;
+  }
+  if (front.number != 0u) {
+    imageStore(order_img, list_texel(front.number - 1u), uvec4(0u));
+  }
+#endif
+  imageStore(heads_img, texel, uvec4(start | IN_ORDER));
+  for (uint kept = start; kept != 0u;) {
+    ivec2 place = list_texel(kept - 1u);
+    imageStore(light_img, place, splatted(imageLoad(light_img, place)));
+    kept = imageLoad(order_img, place).x;
+  }
+}
