@@ -112,3 +112,11 @@ def multiply():
 
     overwrite()
     gpu.state.blend_set("MULTIPLY")
+
+
+def over():
+    """Lay premultiplied colour over what is there; no depth."""
+    import gpu
+
+    overwrite()
+    gpu.state.blend_set("ALPHA_PREMULT")

@@ -15,6 +15,7 @@ from ..passes import clusters, highlights, splat, surface
 from .bokeh_clusters import similarity_of
 from .bokeh_listing import HighlightSearch
 from .bokeh_look import make_look
+from .bokeh_marks import draw_marks, fates, with_sharp
 from .bokeh_visibility import BokehVisibility
 
 # Highlights that the list has room for at first.
@@ -94,6 +95,8 @@ class BokehStage:
     counts : HighlightCounts
     report : tuple of str
         What is not as the camera asks, one sentence each; known when discs have been drawn.
+    fates : dict of str to int
+        What became of how many sources, by the names of `passes.bokeh_marks.FATES`.
     """
 
     def __init__(self, plan, drawing, buffers, occluders, highlights_buffer):
@@ -103,6 +106,7 @@ class BokehStage:
         self._occluders = occluders
         self._highlights = highlights_buffer
         self.counts = HighlightCounts()
+        self.fates = {}
         self.report = ()
         self.bytes = 0
 
@@ -115,7 +119,7 @@ class BokehStage:
         targets : Targets
             Whose ``bokeh`` gets it.
         frame_view : GPUUniformBuf
-            `ViewParams` of the frame.
+            `ViewParams` of the frame, in pixels.
         stage : callable, optional
             As that of `FrameRenderer.advance`: ``search``, ``merge``, ``visibility``, ``splat``.
         """
@@ -134,9 +138,9 @@ class BokehStage:
         """
         held = []
         try:
-            sources, count = self._find(fullscreen, held)
+            sources, count = listed = self._find(fullscreen, held)
             yield
-            sources, count = self._merge(sources, count, held)
+            sources, count = merged = self._merge(sources, count, held)
             visibility = None
             if count:
                 yield
@@ -147,6 +151,18 @@ class BokehStage:
                 target.clear(color=(0.0, 0.0, 0.0, 0.0))
             if visibility:
                 self._splat(sources, count, visibility, target, frame_view)
+            self.fates = fates(self.counts, visibility and visibility.counts)
+            if "marks" in targets:
+                marks = targets.framebuffer("marks")
+                draw_marks(
+                    self._plan,
+                    marks,
+                    frame_view,
+                    listed,
+                    merged,
+                    visibility,
+                    lambda: self._with_sharp()._find(fullscreen, held),
+                )
             self.bytes = max(self.bytes, sum(targets.bytes for targets in held))
         finally:
             for targets in held:
@@ -171,6 +187,13 @@ class BokehStage:
         self.counts.found = search.count + search.sharp
         self.counts.culled_size = search.sharp
         return (lists["a"], lists["b"]), search.count
+
+    def _with_sharp(self):
+        """Return a stage that lists what is too sharp to be splatted, too."""
+        bokeh = with_sharp(self._plan.bokeh)
+        plan = replace(self._plan, bokeh=bokeh)
+        parts = (self._drawing, self._buffers, self._occluders)
+        return BokehStage(plan, *parts, highlight_buffer(bokeh))
 
     def _merge(self, sources, count, held):
         """Merge similar highlights, as the model asks for; returns the list and its length."""

@@ -74,7 +74,9 @@ def render_view_layer(engine, depsgraph, heard):
             statistics.triangles_full_detail += counts.triangles_full_detail
             statistics.sprites_drawn += counts.sprites_drawn
             statistics.sprites_copied += counts.sprites_copied
-            note_highlights(depsgraph.scene.name, renderer.highlights, renderer.report)
+            note_highlights(
+                depsgraph.scene.name, renderer.highlights, renderer.report, renderer.fates
+            )
             _show_report(engine, heard, renderer.report)
             if renderer.highlights:
                 for name, number in vars(renderer.highlights).items():

@@ -9,8 +9,9 @@ import numpy as np
 
 from ..device import readback, state
 from ..device.targets import Targets, TargetSpec
-from ..passes import cryptomatte, data, resolve
+from ..passes import bokeh_marks, cryptomatte, data, resolve
 from . import render_passes
+from .bokeh_marks import mark_targets, shows_marks
 
 
 class FramePictures:
@@ -44,7 +45,7 @@ class FramePictures:
     @staticmethod
     def target_specs(plan):
         """Return the targets that pictures are made in."""
-        specs = [TargetSpec("image", "RGBA32F", size=plan.size)]
+        specs = [TargetSpec("image", "RGBA32F", size=plan.size), *mark_targets(plan)]
         if plan.distortion and render_passes.cryptomatte_kinds(plan.passes):
             specs.append(TargetSpec("ranks", "RGBA32F"))
         return specs
@@ -60,8 +61,19 @@ class FramePictures:
         pixel_size : int
             Side of the square that shows one pixel.
         """
-        bokeh = self._targets["bokeh"] if self._plan.bokeh else None
-        self._resolve(self._targets["sum"], self._weight(samples), origin, pixel_size, bokeh)
+        targets = self._targets
+        whole = (targets["sum"], self._weight(samples))
+        bokeh = targets["bokeh"] if self._plan.bokeh else None
+        if not shows_marks(self._plan):
+            self._resolve(*whole, origin, pixel_size, bokeh)
+            return
+        targets.forget_framebuffers()
+        with targets.framebuffer("image").bind():
+            self._resolve(*whole, bokeh=bokeh)
+        with targets.framebuffer("seen_marks").bind():
+            self._resolve(targets["marks"], 1.0)
+        textures = (targets["image"], targets["seen_marks"])
+        bokeh_marks.draw_picture(self._fullscreen, *textures, origin, pixel_size)
 
     def _resolve(self, total, weight, origin=(0, 0), pixel_size=1, bokeh=None):
         state.overwrite()
@@ -85,6 +97,15 @@ class FramePictures:
         picture = self.read_defocus(samples)
         # Added here and not on the device, so that it is the sum of the two passes to the last bit.
         return picture + self.read_bokeh() if self._plan.bokeh else picture
+
+    def read_shown(self, samples):
+        """Return what a viewport shows: Combined, or the debug view that takes its place."""
+        if not shows_marks(self._plan):
+            return self.read_combined(samples)
+        framebuffer = self._targets.framebuffer("marked")
+        with framebuffer.bind():
+            self.resolve(samples)
+        return readback.read_color(framebuffer, *self._plan.size)
 
     def read_defocus(self, samples):
         """Return what so many samples show, as `read_combined`."""

@@ -169,10 +169,11 @@ class RenderOutcome:
 # What became of the highlights of the last picture of each scene, and what of them is not as the
 # camera asks, by its name.
 _highlights = {}
+_fates = {}
 _problems = {}
 
 
-def note_highlights(scene, counts, problems=()):
+def note_highlights(scene, counts, problems=(), fates=None):
     """Remember what became of the highlights of a scene's picture, for the panel.
 
     Parameters
@@ -183,14 +184,22 @@ def note_highlights(scene, counts, problems=()):
         None where none were searched.
     problems : tuple of str
         As `FrameRenderer.report` has them.
+    fates : dict of str to int or None
+        As `FrameRenderer.fates` has them.
     """
     _highlights[scene] = dict(vars(counts)) if counts else None
+    _fates[scene] = dict(fates or {})
     _problems[scene] = problems
 
 
 def last_highlights(scene):
     """Return what `note_highlights` was told last of a scene, as a dict, or None."""
     return _highlights.get(scene)
+
+
+def last_fates(scene):
+    """Return what became of how many sources, as `note_highlights` was told last of a scene."""
+    return _fates.get(scene, {})
 
 
 def last_problems(scene):

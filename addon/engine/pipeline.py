@@ -89,6 +89,7 @@ class FrameRenderer:
         wavelengths = self._wavelength if plan.chromatic else None
         self._drawing.aim(plan, wavelengths, self._highlights)
         self._view = uniform_buffer(_view_params(plan))
+        self._pixels = uniform_buffer(_view_params(replace(plan, subpixels=1)))
         world = snapshot.content.world
         self._background = (0.0,) * 4 if snapshot.film.transparent else (*world.color, 1.0)
         self._shows_image = bool(world.image) and not snapshot.film.transparent
@@ -149,6 +150,11 @@ class FrameRenderer:
     def highlights(self):
         """What became of the frame's highlights, as `HighlightCounts`; None without bokeh."""
         return self._bokeh.counts if self._bokeh else None
+
+    @property
+    def fates(self):
+        """As `BokehStage.fates`; empty without bokeh."""
+        return self._bokeh.fates if self._bokeh else {}
 
     @property
     def report(self):
@@ -223,7 +229,7 @@ class FrameRenderer:
             with stage("bokeh"):
                 self._bokeh = self._draft or self._whole
                 start = time.perf_counter()
-                self._bokeh.run(self._fullscreen, self._targets, self._view, stage)
+                self._bokeh.run(self._fullscreen, self._targets, self._pixels, stage)
                 if self._bokeh is self._whole:
                     self._bokeh_seconds = time.perf_counter() - start
         if self._blur and index == 0:
@@ -241,7 +247,7 @@ class FrameRenderer:
             return
         self._targets.forget_framebuffers()
         if self._refining is None:
-            self._refining = self._whole.steps(self._fullscreen, self._targets, self._view)
+            self._refining = self._whole.steps(self._fullscreen, self._targets, self._pixels)
             self._bokeh_seconds = 0.0
         start = time.perf_counter()
         done = next(self._refining, self) is self
@@ -338,7 +344,7 @@ class FrameRenderer:
     def read_image(self):
         """Return the picture so far, shape (height, width, 4), bottom row first."""
         self._targets.forget_framebuffers()
-        return self._pictures.read_combined(self.samples_done)
+        return self._pictures.read_shown(self.samples_done)
 
     def pass_groups(self):
         """Return the plan's passes in groups that are best read together.
@@ -370,7 +376,7 @@ class FrameRenderer:
         pictures = made.read_data(render_passes.made_by(names, "DATA"))
         for name in names:
             if name == "Combined":
-                pictures[name] = made.read_combined(done)
+                pictures[name] = made.read_shown(done)
             elif name == "Defocus":
                 pictures[name] = made.read_defocus(done)
             elif name == "Bokeh":
@@ -387,7 +393,7 @@ class FrameRenderer:
         picture = self._pictures.read_combined(self.samples_done)[..., :3]
         if self._plain is None:
             return np.zeros_like(picture, order="C")
-        return picture - self._plain.read_image()[..., :3]
+        return picture - self._plain._pictures.read_combined(self._plain.samples_done)[..., :3]
 
     def texture_bytes(self):
         """Return how many bytes targets, images and instances hold on the device."""

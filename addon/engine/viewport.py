@@ -19,6 +19,7 @@ from ..scene.extract import SceneExtractor
 from ..scene.settings import read_preview_sampling
 from ..scene.snapshot import SceneSnapshot
 from ..scene.view import read_view
+from .bokeh_marks import shows_marks
 from .level_store import level_store
 from .levels import meshes_with_levels
 from .outcome import note_highlights
@@ -188,13 +189,17 @@ class Viewport:
             renderer = self._renderer
             if not renderer.finished():
                 self._refine(renderer)
-                note_highlights(depsgraph.scene.name, renderer.highlights, renderer.report)
+                note_highlights(
+                    depsgraph.scene.name, renderer.highlights, renderer.report, renderer.fates
+                )
             x, y, width, height = view.rectangle
             with state.confined(x, y, width, height):
                 renderer.resolve((x, y), view.pixel_size)
         self.text = f"Sample {renderer.samples_done}/{renderer.plan.samples}"
         if renderer.bokeh_drafted:
             self.text += " | Draft of the bokeh"
+        if shows_marks(renderer.plan):
+            self.text += " | Debug view of the bokeh"
         done, total = level_store().progress
         if done < total:
             self.text += f" | Levels of detail {done / total:.0%}"

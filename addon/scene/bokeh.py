@@ -82,12 +82,15 @@ def describe_bokeh(camera, real_lens, corner):
         distortion=distortion,
         vignetting=vignetting,
         profile_strength=settings.profile_strength,
+        debug_view=settings.debug_view,
     )
     return bokeh, problems + distortion_problems + _not_drawn(camera)
 
 
 def _not_drawn(camera):
     found = ()
+    if camera.aplanat.bokeh.use and camera.aplanat.bokeh.debug_view != "NONE":
+        found += ("the picture is the debug view of the bokeh",)
     if camera.aplanat.chromatic.use:
         found += ("highlights drawn as bokeh show no chromatic aberration in this version",)
     return found

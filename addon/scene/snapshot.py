@@ -309,6 +309,9 @@ class BokehSettings:
         Cat's eyes: none, by the appearance's rims, or by the real lens' own pupil.
     profile_strength : float
         0: even discs; 1: the intensity of the traced lens.
+    debug_view : {'NONE', 'SOURCES', 'CLUSTERS', 'VISIBILITY'}
+        What the picture shows marks of instead: sources before and after merging, and what became
+        of them.
     """
 
     threshold: float = 1.0
@@ -327,6 +330,7 @@ class BokehSettings:
     distortion: float = 0.0
     vignetting: str = "NONE"
     profile_strength: float = 1.0
+    debug_view: str = "NONE"
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,6 +14,16 @@ from .sentences import draw_alert, draw_sentences, letters_across
 
 # In units of Blender's buttons.
 _DISC_SCALE = 5.0
+# What became of a source: in words, and Blender's sign of about the colour of its marks.
+LEGEND = {
+    "SHARP": ("Sharp: the lens samples draw it", "STRIP_COLOR_09"),
+    "OUTSIDE": ("Disc outside the picture", "STRIP_COLOR_07"),
+    "HIDDEN": ("Out of sight", "STRIP_COLOR_01"),
+    "VISIBLE": ("Nothing in front of it", "STRIP_COLOR_04"),
+    "FREE": ("Nothing between it and the lens", "STRIP_COLOR_05"),
+    "MASKED": ("Partly hidden: has a mask", "STRIP_COLOR_02"),
+    "IN_SPLAT": ("Partly hidden: rays per pixel", "STRIP_COLOR_06"),
+}
 
 
 class _BokehPanel(EnginePanel):
@@ -256,6 +266,29 @@ class APLANAT_CAMERA_PT_bokeh_rings(_AppearancePanel, bpy.types.Panel):
         rings.prop(settings, "onion_irregularity", slider=True)
 
 
+class APLANAT_CAMERA_PT_bokeh_debug(_BokehPanel, bpy.types.Panel):
+    """Which sources there are, and what became of them."""
+
+    bl_label = "Debug View"
+    bl_parent_id = "APLANAT_CAMERA_PT_bokeh"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw the choice, and what the colours mean."""
+        settings, column = self.begin(context)
+        column.prop(settings, "debug_view")
+        if settings.debug_view != "VISIBILITY":
+            return
+        numbers = outcome.last_fates(context.scene.name)
+        legend = column.column(align=True)
+        for fate, (text, icon) in LEGEND.items():
+            row = legend.split(factor=0.75)
+            row.label(text=text, icon=icon)
+            number = row.row()
+            number.alignment = "RIGHT"
+            number.label(text=f"{numbers[fate]:,}" if numbers else "")
+
+
 CLASSES = (
     APLANAT_CAMERA_PT_bokeh,
     APLANAT_CAMERA_PT_bokeh_search,
@@ -263,6 +296,7 @@ CLASSES = (
     APLANAT_CAMERA_PT_bokeh_field,
     APLANAT_CAMERA_PT_bokeh_texture,
     APLANAT_CAMERA_PT_bokeh_rings,
+    APLANAT_CAMERA_PT_bokeh_debug,
 )
 
 register, unregister = bpy.utils.register_classes_factory(CLASSES)

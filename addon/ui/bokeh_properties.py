@@ -353,6 +353,32 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
         subtype="FACTOR",
         **_SHARED,
     )
+    debug_view: EnumProperty(
+        name="Show",
+        description="Show marks of what the bokeh is made of on the dimmed picture, in the viewport"
+        " and in Combined; the other passes stay as they are",
+        items=(
+            ("NONE", "Picture", "The picture as it is"),
+            (
+                "SOURCES",
+                "Sources",
+                "A dot in its own colour for every highlight that was found, before merging",
+            ),
+            (
+                "CLUSTERS",
+                "Clusters",
+                "What is left after merging: the square of pixels that each stands for, and the"
+                " edge of its disc",
+            ),
+            (
+                "VISIBILITY",
+                "Visibility",
+                "What became of each source, by colour, and the edge of its disc",
+            ),
+        ),
+        default="NONE",
+        **_SHARED,
+    )
 
 
 # What a disc looks like: this a preset and a lens keep. An image cannot be kept as a value.

@@ -353,6 +353,14 @@ def test_a_lone_lamp_keeps_its_energy_in_a_slow_pan(diameter_px):
     assert found == pytest.approx([1.0] * len(found), abs=0.01)
 
 
+def test_discs_do_not_depend_on_how_finely_the_samples_are_drawn(monkeypatch):
+    coarse = render_snapshot(with_bokeh(lamps()))["Bokeh"]
+    monkeypatch.setattr("addon.engine.plan.subpixels", lambda *_: 2)
+    plan = plan_frame(with_bokeh(lamps()))
+    assert plan.subpixels == 2
+    assert render_snapshot(with_bokeh(lamps()), plan)["Bokeh"].tobytes() == coarse.tobytes()
+
+
 def test_light_from_outside_the_frame_reaches_in():
     corners = [lamp(4.25, 0.0, 8.0, 0.1)]
     lights = [(300.0, 300.0, 300.0)]

@@ -285,6 +285,16 @@ def test_a_material_may_never_shine_as_bokeh(camera, empty_scene, aplanat_bpy):
         assert third is second
 
 
+def test_the_debug_view_is_read_and_told(bokeh, aplanat_bpy):
+    assert read(aplanat_bpy).report == ()
+    bokeh.debug_view = "CLUSTERS"
+    found = read(aplanat_bpy)
+    assert found.bokeh.debug_view == "CLUSTERS"
+    assert found.report == ("camera 'Camera': the picture is the debug view of the bokeh",)
+    bokeh.use = False
+    assert read(aplanat_bpy).report == ()
+
+
 def test_a_lamp_may_never_shine_as_bokeh(empty_scene, aplanat_bpy):
     bpy = aplanat_bpy
     lamp = bpy.data.lights.new("Lamp", "POINT")

@@ -9,6 +9,8 @@ from addon.bokeh.appearance import Appearance
 from addon.bokeh.grain import Grain
 from addon.bokeh.iris_mask import BladedIris
 from addon.bokeh.vignetting_model import cat_eye
+from addon.engine.bokeh_marks import FATE_COLORS
+from addon.passes.bokeh_marks import FATES
 from addon.ui import bokeh_panel, bokeh_presets
 from addon.ui.bokeh_panel import counts_as_lines
 from addon.ui.bokeh_previews import disc_pictures
@@ -212,6 +214,18 @@ def test_panels_are_for_aplanat_only():
     for panel in bokeh_panel.CLASSES:
         assert panel.is_registered and set(panel.COMPAT_ENGINES) == {"APLANAT"}
     assert bokeh_presets.APLANAT_OT_bokeh_preset_add.bl_description
+
+
+def test_the_legend_of_the_debug_view_has_every_colour_of_its_marks(aplanat_bpy):
+    assert set(bokeh_panel.LEGEND) == set(FATE_COLORS) == set(FATES)
+    label = aplanat_bpy.types.UILayout.bl_rna.functions["label"]
+    icons = label.parameters["icon"].enum_items.keys()
+    assert all(icon in icons for _, icon in bokeh_panel.LEGEND.values())
+
+
+def test_the_debug_view_is_off_and_no_part_of_a_preset(bokeh):
+    assert bokeh.debug_view == "NONE"
+    assert "debug_view" not in APPEARANCE_NAMES
 
 
 def test_materials_and_lights_start_with_automatic_highlights(aplanat_bpy, empty_scene):
