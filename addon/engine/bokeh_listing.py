@@ -58,6 +58,8 @@ class HighlightSearch:
         `HighlightParams`.
     sources : tuple of 2 GPUTexture
         Get the list (see `passes.highlights`), as far as they have room.
+    field : tuple of (str, GPUUniformBuf or GPUTexture) or None
+        `passes.chromatic.resources`, with chromatic aberration.
 
     Attributes
     ----------
@@ -69,12 +71,13 @@ class HighlightSearch:
         Most that it held on the device.
     """
 
-    def __init__(self, plan, drawing, buffers, split, sources):
+    def __init__(self, plan, drawing, buffers, split, sources, field=None):
         self._plan = plan
         self._drawing = drawing
         self._buffers = buffers
         self._split = split
         self._sources = sources
+        self._field = field
         self.count = 0
         self.sharp = 0
         self.bytes = 0
@@ -162,7 +165,7 @@ class HighlightSearch:
             return lists
         layers = self._plan.bokeh.layers
         seen = highlights.SearchedRaster(
-            params, self._split, search.subpixels, layers, lens, region
+            params, self._split, search.subpixels, layers, lens, region, self._field
         )
         scene = None if search.world else raster["scene"]
         highlights.order(seen, lists, min(number, lists.capacity), scene)

@@ -48,7 +48,9 @@ class BokehLook:
     textures : tuple of (str, GPUTexture)
         By their names in the shader.
     blocks : tuple of GPUUniformBuf
-        `SplatParams`, one for each wavelength that is drawn.
+        `SplatParams`, one for each band of wavelengths that is drawn.
+    field : tuple of (str, GPUUniformBuf or GPUTexture)
+        What the bands are looked up in; empty without chromatic aberration.
     report : tuple of str
         What is not as the camera asks, one sentence each.
     """
@@ -56,6 +58,7 @@ class BokehLook:
     variants: tuple[str, ...]
     textures: tuple
     blocks: tuple
+    field: tuple = ()
     report: tuple[str, ...] = ()
 
 
@@ -98,7 +101,7 @@ def describe_look(plan):
     variants = ()
     rows, strength = None, settings.profile_strength
     if lens is not None and strength > 0.0:
-        rows = _lens_rows(lens, plan.focus_distance, True)
+        rows = _lens_rows(lens, plan.focus_distance)
     elif lens is None and appearance.edge != 0.0:
         rows, strength = rows_of_edge(appearance.edge), 1.0
     layers = None
@@ -119,7 +122,7 @@ def describe_look(plan):
     return variants, arrays, params
 
 
-def make_look(plan):
+def make_look(plan, field=None):
     """Upload what the splats of a frame need.
 
     Where the real lens cannot shape them, they are a thin lens'.
@@ -128,6 +131,8 @@ def make_look(plan):
     ----------
     plan : FramePlan
         With a `bokeh`.
+    field : tuple of (str, GPUUniformBuf or GPUTexture) or None
+        `passes.chromatic.resources`, with chromatic aberration.
 
     Returns
     -------
@@ -145,9 +150,17 @@ def make_look(plan):
             replace(plan, bokeh=replace(plan.bokeh, real_lens=None))
         )
     textures = tuple((name, _texture(_Arrays(array))) for name, array in arrays.items())
-    wavelength = {"wavelength": (1.0, 1.0, 1.0, 1.0 / plan.focus_distance), "lateral": (1, 0, 0, 0)}
-    block = uniform_buffer(SPLAT_PARAMS.pack(**params, **wavelength))
-    return BokehLook(variants, textures, (block,), report)
+    bands = [((1.0, 1.0, 1.0), (0.0, 0.0, 0.0, 0.0))]
+    if field:
+        bands = [(band.weights, band.dispersion) for band in plan.bokeh.colors.bands]
+    focus = 1.0 / plan.focus_distance
+    blocks = tuple(
+        uniform_buffer(
+            SPLAT_PARAMS.pack(**params, wavelength=(*weights, focus), dispersion=dispersion)
+        )
+        for weights, dispersion in bands
+    )
+    return BokehLook(variants, textures, blocks, tuple(field or ()), report)
 
 
 class _Lens:
@@ -162,9 +175,9 @@ class _Lens:
     def __hash__(self):
         return hash((self.settings.id, self.settings.label, self.settings.f_number))
 
-    def profile(self, chromatic):
+    def profile(self):
         """Return the lens' bokeh profile."""
-        return lens_profile(self.settings, chromatic)
+        return lens_profile(self.settings)
 
 
 class _Arrays:
@@ -256,8 +269,8 @@ def _mask(appearance, size, number):
 
 
 @lru_cache(maxsize=4)
-def _lens_rows(lens, focus_distance, chromatic):
-    return rows_of_lens(lens.profile(chromatic), focus_distance, lens.settings.f_number)
+def _lens_rows(lens, focus_distance):
+    return rows_of_lens(lens.profile(), focus_distance, lens.settings.f_number)
 
 
 @lru_cache(maxsize=4)
@@ -287,13 +300,13 @@ def _add_tiles(plan, appearance, tangent, arrays, params):
 @lru_cache(maxsize=2)
 def _tiles(lens, focus_distance, tangent):
     """Tiles of a lens at a focus; w of their first and last depth; c0 over c at infinity."""
-    profile = lens.profile(False)
+    profile = lens.profile()
     distance = distance_from_h(profile, focus_distance)
     state = profile.focused(distance)
     focus = distance if lens.settings.prescription.focus else np.inf
     nearest = min(float(state.ray_map.vergences[-1]), _NEAREST / (focus_distance * _MM))
     beams = _beams(lens, focus, float(state.ray_map.pupil), tangent, nearest)
-    rows = _lens_rows(lens, focus_distance, False)
+    rows = _lens_rows(lens, focus_distance)
     plane = state.image_plane(distance)
     # The circle of confusion of the lens, c = k0 + k1 V, is 0 at the focus.
     linear = state.ray_map.reference[0] + (plane - state.ray_map.plane) * state.ray_map.reference[1]

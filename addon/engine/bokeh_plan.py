@@ -15,6 +15,7 @@ from ..sampling.pixel_filter import filter_density
 from ..scene.brightness import brightest, mirrors
 from ..scene.snapshot import BokehSettings, LensSettings
 from ..scene.surface_graph import Constant
+from .bokeh_colors import BokehColors, plan_colors
 from .bokeh_search import (
     LEAST_SUBPIXELS,
     corners_of,
@@ -75,6 +76,8 @@ class BokehPlan:
         That shapes the discs; None: the thin lens.
     filter_width : float
         Side of the square that blurs as the pixel filter does, px.
+    colors : BokehColors or None
+        None: one disc for all wavelengths.
     draft : bool
         Bounded work, for a view that moves; see `draft_of`.
     """
@@ -96,6 +99,7 @@ class BokehPlan:
     iris: Iris
     real_lens: LensSettings | None
     filter_width: float
+    colors: BokehColors | None = None
     draft: bool = False
 
     @property
@@ -154,14 +158,19 @@ def plan_bokeh(snapshot, plan):
     wanted = sampling.method != "REFERENCE" or sampling.reference_bokeh
     if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
         return None
-    least = least_coc(plan.samples)
+    least = least_coc(plan.samples / (plan.chromatic.samples_for_one if plan.chromatic else 1.0))
     shining = _shining(snapshot.content, settings.threshold)
     rows, _ = rows_of(snapshot.content, shining)
     seen = extents(corners_of(snapshot.content, rows), plan.view)
-    largest = _largest_coc(snapshot.content, plan, seen)
+    colors = None
+    if plan.chromatic:
+        farthest = float(seen.farthest.max(initial=plan.focus_distance))
+        aberration = snapshot.camera.chromatic
+        colors = plan_colors(aberration, plan.chromatic, plan.coc_scale, farthest)
+    largest = _largest_coc(snapshot.content, plan, seen, colors)
     if largest <= least:
         return None
-    margin = _margin(plan, settings, largest)
+    margin = _margin(plan, settings, largest, colors)
     width, height = plan.width + 2 * margin[0], plan.height + 2 * margin[1]
     # Of a parallel camera, all pixels show the same point at infinity: it is no highlight.
     world = settings.world and bool(snapshot.content.world.image)
@@ -195,6 +204,7 @@ def plan_bokeh(snapshot, plan):
         iris=lens.iris,
         real_lens=None if plan.orthographic else snapshot.camera.real_lens,
         filter_width=filter_width(film.filter_kind, film.filter_size_px),
+        colors=colors,
     )
 
 
@@ -227,6 +237,7 @@ def draft_of(bokeh):
             lens_views=1,
         ),
         subpixels=max(1, min(bokeh.subpixels, LEAST_SUBPIXELS, affordable)),
+        colors=bokeh.colors and bokeh.colors.draft(),
         draft=True,
     )
 
@@ -263,19 +274,27 @@ def _uneven(content, shining):
     )
 
 
-def _largest_coc(content, plan, seen):
-    largest = abs(plan.empty_coc) if content.world.image else 0.0
+def _largest_coc(content, plan, seen, colors):
+    changes = (0.0,) if colors is None else colors.focus_changes[:2]
+    largest = 0.0
+    if content.world.image:
+        largest = max(abs(plan.empty_coc + plan.coc_scale * change) for change in changes)
     front = seen.farthest > 0.0
     near = np.maximum(seen.nearest[front], 1e-3 * plan.focus_distance)
     for depth in (near, seen.farthest[front]):
-        largest = max(largest, float(np.abs(coc_radius(depth, plan)).max(initial=0.0)))
+        coc = coc_radius(depth, plan)
+        for change in changes:
+            moved = coc + plan.coc_scale * change * (depth if plan.orthographic else 1.0)
+            largest = max(largest, float(np.abs(moved).max(initial=0.0)))
     return largest
 
 
-def _margin(plan, settings, largest):
+def _margin(plan, settings, largest, colors):
     narrowing = plan.lens_extent / plan.lens_extent[1]
     limit = settings.overscan * max(plan.width, plan.height)
-    return tuple(int(np.ceil(min(largest * n, limit))) + _RIM for n in narrowing)
+    # From where a smaller scale brings discs in.
+    moved = colors.growth * max(plan.width, plan.height) if colors else 0.0
+    return tuple(int(np.ceil(min(largest * n + moved, limit))) + _RIM for n in narrowing)
 
 
 def filter_width(kind, size_px):

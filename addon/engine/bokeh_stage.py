@@ -89,6 +89,8 @@ class BokehStage:
         Of the drawing's content.
     highlights_buffer : GPUUniformBuf
         See `highlight_buffer`.
+    field : tuple of (str, GPUUniformBuf or GPUTexture) or None
+        `passes.chromatic.resources`, with chromatic aberration.
 
     Attributes
     ----------
@@ -99,12 +101,13 @@ class BokehStage:
         What became of how many sources, by the names of `passes.bokeh_marks.FATES`.
     """
 
-    def __init__(self, plan, drawing, buffers, occluders, highlights_buffer):
+    def __init__(self, plan, drawing, buffers, occluders, highlights_buffer, field=None):
         self._plan = plan
         self._drawing = drawing
         self._buffers = buffers
         self._occluders = occluders
         self._highlights = highlights_buffer
+        self._field = field
         self.counts = HighlightCounts()
         self.fates = {}
         self.report = ()
@@ -175,7 +178,12 @@ class BokehStage:
             specs = [TargetSpec(name, "RGBA32F") for name in "ab"]
             lists = Targets(highlights.COLUMNS, room // highlights.COLUMNS, specs)
             search = HighlightSearch(
-                self._plan, self._drawing, self._buffers, self._highlights, (lists["a"], lists["b"])
+                self._plan,
+                self._drawing,
+                self._buffers,
+                self._highlights,
+                (lists["a"], lists["b"]),
+                self._field,
             )
             search.run(fullscreen)
             self.bytes = max(self.bytes, search.bytes)
@@ -201,7 +209,9 @@ class BokehStage:
         similarity = similarity_of(plan.bokeh.settings, count)
         rounds = _DRAFT_ROUNDS if plan.bokeh.draft else 1
         while similarity and count > 1:
-            lens = (plan.focus_distance, float(plan.orthographic), plan.coc_scale, 0.0)
+            colors = plan.bokeh.colors
+            focus = colors.focus_distance if colors else plan.focus_distance
+            lens = (focus, float(plan.orthographic), plan.coc_scale, 0.0)
             pixel = 2.0 / (plan.projection[1, 1] * plan.height)
             parameters = clusters.cluster_params(similarity, plan.view, lens, pixel)
             lists, count = clusters.cluster(sources, count, uniform_buffer(parameters), similarity)
@@ -236,7 +246,7 @@ class BokehStage:
         rays = None
         if visibility.counts.method == "SPLAT":
             rays = (visibility.layers, visibility.opacity, visibility.states, visibility.parameters)
-        look = make_look(self._plan)
+        look = make_look(self._plan, self._field)
         self.report = look.report
         with target.bind():
             splat.splat(

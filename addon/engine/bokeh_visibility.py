@@ -227,7 +227,14 @@ def visibility_params(plan, fine=1, reach=1.0):
             _MASK_TEXELS_PER_PIXEL,
             _reaching_depth(plan),
         ),
+        "colors": _colors(bokeh.colors, focus),
     }
+
+
+def _colors(colors, focus_distance):
+    if colors is None:
+        return (0.0, 0.0, 0.0, focus_distance)
+    return (*colors.focus_changes[:2], colors.growth, colors.focus_distance)
 
 
 def _texels_per_pixel(bokeh):
@@ -245,6 +252,15 @@ def _reaching_depth(plan):
     not, is seen at no pixel of the frame: it hides nothing of what the frame shows.
     """
     margin = min(plan.bokeh.margin)
+    colors = plan.bokeh.colors
+    if colors is not None:
+        # The wavelength that is blurred most, moved to the frame by the lateral scale.
+        margin -= colors.growth * max(plan.bokeh.width, plan.bokeh.height)
+        focus = 1.0 / plan.focus_distance + colors.focus_changes[0]
+        away = margin / plan.coc_scale
+        # Beyond any highlight where even that does not hide it.
+        reach = (1.0 - away) / focus if plan.orthographic else 1.0 / max(focus + away, 1e-9)
+        return max(reach, 0.0)
     if plan.orthographic:
         return max(plan.focus_distance * (1.0 - margin / plan.coc_scale), 0.0)
     return 1.0 / (1.0 / plan.focus_distance + margin / plan.coc_scale)

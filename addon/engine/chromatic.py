@@ -16,6 +16,7 @@ import numpy as np
 
 from ..sampling.chromatic import FARTHEST_FOCUS, LEAST_FOCAL_SHARE, LEAST_SCALE
 from ..sampling.field_maps import field_corner
+from ..sampling.spectral_bands import spectral_bands
 
 # Columns of the field table, for maps that vary with the tilt alone and those that turn; the error
 # of straight lines between them is below 1e-4 of a map's change, except where it is clamped.
@@ -65,6 +66,8 @@ class ChromaticPlan:
         At the reference wavelength, 1/m.
     raster : ndarray of shape (4,)
         From pixels of the region to the field: scale and offset, x and y each.
+    typical_errors : tuple of 2 float
+        Focal errors whose circles of confusion have about the mean square of all wavelengths'.
     """
 
     wavelengths_nm: np.ndarray
@@ -77,6 +80,7 @@ class ChromaticPlan:
     focal_length: float
     inverse_focus: float
     raster: np.ndarray
+    typical_errors: tuple[float, float]
 
     def dispersion(self, sample):
         """Return a sample's focal error and lateral strength, 2 floats."""
@@ -92,6 +96,32 @@ class ChromaticPlan:
     def least_inverse_focus(self):
         """Where equation (4.5) is clamped, 1/m."""
         return self.inverse_focus / FARTHEST_FOCUS
+
+    def typical_coc(self, eye, coc_scale):
+        """Return the circles of confusion that stand for those of all wavelengths.
+
+        The share of light that is splatted depends on them, so that it is the same at every
+        wavelength.
+
+        Parameters
+        ----------
+        eye : ndarray of shape (..., 3)
+        coc_scale : float
+            See `FramePlan`.
+
+        Returns
+        -------
+        ndarray of shape (...)
+            Radius in px: the root of about their mean square.
+        """
+        axial = self.strengths(eye)[..., 0]
+        depth = -eye[..., 2]
+        squares = 0.0
+        for error in self.typical_errors:
+            focus = self.inverse_focus_at(error, axial)
+            coc = depth * focus - 1.0 if self.parallel else focus - 1.0 / depth
+            squares = squares + 0.5 * (coc_scale * coc) ** 2
+        return np.sqrt(squares)
 
     def strengths(self, eye):
         """Return axial and lateral map at points of camera space.
@@ -226,6 +256,9 @@ def plan_chromatic(aberration, samples, camera, film, focus_distance):
     ChromaticPlan
     """
     weights = np.column_stack([samples.weights, samples.weights.mean(axis=1)])
+    # Mean and width of all the light there is, whatever wavelengths the samples have.
+    (light,) = spectral_bands(aberration, 0.0, 0.0, 1)
+    deviation = light.focal_width / np.sqrt(12.0)
     radius = camera.field_radius or picture_radius(camera.projection, camera.orthographic)
     return ChromaticPlan(
         wavelengths_nm=samples.wavelengths_nm,
@@ -238,6 +271,7 @@ def plan_chromatic(aberration, samples, camera, film, focus_distance):
         focal_length=aberration.focal_length,
         inverse_focus=1.0 / focus_distance,
         raster=field_of_raster(camera.projection, film),
+        typical_errors=(light.focal_error - deviation, light.focal_error + deviation),
     )
 
 

@@ -137,7 +137,7 @@ class FrameRenderer:
 
     def _stage(self, plan):
         buffers, occluders = self._buffers, self._occluders
-        return BokehStage(plan, self._drawing, buffers, occluders, self._highlights)
+        return BokehStage(plan, self._drawing, buffers, occluders, self._highlights, self._field)
 
     @property
     def counts(self):
@@ -436,6 +436,7 @@ def _chromatic_resources(plan):
         ),
         raster=plan.raster,
         extremes=(plan.focal_errors.min(), plan.focal_errors.max(), np.abs(strengths).max()),
+        typical=plan.typical_errors,
     )
 
 

@@ -47,6 +47,26 @@ class ChromaticSample:
             bind_resource(shader, name, resource)
 
 
+def over_field(info):
+    """Return the variant of a shader that looks up the field, for no wavelength of its own.
+
+    Parameters
+    ----------
+    info : ShaderInfo
+
+    Returns
+    -------
+    ShaderInfo
+    """
+    return replace(
+        info,
+        typedefs=info.typedefs + CHROMATIC_PARAMS.source,
+        uniforms=(*info.uniforms, *UNIFORMS),
+        samplers=(*info.samplers, *SAMPLERS),
+        defines=(*info.defines, *DEFINES),
+    )
+
+
 def declared(info, push_constants=()):
     """Return the variant of a shader for chromatic aberration.
 
@@ -60,17 +80,13 @@ def declared(info, push_constants=()):
     -------
     ShaderInfo
     """
+    info = over_field(info)
     return replace(
-        info,
-        typedefs=info.typedefs + CHROMATIC_PARAMS.source,
-        uniforms=(*info.uniforms, *UNIFORMS),
-        samplers=(*info.samplers, *SAMPLERS),
-        push_constants=(*info.push_constants, *PUSH_CONSTANTS, *push_constants),
-        defines=(*info.defines, *DEFINES),
+        info, push_constants=(*info.push_constants, *PUSH_CONSTANTS, *push_constants)
     )
 
 
-def resources(*, table, radius, parallel, focus, raster, extremes):
+def resources(*, table, radius, parallel, focus, raster, extremes, typical):
     """Upload what all samples share.
 
     Parameters
@@ -87,6 +103,8 @@ def resources(*, table, radius, parallel, focus, raster, extremes):
         From pixels to the field: scale and offset.
     extremes : tuple of 3 float
         Least and largest difference of the focal length, largest lateral strength.
+    typical : tuple of 2 float
+        Differences of the focal length that stand for all.
 
     Returns
     -------
@@ -98,5 +116,6 @@ def resources(*, table, radius, parallel, focus, raster, extremes):
         focus=focus,
         raster=raster,
         extremes=(*extremes, 0.0),
+        typical=(*typical, 0.0, 0.0),
     )
     return (("chromatic_buf", uniform_buffer(block)), ("field_tx", texture_2d(table, "RG32F")))

@@ -23,7 +23,8 @@ from ..device import shader_source
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from ..device.targets import Targets, TargetSpec
 from ..device.textures import texture_2d
-from . import prefix_sums
+from ..device.uniforms import bind_resource
+from . import chromatic, prefix_sums
 from .prefix_sums import COLUMNS
 from .surface import HIGHLIGHT_PARAMS, VIEW_PARAMS
 
@@ -58,9 +59,11 @@ _FINISH = ShaderInfo(
 )
 
 
-def _order_info(world):
+def _order_info(world, in_wavelengths):
     samplers = [("UINT_2D", "nodes_tx")] + [("FLOAT_2D", "scene_tx")] * (not world)
-    return ShaderInfo(
+    constants = [("INT", "number")] + [("INT", "layers")] * (not world)
+    constants += [("VEC4", "lens_view")] * in_wavelengths
+    info = ShaderInfo(
         name="aplanat_highlights_order",
         compute=shader_source.load("passes/highlights_order_comp.glsl"),
         typedefs=VIEW_PARAMS.source + HIGHLIGHT_PARAMS.source,
@@ -71,10 +74,11 @@ def _order_info(world):
             ("RGBA32F", "FLOAT_2D", "light_img", ("READ", "WRITE")),
         ),
         uniforms=(("ViewParams", "view_buf"), ("HighlightParams", "highlight_buf")),
-        push_constants=(("INT", "number"), *(("INT", "layers"),) * (not world)),
+        push_constants=tuple(constants),
         defines=_DEFINES + (("WORLD", "1"),) * world,
         local_size=(_THREADS, 1, 1),
     )
+    return chromatic.over_field(info) if in_wavelengths else info
 
 
 def _gather_info(emits):
@@ -115,6 +119,8 @@ class SearchedRaster:
         Place on the lens that it was seen from, m.
     region : int
         Of the lens, that it stands for; 0 is all of it.
+    field : tuple of (str, GPUUniformBuf or GPUTexture) or None
+        `chromatic.resources`: the light is divided as that of samples of many wavelengths is.
     """
 
     view: object
@@ -123,6 +129,7 @@ class SearchedRaster:
     layers: int
     lens: tuple[float, float] = (0.0, 0.0)
     region: int = 0
+    field: tuple | None = None
 
 
 class FragmentLists:
@@ -203,8 +210,12 @@ def order(raster, lists, number, scene=None):
     scene : GPUTexture or None
         Window depth of the nearest opaque surface; None: the fragments are the world's.
     """
-    shader = compile_shader(_order_info(scene is None))
+    shader = compile_shader(_order_info(scene is None, raster.field is not None))
     shader.bind()
+    if raster.field is not None:
+        for name, resource in raster.field:
+            bind_resource(shader, name, resource)
+        shader.uniform_float("lens_view", (*raster.lens, 0.0, 0.0))
     shader.uniform_sampler("nodes_tx", lists.targets["nodes"])
     for name in ("heads", "order", "light"):
         shader.image(f"{name}_img", lists.targets[name])

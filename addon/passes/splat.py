@@ -7,6 +7,8 @@ profile of a lens), RIMS (analytic vignetting), TILES (patterns of a real lens o
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
 from ..device.uniform_block import UniformStruct
+from ..device.uniforms import bind_resource
+from . import chromatic
 from .bokeh_culling import VISIBILITY_PARAMS
 from .highlights import COLUMNS
 from .surface import VIEW_PARAMS
@@ -41,14 +43,14 @@ _LOOK_VARYINGS = {
 }
 
 
-def _info(casts, variants):
+def _info(casts, variants, in_wavelengths=False):
     names = _TEXTURES + _RAYS * casts
     samplers = tuple(("FLOAT_2D", name) for name in names) + (("FLOAT_2D_ARRAY", "opening_tx"),)
     samplers += tuple(texture for variant in variants for texture in _LOOK_TEXTURES[variant])
     uniforms = (("ViewParams", "view_buf"), ("SplatParams", "splat_buf"))
     uniforms += (("VisibilityParams", "visibility_buf"),) * casts
     structs = VIEW_PARAMS.source + SPLAT_PARAMS.source
-    return ShaderInfo(
+    info = ShaderInfo(
         name="aplanat_splat",
         vertex=shader_source.load("passes/splat_vert.glsl"),
         fragment=shader_source.load("passes/splat_frag.glsl"),
@@ -62,6 +64,7 @@ def _info(casts, variants):
             ("FLAT INT", "v_source"),
             ("FLAT FLOAT", "v_region"),
             ("FLAT VEC2", "v_chief"),
+            *(("FLAT VEC3", "v_area"), ("FLAT FLOAT", "v_dot")) * in_wavelengths,
             *(varying for variant in variants for varying in _LOOK_VARYINGS[variant]),
         ),
         outputs=(("VEC4", "out_color"),),
@@ -73,6 +76,7 @@ def _info(casts, variants):
             *((variant, "1") for variant in variants),
         ),
     )
+    return chromatic.over_field(info) if in_wavelengths else info
 
 
 def splat(square, count, textures, look, view_buffer, rays=None):
@@ -88,7 +92,8 @@ def splat(square, count, textures, look, view_buffer, rays=None):
         The list of highlights (see `passes.highlights`), what becomes of each, and the atlas of
         masks (see `engine.bokeh_visibility`).
     look : engine.bokeh_look.BokehLook
-        Shape of the discs, as ``variants``, ``textures`` and, for each wavelength, ``blocks``.
+        Shape of the discs, as ``variants``, ``textures`` and, for each band of wavelengths,
+        ``blocks``; ``field`` as in `passes.highlights.PeeledRaster`, empty without bands.
     view_buffer : GPUUniformBuf
         `ViewParams` of the frame.
     rays : tuple or None
@@ -98,8 +103,10 @@ def splat(square, count, textures, look, view_buffer, rays=None):
     if count == 0:
         return
     state.additive()
-    shader = compile_shader(_info(rays is not None, look.variants))
+    shader = compile_shader(_info(rays is not None, look.variants, bool(look.field)))
     shader.bind()
+    for name, resource in look.field:
+        bind_resource(shader, name, resource)
     for name, texture in zip(_TEXTURES, textures, strict=True):
         shader.uniform_sampler(name, texture)
     if rays is not None:

@@ -84,16 +84,13 @@ def describe_bokeh(camera, real_lens, corner):
         profile_strength=settings.profile_strength,
         debug_view=settings.debug_view,
     )
-    return bokeh, problems + distortion_problems + _not_drawn(camera)
+    return bokeh, problems + distortion_problems + _told(camera)
 
 
-def _not_drawn(camera):
-    found = ()
+def _told(camera):
     if camera.aplanat.bokeh.use and camera.aplanat.bokeh.debug_view != "NONE":
-        found += ("the picture is the debug view of the bokeh",)
-    if camera.aplanat.chromatic.use:
-        found += ("highlights drawn as bokeh show no chromatic aberration in this version",)
-    return found
+        return ("the picture is the debug view of the bokeh",)
+    return ()
 
 
 def corner_tangent(camera, scene):

@@ -3,13 +3,15 @@
 from ..lens_io import profile_cache
 
 
-def lens_profile(lens, chromatic):
+def lens_profile(lens):
     """Return the bokeh profile of a lens, traced if the cache does not have it.
+
+    That of one wavelength: the colors of a picture are chromatic aberration's, which discs and all
+    the rest share.
 
     Parameters
     ----------
     lens : LensSettings
-    chromatic : bool
 
     Returns
     -------
@@ -21,7 +23,7 @@ def lens_profile(lens, chromatic):
         If the lens forms no image.
     """
     return profile_cache.profile(
-        lens.prescription, lens.label, chromatic=chromatic, lens_id=lens.id
+        lens.prescription, lens.label, chromatic=False, lens_id=lens.id
     )
 
 

@@ -3,6 +3,7 @@
 // Source: Jeong, dissertation, section 4.1, equations 4.5, 4.7 and 4.8.
 #ifndef CHROMATIC_LIB_GLSL
 #define CHROMATIC_LIB_GLSL
+#include "lib/lens_lib.glsl"
 
 // No focal length shrinks below this share: it would turn the lens inside out.
 #define LEAST_FOCAL_SHARE 0.05
@@ -55,6 +56,18 @@ float chromatic_focus(float change, float axial, ChromaticParams params)
 float lateral_scale(float lateral, float strength, ChromaticParams params)
 {
   return max(1.0 + lateral * strength, params.focus.w);
+}
+
+// Radius of the circle of confusion that stands for those of all wavelengths, px: the root of about
+// their mean square. `place` in the field; `lens` as in ViewParams.
+float chromatic_coc_px(
+    sampler2D field_tx, vec2 place, float depth, vec4 lens, ChromaticParams params)
+{
+  float axial = field_strengths(field_tx, place, params).x;
+  vec2 focus = vec2(chromatic_focus(params.typical.x, axial, params),
+                    chromatic_focus(params.typical.y, axial, params));
+  vec2 coc = vec2(coc_radius_at(depth, focus.x, lens), coc_radius_at(depth, focus.y, lens));
+  return sqrt(0.5 * dot(coc, coc));
 }
 
 // As lens_displace, for a wavelength; `dispersion`: change of the focal length, lateral strength.

@@ -17,6 +17,12 @@ float coc_radius_px(float depth, vec4 lens)
   return (lens.y > 0.5) ? defocus : defocus / depth;
 }
 
+// The same at another focus, given as 1 / focus distance, 1/m.
+float coc_radius_at(float depth, float focus, vec4 lens)
+{
+  return lens.z * ((lens.y > 0.5) ? depth * focus - 1.0 : focus - 1.0 / depth);
+}
+
 // Share of a point's light that falls inside the largest circle that counts as sharp.
 float focus_share(float coc_px, float sharp_px)
 {

@@ -15,7 +15,7 @@
 struct Source {
   Cone cone;
   vec2 place;   // in the peeled raster, texels
-  float coc;    // signed radius, px
+  float coc;    // radius of the disc at the wavelength where it is largest, px
   float depth;  // depth buffer value
   float hides;  // depth from which on, towards the lens, surfaces hide it, m
   float limit;  // the same as depth buffer value
@@ -26,6 +26,13 @@ ivec2 list_texel(int index)
   return ivec2(index % SOURCE_COLUMNS, index / SOURCE_COLUMNS);
 }
 
+float largest_coc(float depth, VisibilityParams params)
+{
+  vec2 change = params.colors.xy * (params.lens.z * ((params.lens.y > 0.5) ? depth : 1.0));
+  vec2 coc = abs(coc_radius_px(depth, params.lens) + change);
+  return max(coc.x, coc.y);
+}
+
 // `a`: texel of the list, x, y, depth (m) and extent (px).
 Source source_of(vec4 a, VisibilityParams params)
 {
@@ -34,7 +41,7 @@ Source source_of(vec4 a, VisibilityParams params)
   source.cone = source_cone(a.xyz, params.lens);
   vec4 clip = params.projection * vec4(a.xy, -a.z, 1.0);
   source.place = (clip.xy / clip.w * 0.5 + 0.5) * params.raster.xy;
-  source.coc = coc_radius_px(a.z, params.lens);
+  source.coc = largest_coc(a.z, params);
   source.depth = window_depth(a.z, params.sweep, orthographic);
   source.hides = hiding_depth(a.z, params.lens, params.raster.w);
   source.limit = window_depth(source.hides, params.sweep, orthographic);
@@ -50,7 +57,7 @@ vec2 source_reach(VisibilityParams params)
 // Class of size of a source's mask.
 int source_class(float coc, VisibilityParams params)
 {
-  float side = 2.0 * abs(coc) * params.tiles.z / params.tiles.y;
+  float side = 2.0 * coc * params.tiles.z / params.tiles.y;
   return clamp(int(ceil(log2(max(side, 1.0)))), 0, int(params.tiles.x) - 1);
 }
 

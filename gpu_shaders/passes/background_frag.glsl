@@ -62,7 +62,13 @@ void main()
   radiance = highlight_amplify(radiance, highlight_buf.split.w);
 #endif
 #ifdef HIGHLIGHTS
-  radiance = highlight_base(radiance, highlight_buf.world.z, highlight_buf.split.x);
+#ifdef CHROMATIC
+  float coc = chromatic_coc_px(field_tx, place, highlight_buf.world.x, view_buf.lens, chromatic_buf);
+  float share = highlight_buf.world.y * highlight_share(coc, highlight_buf.split.y);
+#else
+  float share = highlight_buf.world.z;
+#endif
+  radiance = highlight_base(radiance, share, highlight_buf.split.x);
 #endif
 #ifdef EXCESS
   vec3 light = highlight_light(radiance, highlight_buf.split.x, highlight_buf.split.z);

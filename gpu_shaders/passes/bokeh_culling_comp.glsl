@@ -19,10 +19,13 @@
 // Whether the disc meets the frame.
 bool in_frame(Source source)
 {
-  vec2 radius = abs(source.coc) * visibility_buf.opening.w * vec2(1.0 / visibility_buf.lens.w, 1.0);
+  vec2 radius = source.coc * visibility_buf.opening.w * vec2(1.0 / visibility_buf.lens.w, 1.0);
   vec2 center = source.place / visibility_buf.raster.z - visibility_buf.frame.xy;
+  vec4 axis = visibility_buf.projection * vec4(0.0, 0.0, -1.0, 1.0);
+  vec2 away = source.place - (axis.xy / axis.w * 0.5 + 0.5) * visibility_buf.raster.xy;
+  vec2 moved = abs(away) * (visibility_buf.colors.z / visibility_buf.raster.z);
   // For the pixel filter and the extent of the source.
-  vec2 reach = radius + 4.0;
+  vec2 reach = radius + moved + 4.0;
   return all(greaterThan(center + reach, vec2(0.0))) &&
          all(lessThan(center - reach, visibility_buf.frame.zw));
 }

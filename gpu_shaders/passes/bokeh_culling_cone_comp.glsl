@@ -205,8 +205,7 @@ int level_of(Source source, vec4 part, int tree_box)
 bool meets_edge(Source source)
 {
   float margin = min(visibility_buf.frame.x, visibility_buf.frame.y);
-  float farthest = abs(source.coc) < margin ? min(source.hides, visibility_buf.tiles.w) :
-                                              source.hides;
+  float farthest = source.coc < margin ? min(source.hides, visibility_buf.tiles.w) : source.hides;
   Bundle bundle = transform_bundle(source_bundle(source, farthest), visibility_buf.view);
 #ifdef GROUP
   for (int row = extent.x; row <= extent.y; row++) {

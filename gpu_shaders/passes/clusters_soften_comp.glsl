@@ -29,10 +29,13 @@ float depth_of(float value)
 // Side of the square on the lens, in its radii, that an occluder's shadow is blurred over.
 float blur_of(Source source, float extent, float z)
 {
-  float d = source.cone.depth, focus = visibility_buf.lens.x;
+  float d = source.cone.depth, focus = visibility_buf.colors.w;
+  vec4 lens = vec4(focus, visibility_buf.lens.yzw);
+  // The lens may focus some wavelengths there.
+  float coc = max(abs(coc_radius_px(d, lens)), 0.1);
   float gamma = (d - focus) / max(d - z, 1e-6 * d);
   gamma *= (visibility_buf.lens.y > 0.5) ? 1.0 : z / focus;
-  return min(extent * abs(1.0 - gamma) / abs(source.coc), WIDEST);
+  return min(extent * abs(1.0 - gamma) / coc, WIDEST);
 }
 
 // Blur and weight of what a thread's samples find.

@@ -1,7 +1,8 @@
 // A highlight's disc, as far as the lens sees it; the blend state adds it to the others.
 // Inputs: v_place, v_density, v_blur, v_tile, v_source, v_region (see splat_vert); splat_buf;
 // opening_tx (layers of rising blur); masks_tx (atlas of what each place on the lens sees). IN_SPLAT: sources without a mask cast
-// a ray a pixel through layers_tx and opacity_tx; sources_a_tx, states_tx, visibility_buf.
+// a ray a pixel through layers_tx and opacity_tx; sources_a_tx, states_tx, visibility_buf. CHROMATIC:
+// v_area, v_dot (1: hardly a disc).
 // Outputs: scene-linear light.
 // Source: methods 11, 13.
 #include "lib/opening_lib.glsl"
@@ -70,6 +71,12 @@ vec3 disc_density(out vec2 lens)
 {
   // Beyond the rim, what is blurred belongs to the rim.
   lens = v_place / max(length(v_place), 1.0);
+#ifdef CHROMATIC
+  if (v_dot > 0.5) {
+    vec2 tent = max(1.0 - abs(v_place), 0.0);
+    return vec3(tent.x * tent.y);
+  }
+#endif
 #ifdef TILES
   vec2 away = azimuth_of(v_chief);
   vec3 light = tile_light(sharp_tx, soft_tx, v_place, v_blur, v_tile_at);
@@ -112,6 +119,9 @@ void main()
   vec3 density = v_density * disc_density(lens);
   if (max(density.r, max(density.g, density.b)) > 0.0) {
     density *= seen_from(lens) * region_weight(lens);
+#ifdef CHROMATIC
+    density *= max(v_area.x + dot(v_area.yz, lens), 0.0);
+#endif
   }
   out_color = vec4(density, 0.0);
 }

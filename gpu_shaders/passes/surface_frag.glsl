@@ -3,7 +3,8 @@
 // through is drawn twice: its opacity by chance without its light (GLOW_APART), then its light onto
 // what was left (GLOW), wherever nothing is in front of it.
 // Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads; with
-// HIGHLIGHTS, where the light that is splatted is left out, highlight_buf.
+// HIGHLIGHTS, where the light that is splatted is left out, highlight_buf, and with CHROMATIC, so that
+// its share is the same at all wavelengths, chromatic_buf and field_tx.
 // Outputs: premultiplied scene-linear colour; with MATTES also Cryptomatte ids of object (x) and
 // material (y), and the share of sharpness (w).
 // Source: methods 1; stochastic transparency after Enderton et al., I3D 2010.
@@ -16,11 +17,26 @@
 #endif
 #ifdef HIGHLIGHTS
 #include "lib/highlight_lib.glsl"
+#ifdef CHROMATIC
+#include "lib/chromatic_lib.glsl"
+#endif
 
 vec3 without_highlights(Closure closure)
 {
+#ifdef CHROMATIC
+  vec3 light = closure.radiance - closure.unsplit;
+  if (max(light.r, max(light.g, light.b)) <= highlight_buf.split.x) {
+    return closure.radiance;
+  }
+  // Where the point is, not where the wavelength moves it to.
+  vec3 eye = (view_buf.view * vec4(world_position, 1.0)).xyz;
+  vec2 place = field_place(eye, chromatic_buf);
+  float coc = chromatic_coc_px(field_tx, place, -eye.z, view_buf.lens, chromatic_buf);
+#else
   float depth = -(view_buf.view * vec4(world_position, 1.0)).z;
-  float share = highlight_share(coc_radius_px(depth, view_buf.lens), highlight_buf.split.y);
+  float coc = coc_radius_px(depth, view_buf.lens);
+#endif
+  float share = highlight_share(coc, highlight_buf.split.y);
   return highlight_base(closure.radiance, closure.unsplit, share, highlight_buf.split.x);
 }
 #endif

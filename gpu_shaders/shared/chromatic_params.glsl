@@ -8,4 +8,6 @@ struct ChromaticParams {
   vec4 raster;          // from pixels of the region to the field: scale (xy) and offset (zw)
   vec4 extremes;        // x, y: least and largest change of the focal length of any wavelength;
                         // z: largest lateral strength; w unused
+  vec4 typical;         // x, y: two changes of the focal length, whose circles of confusion have about
+                        // the mean square of those of all wavelengths; zw unused
 };

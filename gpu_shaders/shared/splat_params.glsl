@@ -9,5 +9,6 @@ struct SplatParams {
                         // z: rows of the light that rims leave; w: 1 if tiles are masked by the opening
   vec4 rims[4];         // x: radius; y: shift for a tangent of 1; z: members; w unused
   vec4 wavelength;      // rgb: its weights; w: 1 / focus distance, 1/m
-  vec4 lateral;         // x: scale of the picture; yzw unused
+  vec4 dispersion;      // of a band of wavelengths: x: change of the focal length; y: lateral strength;
+                        // zw: width over which they vary
 };

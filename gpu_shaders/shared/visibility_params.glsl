@@ -14,4 +14,7 @@ struct VisibilityParams {
   vec4 tiles;           // x: number of sizes of masks; y: smallest size, texels;
                         // z: texels a pixel of the picture; w: depth, m, up to which a surface
                         // outside the raster can reach into the frame
+  vec4 colors;          // of wavelengths: x, y: least and largest change of 1 / focus distance, 1/m;
+                        // z: share of their way from the axis that discs move by, at the most;
+                        // w: focus distance that stands for all, m
 };

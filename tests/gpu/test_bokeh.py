@@ -221,7 +221,7 @@ def splatted(
         field=(1.0, 0.0, 1.0, 0.0),
         rims=np.zeros((splat.MOST_RIMS, 4)),
         wavelength=(1.0, 1.0, 1.0, 0.1),
-        lateral=(1.0, 0.0, 0.0, 0.0),
+        dispersion=(0.0, 0.0, 0.0, 0.0),
     )
     place = np.asarray(center, float) - size / 2
     lists = np.zeros((3, 1, 1024, 4), np.float32)
