@@ -201,7 +201,7 @@ class BokehStage:
         bokeh = with_sharp(self._plan.bokeh)
         plan = replace(self._plan, bokeh=bokeh)
         parts = (self._drawing, self._buffers, self._occluders)
-        return BokehStage(plan, *parts, highlight_buffer(bokeh))
+        return BokehStage(plan, *parts, highlight_buffer(bokeh), self._field)
 
     def _merge(self, sources, count, held):
         """Merge similar highlights, as the model asks for; returns the list and its length."""
