@@ -81,9 +81,7 @@ def declared(info, push_constants=()):
     ShaderInfo
     """
     info = over_field(info)
-    return replace(
-        info, push_constants=(*info.push_constants, *PUSH_CONSTANTS, *push_constants)
-    )
+    return replace(info, push_constants=(*info.push_constants, *PUSH_CONSTANTS, *push_constants))
 
 
 def resources(*, table, radius, parallel, focus, raster, extremes, typical):

@@ -1,8 +1,8 @@
 """Bands of wavelengths that a highlight's disc is drawn in, a disc each (methods 8, 13).
 
-Lens samples take the wavelengths of `sampling.spectral_samples`, one each. A disc is drawn whole, so
-that its light is divided into few bands: each has the sum of its wavelengths' weights, their mean
-focus and scale, and the width over which these vary, by which its disc is blurred. Neighbouring
+Lens samples take the wavelengths of `sampling.spectral_samples`, one each. A disc is drawn whole,
+so that its light is divided into few bands: each has the sum of its wavelengths' weights, their
+mean focus and scale, and the width over which these vary, by which its disc is blurred. Neighbouring
 bands' rims then join: light over place is straight from one to the next.
 
 Bands lie closest where light is dense: for a light of ``w`` a pixel, the mean of the squared error

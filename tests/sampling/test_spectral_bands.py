@@ -51,9 +51,7 @@ def test_bands_have_the_mean_focus_and_scale_of_the_samples(mode):
     ):
         expected = (samples.weights * own[:, None]).mean(axis=0)
         # Of the range of the three means; the channels differ within a band.
-        assert places[:, column] @ weights == pytest.approx(
-            expected, abs=0.01 * np.ptp(own)
-        )
+        assert places[:, column] @ weights == pytest.approx(expected, abs=0.01 * np.ptp(own))
 
 
 def test_where_colors_hardly_part_there_is_one_band():
