@@ -29,6 +29,7 @@ def plan_of(
         filter_width=filter_width,
         projection=projection.copy(),
         lens_views=((0.0, 0.0),),
+        colors=None,
     )
     return SimpleNamespace(
         bokeh=bokeh,

@@ -35,6 +35,8 @@ _REFERENCE_M = 587.5618e-9
 # Focus distance over that of the nearest tile: still nearer patterns only grow.
 _NEAREST = 4.0
 _MM = 1000.0
+# Colours part by no more, px.
+_FARTHEST = 1e9
 
 
 @dataclass(frozen=True)
@@ -150,17 +152,23 @@ def make_look(plan, field=None):
             replace(plan, bokeh=replace(plan.bokeh, real_lens=None))
         )
     textures = tuple((name, _texture(_Arrays(array))) for name, array in arrays.items())
-    bands = [((1.0, 1.0, 1.0), (0.0, 0.0, 0.0, 0.0))]
-    if field:
-        bands = [(band.weights, band.dispersion) for band in plan.bokeh.colors.bands]
-    focus = 1.0 / plan.focus_distance
-    blocks = tuple(
-        uniform_buffer(
-            SPLAT_PARAMS.pack(**params, wavelength=(*weights, focus), dispersion=dispersion)
-        )
-        for weights, dispersion in bands
-    )
+    blocks = tuple(uniform_buffer(SPLAT_PARAMS.pack(**params, **band)) for band in _bands(plan))
     return BokehLook(variants, textures, blocks, tuple(field or ()), report)
+
+
+def _bands(plan):
+    focus, colors = 1.0 / plan.focus_distance, plan.bokeh.colors
+    if colors is None:
+        nothing = (0.0, 0.0, 0.0, 0.0)
+        yield {"wavelength": (1.0, 1.0, 1.0, focus), "dispersion": nothing, "spread": nothing}
+        return
+    for level in colors.levels:
+        for band in level.bands:
+            yield {
+                "wavelength": (*band.weights, focus),
+                "dispersion": band.dispersion,
+                "spread": (level.least, min(level.most, _FARTHEST), *colors.spreads),
+            }
 
 
 class _Lens:

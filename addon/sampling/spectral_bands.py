@@ -2,12 +2,15 @@
 
 Lens samples take the wavelengths of `sampling.spectral_samples`, one each. A disc is drawn whole,
 so that its light is divided into few bands: each has the sum of its wavelengths' weights, their
-mean focus and scale, and the width over which these vary, by which its disc is blurred. Neighbouring
-bands' rims then join: light over place is straight from one to the next.
+mean focus and scale, and the width over which these vary, by which its disc is blurred. Rims of
+neighbouring bands then join: light over place is straight from one to the next.
 
 Bands lie closest where light is dense: for a light of ``w`` a pixel, the mean of the squared error
 is least with a density that goes as ``w^(1/3)`` (Panter and Dite, Proc. IRE 39, 1951). Together
 they have all the light of each channel, exactly as much as the samples.
+
+Over the field, colours part more or less, and highlights take as many bands as they need: the
+level for their own `spectral_length`.
 """
 
 from dataclasses import dataclass
@@ -19,7 +22,8 @@ from .spectral_samples import channel_density
 
 # Rims that lie closer are one, px: the pixel filter is wider.
 _SAME_RIM = 0.05
-# Between rims of neighbouring bands, px; each is blurred over that much.
+# Between rims of neighbouring bands, px; each is blurred over that much. Where there are 16 bands,
+# what all rims inside a radius add up to is within 2 % of what it should be, however far apart.
 _STEP = 1.5
 
 
@@ -49,24 +53,99 @@ class SpectralBand:
         return self.focal_error, self.lateral_strength, self.focal_width, self.lateral_width
 
 
-def spectral_bands(aberration, axial_px, lateral_px, most):
-    """Divide the light of a frame's wavelengths into bands.
+@dataclass(frozen=True)
+class BandLevel:
+    """Bands for highlights whose colours part by so much.
+
+    Parameters
+    ----------
+    bands : tuple of SpectralBand
+        By rising wavelength; their weights sum to 1 in each channel.
+    least, most : float
+        Way over which the light is spread, px: at least, and less than.
+    """
+
+    bands: tuple[SpectralBand, ...]
+    least: float
+    most: float
+
+
+def spectral_length(aberration, axial_px, lateral_px):
+    """Return the way over which rims of all wavelengths are spread: the way of an even light.
 
     Parameters
     ----------
     aberration : ChromaticAberration
     axial_px : float
-        How much larger a disc gets, at the most, by a relative change of the focal length of 1, px.
+        How much larger a disc gets by a relative change of the focal length of 1, px.
     lateral_px : float
-        How far a disc moves, at the most, by a lateral strength of 1, px.
-    most : int
-        Bands in the spectral mode.
+        How far a disc moves by a lateral strength of 1, px.
+
+    Returns
+    -------
+    float
+        In px.
+    """
+    light, places = _lines(aberration)
+    return float(_dense(light, places, axial_px, lateral_px).sum() ** 1.5)
+
+
+def spectral_bands(aberration, axial_px, lateral_px, count):
+    """Divide the light of a frame's wavelengths into bands.
+
+    Parameters
+    ----------
+    aberration : ChromaticAberration
+    axial_px, lateral_px : float
+        See `spectral_length`; their ratio counts.
+    count : int
+        Of bands; the RGB mode has no more than three.
 
     Returns
     -------
     tuple of SpectralBand
-        By rising wavelength; their weights sum to 1 in each channel.
     """
+    light, places = _lines(aberration)
+    if len(light) <= count:
+        return _joined(light, places, np.arange(len(light)))
+    share = _dense(light, places, axial_px, lateral_px)
+    middle = (np.cumsum(share) - 0.5 * share) / max(share.sum(), 1e-300)
+    return _joined(light, places, np.minimum((middle * count).astype(int), count - 1))
+
+
+def band_levels(aberration, axial_px, lateral_px, most):
+    """Return levels of ever more bands, for colours that part little or much.
+
+    Parameters
+    ----------
+    aberration : ChromaticAberration
+    axial_px, lateral_px : float
+        See `spectral_length`: where colours part most.
+    most : int
+        Bands of the last level.
+
+    Returns
+    -------
+    tuple of BandLevel
+        As many as there are lengths for; the last one has no end.
+    """
+    length = spectral_length(aberration, axial_px, lateral_px)
+    if aberration.mode == "RGB":
+        # As soon as they part at all.
+        counts, ends = [1, len(RGB_WAVELENGTHS_NM)], [_SAME_RIM]
+    else:
+        counts = [1 << n for n in range(most.bit_length())]
+        ends = [_SAME_RIM, *(count * _STEP for count in counts[1:-1])]
+    levels = np.searchsorted(ends, length, side="right") + 1
+    starts, ends = [0.0, *ends][:levels], [*ends[: levels - 1], np.inf]
+    return tuple(
+        BandLevel(spectral_bands(aberration, axial_px, lateral_px, count), low, high)
+        for count, low, high in zip(counts, starts, ends, strict=False)
+    )
+
+
+def _lines(aberration):
+    """Lines of light: weights, (M, 3), and focal error and lateral strength, (M, 2)."""
     if aberration.mode == "RGB":
         order = np.argsort(RGB_WAVELENGTHS_NM)
         wavelengths, light = np.array(RGB_WAVELENGTHS_NM)[order], np.eye(3)[order]
@@ -75,45 +154,19 @@ def spectral_bands(aberration, axial_px, lateral_px, most):
             aberration.wavelength_range, aberration.equalizer, aberration.primaries
         )
         wavelengths, light = 0.5 * (density.edges_nm[1:] + density.edges_nm[:-1]), density.channels
-    places = np.stack(
-        [aberration.focal_errors(wavelengths), aberration.lateral_strengths(wavelengths)], axis=1
-    )
+    places = aberration.focal_errors(wavelengths), aberration.lateral_strengths(wavelengths)
+    return light, np.stack(places, axis=1)
+
+
+def _dense(light, places, axial_px, lateral_px):
+    """Share of each line in the bands: the cube root of its light and of its way's square."""
     steps = np.abs(np.diff(places, axis=0)) @ (axial_px, lateral_px)
-    if aberration.mode == "RGB":
-        band = np.concatenate([[0], np.cumsum(steps > _SAME_RIM)])
-    else:
-        # Each wavelength has half of the way to either neighbour.
-        way = 0.5 * (np.concatenate([[0.0], steps]) + np.concatenate([steps, [0.0]]))
-        share = np.cbrt(light.mean(axis=1) * way**2)
-        # A light that is even over a way has that way as its length.
-        length = share.sum() ** 1.5
-        count = int(np.clip(np.ceil(length / _STEP), 1, most)) if length > _SAME_RIM else 1
-        middle = (np.cumsum(share) - 0.5 * share) / max(share.sum(), 1e-300)
-        band = np.minimum((middle * count).astype(int), count - 1)
-    return _joined(light, places, band)
+    # Each has half of the way to either neighbour.
+    way = 0.5 * (np.concatenate([[0.0], steps]) + np.concatenate([steps, [0.0]]))
+    return np.cbrt(light.mean(axis=1) * way**2)
 
 
-def merged_bands(bands, most):
-    """Return no more than a number of bands, by joining neighbours.
-
-    Parameters
-    ----------
-    bands : sequence of SpectralBand
-    most : int
-
-    Returns
-    -------
-    tuple of SpectralBand
-    """
-    if len(bands) <= most:
-        return tuple(bands)
-    band = np.arange(len(bands)) * most // len(bands)
-    places = np.array([(b.focal_error, b.lateral_strength) for b in bands])
-    widths = np.array([(b.focal_width, b.lateral_width) for b in bands])
-    return _joined(np.array([b.weights for b in bands]), places, band, widths)
-
-
-def _joined(light, places, band, widths=0.0):
+def _joined(light, places, band):
     """Join lines of light into bands; numbers of bands may be left out."""
     _, band = np.unique(band, return_inverse=True)
     count = band.max() + 1
@@ -125,11 +178,12 @@ def _joined(light, places, band, widths=0.0):
         return np.stack([np.bincount(band, column, count) for column in values.T], axis=1)
 
     middle = sums(weight[:, None] * places) / total
-    variance = (places - middle[band]) ** 2 + np.square(widths) / 12.0
-    spread = np.sqrt(12.0 * sums(weight[:, None] * variance) / total)
+    variance = sums(weight[:, None] * (places - middle[band]) ** 2) / total
     weights = sums(light)
     weights /= weights.sum(axis=0)
     return tuple(
         SpectralBand(tuple(w), *m, *s)
-        for w, m, s in zip(weights.tolist(), middle.tolist(), spread.tolist(), strict=True)
+        for w, m, s in zip(
+            weights.tolist(), middle.tolist(), np.sqrt(12.0 * variance).tolist(), strict=True
+        )
     )

@@ -15,6 +15,14 @@
 // Pixels on either side of a dot's centre whose light is added up.
 #define TENT_PIXELS 6
 
+// Whether the colours of a highlight part as far as the band's level is meant for.
+bool is_of_level(vec2 place)
+{
+  vec2 strengths = abs(field_strengths(field_tx, place, chromatic_buf) - vec2(1.0, 0.0));
+  float spread = dot(strengths * vec2(1.0, length(place)), splat_buf.spread.zw);
+  return spread >= splat_buf.spread.x && spread < splat_buf.spread.y;
+}
+
 // What the pixels along each axis get of tents of these half widths, px: nearly the half widths
 // themselves, but the pixels of a bright surface in focus all have the same error.
 vec2 tent_sum(vec2 center, vec2 tent)
@@ -85,6 +93,10 @@ void main()
   v_region = b.w;
 #ifdef CHROMATIC
   vec2 place = field_place(vec3(a.xy, -a.z), chromatic_buf);
+  if (!is_of_level(place)) {
+    gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
+    return;
+  }
   vec2 band = band_at(place);
   v_area = appearing_area(place, band, a.z);
   float coc = coc_radius_at(a.z, band.x, view_buf.lens);

@@ -11,4 +11,7 @@ struct SplatParams {
   vec4 wavelength;      // rgb: its weights; w: 1 / focus distance, 1/m
   vec4 dispersion;      // of a band of wavelengths: x: change of the focal length; y: lateral strength;
                         // zw: width over which they vary
+  vec4 spread;          // x, y: by how far, px, colours part at least and less than where the band is
+                        // drawn; z, w: that is z times what the axial map leaves plus w times the
+                        // lateral map's value and the distance from the axis
 };

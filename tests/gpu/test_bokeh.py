@@ -222,6 +222,7 @@ def splatted(
         rims=np.zeros((splat.MOST_RIMS, 4)),
         wavelength=(1.0, 1.0, 1.0, 0.1),
         dispersion=(0.0, 0.0, 0.0, 0.0),
+        spread=(0.0, 0.0, 0.0, 0.0),
     )
     place = np.asarray(center, float) - size / 2
     lists = np.zeros((3, 1, 1024, 4), np.float32)

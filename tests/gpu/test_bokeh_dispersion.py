@@ -208,6 +208,7 @@ def test_a_draft_has_few_bands_and_the_same_light():
     renderer.advance(plan.samples)
     assert renderer.bokeh_drafted
     assert len(plan.bokeh.colors.draft().bands) == 4 < len(plan.bokeh.colors.bands)
+    assert plan.bokeh.colors.draft().levels[-1].most == np.inf
     draft = renderer.read_passes()["Bokeh"]
     while renderer.bokeh_drafted:
         renderer.refine_bokeh()
