@@ -4,7 +4,8 @@
 // A thread for each fragment; that of a texel's last one does the texel.
 // Inputs: nodes_tx, heads_img, light_img (see highlights_append); scene_tx (window depth of the
 // nearest opaque surface); view_buf (of the raster), highlight_buf; number (of fragments); layers
-// (that are kept of a texel). WORLD: the world at infinity, nothing in front.
+// (that are kept of a texel). WORLD: the world at infinity, nothing in front. CHROMATIC: chromatic_buf,
+// field_tx (field table) and lens_view (xy: place on the lens that the raster was seen from, m).
 // Outputs: heads_img (first of a texel, with IN_ORDER), order_img (next of each); light_img: light that
 // is splatted, 0 of what is too sharp, and depth along the axis, m.
 // Source: methods 9 (J20 section 4.1).
@@ -12,6 +13,9 @@
 #include "lib/fragment_list_lib.glsl"
 #include "lib/highlight_lib.glsl"
 #include "lib/lens_lib.glsl"
+#ifdef CHROMATIC
+#include "lib/chromatic_lib.glsl"
+#endif
 
 // Circles of confusion that differ by less than this see the same surfaces in front, px.
 #define SAME_VIEW 1.0
@@ -65,16 +69,36 @@ Fragment next_behind(uint first, Fragment front, float scene)
 }
 #endif
 
+#ifdef CHROMATIC
+// Radius of the circle of confusion that stands for all wavelengths, where a texel's light comes from.
+float typical_coc(ivec2 texel, float depth)
+{
+  vec2 clip = (vec2(texel) + 0.5) / view_buf.film.xy * 2.0 - 1.0;
+  vec2 scale = vec2(view_buf.projection[0][0], view_buf.projection[1][1]);
+  vec2 xy = (view_buf.lens.y > 0.5) ? (clip - view_buf.projection[3].xy) / scale :
+                                      (clip + view_buf.projection[2].xy) / scale * depth;
+  xy += lens_view.xy * (view_buf.lens.x - depth) / view_buf.lens.x;
+  vec2 place = field_place(vec3(xy, -depth), chromatic_buf);
+  return chromatic_coc_px(field_tx, place, depth, view_buf.lens, chromatic_buf);
+}
+#endif
+
 // The same light as the splats need it.
-vec4 splatted(vec4 light)
+vec4 splatted(vec4 light, ivec2 texel)
 {
 #ifdef WORLD
-  return vec4(light.rgb * highlight_buf.world.z, highlight_buf.world.x);
+  float depth = highlight_buf.world.x;
 #else
   float depth = depth_of(light.a);
-  float coc = coc_radius_px(depth, view_buf.lens);
-  return vec4(light.rgb * highlight_share(coc, highlight_buf.split.y), depth);
 #endif
+#ifdef CHROMATIC
+  float share = highlight_share(typical_coc(texel, depth), highlight_buf.split.y);
+#elif defined(WORLD)
+  float share = highlight_buf.world.z;
+#else
+  float share = highlight_share(coc_radius_px(depth, view_buf.lens), highlight_buf.split.y);
+#endif
+  return vec4(light.rgb * share, depth);
 }
 
 void main()
@@ -118,7 +142,7 @@ void main()
   imageStore(heads_img, texel, uvec4(start | IN_ORDER));
   for (uint kept = start; kept != 0u;) {
     ivec2 place = list_texel(kept - 1u);
-    imageStore(light_img, place, splatted(imageLoad(light_img, place)));
+    imageStore(light_img, place, splatted(imageLoad(light_img, place), texel));
     kept = imageLoad(order_img, place).x;
   }
 }
