@@ -56,14 +56,14 @@ class BokehScene(BenchScene):
     def splatted(self, samples, subsamples=4, method="ADAPTIVE", **bokeh):
         """Return the snapshot with highlights apart; settings as those of `BokehSettings`."""
         snapshot = self.sampled(method, samples, subsamples=subsamples, reference_bokeh=True)
-        settings = replace(snapshot.camera.bokeh, **bokeh)
+        settings = replace(self.snapshot.camera.bokeh, **bokeh)
         camera = replace(snapshot.camera, bokeh=settings)
         return replace(snapshot, camera=camera, passes=PASSES)
 
     def plain(self, samples, method="REFERENCE", **settings):
         """Return the snapshot with highlights sampled as everything else."""
         snapshot = self.sampled(method, samples, **settings)
-        return replace(snapshot, camera=replace(snapshot.camera, bokeh=None), passes=PASSES)
+        return replace(snapshot, passes=PASSES)
 
     def draw_passes(self, snapshot, culls=True, progress=None):
         """Draw a frame and tell the steps of its bokeh apart.

@@ -81,7 +81,10 @@ class BenchScene:
         self._scene.frame_set(frame, subframe=subframe)
 
     def sampled(self, method, samples, **settings):
-        """Return the snapshot sampled in another way; settings as those of `Sampling`."""
+        """Return the snapshot sampled in another way, highlights as everything else.
+
+        Settings are those of `Sampling`.
+        """
         sampling = replace(
             self.snapshot.sampling,
             method=method,
@@ -90,7 +93,8 @@ class BenchScene:
             progressive=False,
             **settings,
         )
-        return replace(self.snapshot, sampling=sampling)
+        camera = replace(self.snapshot.camera, bokeh=None)
+        return replace(self.snapshot, sampling=sampling, camera=camera)
 
     def make_levels(self, snapshot):
         """Make the levels of detail that a snapshot takes and send them to the device.

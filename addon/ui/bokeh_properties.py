@@ -28,7 +28,7 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
         name="Bokeh",
         description="Draw blurred highlights one by one, as discs in the shape of the opening,"
         " instead of as many dots as there are lens samples",
-        default=False,
+        default=True,
         **_SHARED,
     )
     threshold: FloatProperty(

@@ -47,8 +47,10 @@ def test_bokeh_starts_as_the_settings_do(camera, aplanat_bpy):
     assert read(aplanat_bpy).bokeh == BokehSettings()
 
 
-def test_a_new_camera_has_none(bokeh, aplanat_bpy):
+def test_a_new_camera_has_it_until_it_is_switched_off(bokeh, aplanat_bpy):
     bokeh.property_unset("use")
+    assert read(aplanat_bpy).bokeh is not None
+    bokeh.use = False
     assert read(aplanat_bpy).bokeh is None
 
 

@@ -61,6 +61,7 @@ def test_a_clamp_restarts_the_picture_and_a_lens_without_effect_does_not(camera,
     def snapshot():
         return SceneExtractor().extract(aplanat_bpy.context.evaluated_depsgraph_get())
 
+    camera.aplanat.bokeh.use = False
     camera.dof.aperture_fstop = 4.0
     thin = snapshot()
     camera.aplanat.lens = "tessar-50mm-f2.8"
@@ -73,7 +74,6 @@ def test_a_clamp_restarts_the_picture_and_a_lens_without_effect_does_not(camera,
 
 
 def test_bokeh_is_drawn_anew_for_another_lens_of_the_same_opening(camera, aplanat_bpy):
-    camera.aplanat.bokeh.use = True
     camera.dof.aperture_fstop = 4.0
     camera.aplanat.lens = "tessar-50mm-f2.8"
     tessar = read(aplanat_bpy)
