@@ -148,7 +148,8 @@ def test_without_a_lens_shared_drawings_move_edges_by_less_than_a_cell(scene):
     alone = render(scene, "ADAPTIVE", use_sharing=False)
     # Cells of half a pixel: places within a pixel fall into 3 x 3 of them, for each of three balls.
     assert shared.statistics.sprites_drawn <= 9 * 3
-    assert shared.statistics.triangles_submitted < 0.3 * alone.statistics.triangles_submitted
+    # Cells with two or three places are drawn: their copies would cost more than these balls.
+    assert shared.statistics.triangles_submitted < 0.5 * alone.statistics.triangles_submitted
     difference = np.abs(combined(shared) - combined(alone))[..., :3]
     # An edge of contrast 1 that moves by a quarter of a pixel at most; most pixels have none.
     assert difference.max() < 0.3
