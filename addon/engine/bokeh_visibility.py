@@ -2,156 +2,48 @@
 
 Tests sort out what needs no mask. What is left gets a mask over the lens in an atlas, drawn by
 projecting the scene (RASTER) or by rays through the peeled layers (WARP), or is left to rays that
-the splat casts pixel by pixel (SPLAT). AUTO compares the work of the first two by counts: triangles
-of the pairs of highlight and cluster against steps of the rays; where highlights are very many, it
-takes the layers, without asking for triangles.
+the splat casts pixel by pixel (SPLAT).
 
-Masks have about a texel for each pixel of the disc. There is room for a number of texels that does
-not depend on the number of highlights: where they are many, their masks are smaller, so that the
-cost of the masks stays within bounds.
+The layers cost as much as the scene has triangles, how few highlights there may be; so for RASTER
+the triangles alone decide. AUTO tests highlights against triangles first and draws the masks from
+what it meets, unless that is more work than layers and rays are, by counts. Where highlights are
+very many, it takes the layers without asking for triangles.
 """
 
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..device import geometry, readback
+from ..device import geometry, state
 from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
-from ..passes import bokeh_culling, peel, surface, surface_code, visibility_raster, visibility_warp
-from ..passes.highlights import COLUMNS
-from .occluders import CLUSTER, Occluders, Part
+from ..passes import bokeh_cones, bokeh_culling, visibility_raster, visibility_warp
+from ..passes.prefix_sums import COLUMNS
+from .occluder_layers import cull_by_layers, draw_layers, number_of, texels_per_pixel
+from .scene_occluders import SceneOccluders
+from .visibility_plan import (
+    LARGEST_ATLAS,
+    VisibilityCounts,
+    choose,
+    lay_out,
+    lay_out_more,
+    layers_cost,
+    note,
+    visibility_params,
+)
 
-# Steps of a ray that take as long as a triangle of a cluster: 120 to 130 ns against 7 to 8 on
-# software OpenGL.
-STEPS_PER_TRIANGLE = 16
-# Texels of the atlas, at most, also where sources are very many, and its longer side.
-_LARGEST_ATLAS = 1 << 25
-_ATLAS_OF_MANY = 1 << 23
-_LONGEST_ATLAS = 16384
-# Cells of the N-buffers over the peeled raster.
-_MOST_CELLS = 1 << 18
-# Pairs that are drawn at once.
+__all__ = ("BokehVisibility", "SceneOccluders", "Visibility", "VisibilityCounts", "lay_out")
+
+# Pairs that are listed at once, and least room for them.
 _WINDOW = 1 << 20
-# Surfaces so close before a source that the lens' rim sees them moved by less, in pixels, do not
-# part the lens into places that see it and places that do not.
-_SAME_VIEW = 0.25
-# The square root of 3: the spline that masks are read with then blurs as a pixel does.
-_MASK_TEXELS_PER_PIXEL = 1.73
-# Of the layers, along a side of a pixel: coarser ones miss what is thin. And of all their texels.
-_TEXELS_PER_PIXEL = 3
-_LARGEST_RASTER = 1 << 23
-
-# More sources are left to the layers alone, which cost the less a source the smaller the masks are.
+_LEAST_PAIRS = 1 << 18
+# More sources are left to the layers alone, which cost the less a source the smaller the masks are;
+# and texels of their atlas, and of that of drafts.
 _MOST_CONES = 1 << 15
-# Of drafts: layers, and texels of the atlas.
-_DRAFT_LAYERS = 2
+_ATLAS_OF_MANY = 1 << 23
 _DRAFT_ATLAS = 1 << 19
 
 MASKED, IN_SPLAT = 2, 3
-
-
-@dataclass
-class VisibilityCounts:
-    """What the tests found.
-
-    Attributes
-    ----------
-    outside, hidden, visible, free, masked : int
-        Sources whose disc is outside the frame; that nothing of the lens sees; that no surface of
-        the layers lies before; that have no triangles in their cone; that are left.
-    pairs, surface_pairs : int
-        Of source and cluster of opaque triangles, of source and instance that lets light through.
-    work : int
-        Steps of rays that masks by WARP take.
-    texels : int
-        Of all masks.
-    method : str
-        RASTER, WARP or SPLAT; empty if no source is left.
-    """
-
-    outside: int = 0
-    hidden: int = 0
-    visible: int = 0
-    free: int = 0
-    masked: int = 0
-    pairs: int = 0
-    surface_pairs: int = 0
-    work: int = 0
-    texels: int = 0
-    method: str = ""
-
-    @property
-    def triangles(self):
-        """Triangles that masks by RASTER take, without surfaces that let light through."""
-        return self.pairs * CLUSTER
-
-
-class SceneOccluders:
-    """What of a scene can hide a highlight.
-
-    Parameters
-    ----------
-    content : SceneContent
-    buffers : SceneBuffers
-        Updated to it.
-
-    Attributes
-    ----------
-    groups : tuple of passes.bokeh_culling.GroupRange
-        Groups of instances with a surface that lets light through.
-    """
-
-    def __init__(self, content, buffers):
-        self._content = content
-        self._buffers = buffers
-        self._groups = [group for group in content.groups if any(self._see_through(group).values())]
-        self.groups = tuple(
-            bokeh_culling.GroupRange(
-                group.first, group.first + group.count - 1, content.meshes[group.mesh].bounds
-            )
-            for group in self._groups
-        )
-
-    def _see_through(self, group):
-        """Return which slots of a group's mesh let light through, dict of slot to bool."""
-        mesh = self._content.meshes[group.mesh]
-        return {
-            slot: not group.holdout
-            and surface_code.generate(
-                self._content.materials[group.materials[slot]].graph, mesh.attributes
-            ).transparent
-            for slot, _, _ in mesh.slots
-        }
-
-    @cached_property
-    def opaque(self):
-        """The opaque triangles, as `Occluders`."""
-        cache, parts, same = self._buffers.shapes, [], {}
-        for group in self._content.groups:
-            meshes = self._buffers.level_meshes(self._content.meshes[group.mesh])
-            for slot, see_through in self._see_through(group).items():
-                if see_through:
-                    continue
-                key = (group.mesh, slot)
-                if key not in same:
-                    shapes = [cache.shape(mesh, slot) for mesh in meshes]
-                    # A level may lack a slot that has only few triangles.
-                    same[key] = tuple(s for s in shapes if s is not None)
-                if same[key]:
-                    parts.append(Part(group.first, group.count, same[key]))
-        return Occluders(parts, self._content.instances.world)
-
-    @cached_property
-    def _draws(self):
-        draws = surface.build_draws(self._content, self._buffers, visibility_raster.TARGET)
-        return [draw for draw in draws if draw.level == 0 and draw.constants is not None]
-
-    def draws_of(self, number):
-        """Return the draws of surfaces of a group that let light through."""
-        group = self._content.groups.index(self._groups[number])
-        return [draw for draw in self._draws if draw.group == group]
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,8 +56,11 @@ class Visibility:
         A texel for each source: place and side of its mask, kind (see lib/visibility_lib.glsl).
     masks : GPUTexture
         The atlas.
-    layers, opacity, states : GPUTexture
-        The peeled layers, and how far each source's rays go, for rays that the splat casts.
+    layers, opacity : GPUTexture or None
+        The peeled layers, if there are any, for rays that the splat casts.
+    states : GPUTexture
+        How far each source's rays go, and how its parts see what hides it (see
+        passes/bokeh_culling_comp).
     parameters : GPUUniformBuf
         `VisibilityParams`.
     counts : VisibilityCounts
@@ -181,137 +76,6 @@ class Visibility:
     parameters: object
     counts: VisibilityCounts
     bytes: int
-
-
-def visibility_params(plan, fine=1, reach=1.0):
-    """Return the values of `VisibilityParams` for a frame.
-
-    Parameters
-    ----------
-    plan : FramePlan
-        With a `bokeh`.
-    fine : int
-        Texels of the layers along a side of a pixel.
-    reach : float
-        How far a disc reaches in units of its radius.
-
-    Returns
-    -------
-    dict of str to sequence of float or ndarray
-    """
-    bokeh = plan.bokeh
-    projection = bokeh.projection
-    raster = np.array([bokeh.width, bokeh.height]) * fine
-    slope, offset = projection[2, 2:]
-    focus = plan.focus_distance
-    if plan.orthographic:
-        start = (1.0 + offset) / slope
-        depth = (0.5 + 0.5 * offset, -0.5 * slope)
-        rate = -2.0 / (slope * focus)
-    else:
-        start = offset / (slope - 1.0)
-        depth = (0.5 - 0.5 * slope, 0.5 * offset)
-        rate = -2.0 / offset
-    sweep = np.diag(projection)[:2] * raster / 2.0 * rate
-    return {
-        "view": plan.view,
-        "projection": projection,
-        "lens": (focus, float(plan.orthographic), plan.coc_scale, bokeh.iris.ratio),
-        "opening": (*plan.lens_extent, start, reach),
-        "raster": (*raster, fine, _SAME_VIEW),
-        "frame": (*bokeh.margin, plan.width, plan.height),
-        "sweep": (*sweep, *depth),
-        "tiles": (
-            bokeh_culling.SIZES,
-            bokeh_culling.LEAST_SIDE,
-            _MASK_TEXELS_PER_PIXEL,
-            _reaching_depth(plan),
-        ),
-        "colors": _colors(bokeh.colors, focus),
-    }
-
-
-def _colors(colors, focus_distance):
-    if colors is None:
-        return (0.0, 0.0, 0.0, focus_distance)
-    return (*colors.focus_changes[:2], colors.growth, colors.focus_distance)
-
-
-def _texels_per_pixel(bokeh):
-    if bokeh.draft:
-        return 1
-    affordable = int(np.sqrt(_LARGEST_RASTER / (bokeh.width * bokeh.height)))
-    longest = _LONGEST_ATLAS // max(bokeh.width, bokeh.height)
-    return max(1, min(_TEXELS_PER_PIXEL, affordable, longest))
-
-
-def _reaching_depth(plan):
-    """Return up to which depth discs are wider than what the raster has around the frame, m.
-
-    A surface outside the raster that is farther away, but nearer than a highlight whose own disc is
-    not, is seen at no pixel of the frame: it hides nothing of what the frame shows.
-    """
-    margin = min(plan.bokeh.margin)
-    colors = plan.bokeh.colors
-    if colors is not None:
-        # The wavelength that is blurred most, moved to the frame by the lateral scale.
-        margin -= colors.growth * max(plan.bokeh.width, plan.bokeh.height)
-        focus = 1.0 / plan.focus_distance + colors.focus_changes[0]
-        away = margin / plan.coc_scale
-        # Beyond any highlight where even that does not hide it.
-        reach = (1.0 - away) / focus if plan.orthographic else 1.0 / max(focus + away, 1e-9)
-        return max(reach, 0.0)
-    if plan.orthographic:
-        return max(plan.focus_distance * (1.0 - margin / plan.coc_scale), 0.0)
-    return 1.0 / (1.0 / plan.focus_distance + margin / plan.coc_scale)
-
-
-@dataclass(frozen=True, eq=False)
-class AtlasLayout:
-    """Where the masks of each size lie.
-
-    Parameters
-    ----------
-    width, height : int
-        Of the atlas, texels.
-    sizes : ndarray of shape (SIZES, 4)
-        Of each size: masks of other sizes before, height of the first row, side, masks a row.
-    """
-
-    width: int
-    height: int
-    sizes: np.ndarray
-
-
-def lay_out(numbers, most_texels=_LARGEST_ATLAS):
-    """Lay out an atlas; where the masks are too many, larger ones are made smaller.
-
-    Parameters
-    ----------
-    numbers : sequence of int
-        Masks of each size.
-    most_texels : int
-
-    Returns
-    -------
-    AtlasLayout
-    """
-    numbers = np.asarray(numbers, np.int64)
-    sides = bokeh_culling.LEAST_SIDE << np.arange(len(numbers))
-    largest = sides[-1]
-    while (numbers * sides**2).sum() > most_texels and largest > bokeh_culling.LEAST_SIDE // 4:
-        largest //= 2
-        sides = np.minimum(sides, largest)
-    texels = max(int((numbers * sides**2).sum()), 1)
-    widest = int(sides[numbers > 0].max(initial=bokeh_culling.LEAST_SIDE))
-    width = min(max(1 << int(np.ceil(np.log2(texels) / 2)), widest), _LONGEST_ATLAS)
-    layout = np.zeros((len(numbers), 4))
-    height = 0
-    for size, (number, side) in enumerate(zip(numbers, sides, strict=True)):
-        each = max(width // side, 1)
-        layout[size] = numbers[:size].sum(), height, side, each
-        height += -(-number // each) * side
-    return AtlasLayout(width, max(int(height), 1), layout)
 
 
 class BokehVisibility:
@@ -331,7 +95,7 @@ class BokehVisibility:
         self._plan = plan
         self._occluders = occluders
         self._buffers = buffers
-        self._fine = _texels_per_pixel(plan.bokeh)
+        self._fine = texels_per_pixel(plan.bokeh)
         self._values = visibility_params(plan, self._fine, reach)
         self._parameters = uniform_buffer(bokeh_culling.VISIBILITY_PARAMS.pack(**self._values))
 
@@ -350,235 +114,254 @@ class BokehVisibility:
         method : {'AUTO', 'RASTER', 'WARP', 'SPLAT'}, optional
             Default: the plan's.
         culls : bool
-            False gives every source a mask, for comparison.
+            False gives every source a mask, for comparison: those that the tests sort out as well.
 
         Returns
         -------
         Visibility
         """
         method = method or self._plan.bokeh.settings.visibility
-        rows = max(1, -(-count // COLUMNS))
-        lists = Targets(
-            COLUMNS, rows, [TargetSpec(n, "RGBA32F") for n in ("tiles", "masked", "states")]
-        )
-        raster = Targets(
-            self._plan.bokeh.width * self._fine,
-            self._plan.bokeh.height * self._fine,
-            [TargetSpec("layers", "RGBA32F"), TargetSpec("opacity", "RGBA8")],
-        )
-        targets += [lists, raster]
-        self._peel(drawing, raster)
-        counts = VisibilityCounts()
-        key_rows = bokeh_culling.segments(len(self._occluders.groups)) * rows
-        with (
-            Targets(COLUMNS, key_rows, [TargetSpec("keys", "R32UI")]) as keys,
-            Targets(COLUMNS, -(-key_rows // COLUMNS), [TargetSpec("totals", "R32UI")]) as totals,
-            Targets(
-                bokeh_culling.COUNT_GROUPS + len(self._occluders.groups),
-                1,
-                [TargetSpec("counts", "R32UI")],
-            ) as numbers,
-        ):
-            numbers["counts"].clear(format="UINT", value=(0,))
-            tables = bokeh_culling.CullingTables(
-                rows, lists["states"], keys["keys"], totals["totals"], numbers["counts"]
-            )
-            # What only rays through the layers mask, only the layers need to leave unmasked.
-            if method == "AUTO" and count > _MOST_CONES:
-                method = "WARP"
-            exact = method in {"AUTO", "RASTER"}
-            cones = exact or (count <= _MOST_CONES and not self._plan.bokeh.draft)
-            self._cull(sources, count, raster, tables, culls, exact, cones)
-            found = np.asarray(tables.counts.read()).ravel()
-            _note(counts, found)
-            drawn = found[bokeh_culling.COUNT_SIZES :][: bokeh_culling.SIZES].astype(np.int64)
-            layout = lay_out(drawn, self._room(count))
-            counts.texels = int((drawn * layout.sizes[:, 2] ** 2).sum())
-            wanted = (drawn * (bokeh_culling.LEAST_SIDE << np.arange(len(drawn))) ** 2).sum()
-            counts.work = int(counts.work * (counts.texels / max(wanted, 1)))
-            counts.method = self._choose(counts, method)
-            if counts.method not in {"RASTER", "WARP"}:
-                layout = lay_out(drawn * 0)
-                counts.texels = 0
-            buffer = uniform_buffer(
-                bokeh_culling.TILE_LAYOUT.pack(
-                    atlas=(layout.width, layout.height, 0.0, 0.0), sizes=layout.sizes
-                )
-            )
-            bokeh_culling.scan(tables)
-            kind = IN_SPLAT if counts.method == "SPLAT" else MASKED
-            bokeh_culling.place_tiles(count, buffer, kind, tables, lists["tiles"], lists["masked"])
-            masks = Targets(layout.width, layout.height, [TargetSpec("masks", self._format())])
-            targets.append(masks)
-            atlas = masks.framebuffer("masks")
-            with atlas.bind():
-                atlas.clear(color=(1.0, 1.0, 1.0, 1.0))
-                if counts.method == "WARP":
-                    self._warp(sources, counts.masked, lists, raster, buffer)
-                elif counts.method == "RASTER":
-                    self._raster(sources, count, counts, found, tables, lists, buffer, atlas)
-            size = keys.bytes + lists.bytes + raster.bytes + masks.bytes
-        return Visibility(
-            lists["tiles"],
-            masks["masks"],
-            raster["layers"],
-            raster["opacity"],
-            lists["states"],
+        if method == "AUTO" and count > _MOST_CONES:
+            method = "WARP"
+        search = _Search(self, sources, count, drawing, culls)
+        try:
+            return search.run(method, targets)
+        finally:
+            search.release()
+
+
+class _Search:
+    """One run of `BokehVisibility.find`."""
+
+    def __init__(self, owner, sources, count, drawing, culls):
+        self._plan = owner._plan
+        self._occluders = owner._occluders
+        self._buffers = owner._buffers
+        self._fine = owner._fine
+        self._values = owner._values
+        self._parameters = owner._parameters
+        self._sources = sources
+        self._count = count
+        self._drawing = drawing
+        self._culls = culls
+        self._own = []
+        self._raster = None
+
+    def release(self):
+        """Give back what the result does not need."""
+        for targets in self._own:
+            targets.release()
+
+    def run(self, method, targets):
+        """Find what hides the sources; parameters and result as of `BokehVisibility.find`."""
+        rows = max(1, -(-self._count // COLUMNS))
+        specs = [TargetSpec(n, "RGBA32F") for n in ("tiles", "masked", "states")]
+        lists = self._lists = Targets(COLUMNS, rows, specs)
+        targets.append(lists)
+        self._make_tables(rows)
+        if method in {"AUTO", "RASTER"}:
+            counts = self._test_by_triangles()
+            counts.method = choose(counts, method, self._layers_cost())
+            if counts.method == "WARP":
+                counts = replace(self._test_by_layers(again=True), method="WARP")
+        else:
+            counts = self._test_by_layers()
+            counts.method = method if counts.masked else ""
+        if self._raster:
+            targets.append(self._raster)
+        base, whole = self._lay_out(counts)
+        layout = uniform_buffer(whole.packed())
+        bokeh_culling.scan(self._tables)
+        kind = IN_SPLAT if counts.method == "SPLAT" else MASKED
+        bokeh_culling.place_tiles(
+            self._sources,
+            self._count,
             self._parameters,
-            counts,
-            size,
+            layout,
+            kind,
+            self._tables,
+            lists["tiles"],
+            lists["masked"],
+        )
+        masks = Targets(whole.width, whole.height, [TargetSpec("masks", self._format())])
+        targets.append(masks)
+        self._draw_masks(counts, masks.framebuffer("masks"), base, whole)
+        if counts.texels and self._culls:
+            tables = (masks["masks"], lists["tiles"], self._tables.counts)
+            bokeh_culling.cull_masks(self._count, *tables)
+        # What is given back now is given back only after the device has read it.
+        self._note_masks(counts)
+        held = [*self._own, lists, masks, *([self._raster] if self._raster else [])]
+        return Visibility(
+            tiles=lists["tiles"],
+            masks=masks["masks"],
+            layers=self._raster and self._raster["layers"],
+            opacity=self._raster and self._raster["opacity"],
+            states=lists["states"],
+            parameters=self._parameters,
+            counts=counts,
+            bytes=sum(each.bytes for each in held),
         )
 
-    def _peel(self, drawing, raster):
-        """Draw the surfaces that a pinhole at the lens' centre sees behind one another."""
+    def _make_tables(self, rows):
+        groups = len(self._occluders.groups)
+        height = bokeh_culling.segments(groups, self._culls) * rows
+        width = bokeh_culling.COUNT_GROUPS + groups
+        tables = Targets(
+            COLUMNS,
+            height,
+            [
+                TargetSpec("keys", "R32UI"),
+                TargetSpec("totals", "R32UI", size=(COLUMNS, -(-height // COLUMNS))),
+                TargetSpec("counts", "R32UI", size=(width, 1)),
+            ],
+        )
+        self._own.append(tables)
+        self._tables = bokeh_culling.CullingTables(
+            rows,
+            self._culls,
+            self._lists["states"],
+            tables["keys"],
+            tables["totals"],
+            tables["counts"],
+        )
+        self._pairs = None
+
+    def _scene(self):
+        return bokeh_cones.ConeScene(
+            self._sources,
+            self._count,
+            self._parameters,
+            self._occluders.opaque,
+            self._buffers.instances,
+            self._occluders.groups,
+            self._culls,
+        )
+
+    def _test_by_triangles(self):
+        self._clear_counts()
+        args = (self._sources, self._count, self._parameters)
+        bokeh_culling.cull_frame(*args, self._tables.states)
+        room = max(_LEAST_PAIRS, min(self._buffers.expected_pairs, _WINDOW))
+        bokeh_cones.count_pairs(self._scene(), self._tables, self._pair_list(room))
+        bokeh_culling.mark_sizes(*args, self._tables)
+        return self._read_counts()
+
+    def _test_by_layers(self, again=False):
         plan = self._plan
-        view = uniform_buffer(
-            surface.VIEW_PARAMS.pack(
-                view=plan.view,
-                view_inverse=np.linalg.inv(plan.view),
-                projection=plan.bokeh.projection,
-                lens=(
-                    plan.focus_distance,
-                    float(plan.orthographic),
-                    plan.coc_scale,
-                    plan.sharp_radius,
-                ),
-                film=(raster.width, raster.height, 0.0, 0.0),
-            )
-        )
-        draws = drawing.full_detail_draws(peel.OCCLUDERS)
-        number = _DRAFT_LAYERS if plan.bokeh.draft else visibility_warp.MOST_LAYERS
-        specs = [TargetSpec("color", "RGBA32F")]
-        specs += [TargetSpec(name, "DEPTH_COMPONENT32F") for name in ("depth", "front")]
-        with Targets(raster.width, raster.height, specs) as layers:
-            depth, front = "depth", "front"
-            nothing = layers.framebuffer("color", depth=front)
-            with nothing.bind():
-                nothing.clear(depth=0.0)
-            for channel in range(number):
-                framebuffer = layers.framebuffer("color", depth=depth)
-                with framebuffer.bind():
-                    framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
-                    peel.draw_layer(draws, view, self._buffers.instances, [layers[front]])
-                visibility_warp.pack(
-                    layers["color"], layers[depth], channel, raster["layers"], raster["opacity"]
-                )
-                depth, front = front, depth
-            # The layers are given back only after the device has read them.
-            readback.wait(layers.framebuffer("color", depth=front))
-        drawing.counts.draw_calls += number * len(draws)
-        drawn = sum(d.triangles * d.count for d in draws)
-        drawing.counts.triangles += number * drawn
+        self._clear_counts()
+        self._raster = draw_layers(plan, self._drawing, self._buffers.instances, self._fine)
+        args = (self._sources, self._count, self._parameters)
+        self._own.append(cull_by_layers(*args, self._raster, again, self._tables.states))
+        if self._count <= _MOST_CONES and not plan.bokeh.draft:
+            bokeh_cones.find_edges(self._scene(), self._tables)
+            if not again:
+                room = _LEAST_PAIRS
+                bokeh_cones.count_pairs(self._scene(), self._tables, self._pair_list(room))
+        bokeh_culling.mark_sizes(*args, self._tables)
+        return self._read_counts()
 
-    def _room(self, count):
+    def _pair_list(self, room):
+        pairs = Targets(COLUMNS, -(-room // COLUMNS), [TargetSpec("pairs", "RGBA32F")])
+        self._own.append(pairs)
+        self._pairs = pairs["pairs"]
+        return self._pairs
+
+    def _clear_counts(self):
+        self._tables.counts.clear(format="UINT", value=(0,))
+
+    def _read_counts(self):
+        self._found = np.asarray(self._tables.counts.read()).ravel().astype(np.int64)
+        return note(self._found)
+
+    def _note_masks(self, counts):
+        found = np.asarray(self._tables.counts.read()).ravel()
+        counts.whole = int(found[bokeh_culling.COUNT_WHOLE])
+        counts.empty = int(found[bokeh_culling.COUNT_EMPTY])
+        counts.visible += counts.whole
+        counts.hidden += counts.empty
+        counts.masked -= counts.whole + counts.empty
+
+    def _layers_cost(self):
+        bokeh = self._plan.bokeh
+        texels = bokeh.width * bokeh.height * self._fine**2
+        return layers_cost(self._drawing.full_detail, texels, number_of(bokeh))
+
+    def _lay_out(self, counts):
+        """Return the layout of the masks, and the same with those for comparison."""
+        drawn = self._found[bokeh_culling.COUNT_SIZES :][: self._tables.kinds]
+        if counts.method not in {"RASTER", "WARP"}:
+            drawn = drawn * 0
+        first, more = drawn[: bokeh_culling.SIZES], drawn[bokeh_culling.SIZES :]
+        base = lay_out(first, self._room())
+        counts.texels = int((first * base.sizes[:, 2] ** 2).sum())
+        if self._culls:
+            return base, base
+        counts.masked = int(drawn.sum())
+        return base, lay_out_more(base, int(first.sum()), more)
+
+    def _room(self):
         """Return how many texels masks may take."""
         if self._plan.bokeh.draft:
             return _DRAFT_ATLAS
-        return _LARGEST_ATLAS if count <= _MOST_CONES else _ATLAS_OF_MANY
+        return LARGEST_ATLAS if self._count <= _MOST_CONES else _ATLAS_OF_MANY
 
     def _format(self):
         # Products of several surfaces must not be rounded to 8 bits each.
         return "R16F" if self._occluders.groups else "R8"
 
-    def _cull(self, sources, count, raster, tables, culls, exact, cones):
-        occluders = self._occluders
-        layers = raster["layers"]
-        cell = 1
-        while -(-layers.width // cell) * -(-layers.height // cell) > _MOST_CELLS:
-            cell += 1
-        cells = (-(-layers.width // cell), -(-layers.height // cell))
-        levels = max(cells).bit_length()
-        with Targets(*cells, [TargetSpec("bounds", "RGBA32F", levels)]) as stack:
-            bounds = stack["bounds"]
-            bokeh_culling.build_bounds(layers, raster["opacity"], bounds, levels, cell)
-            bokeh_culling.cull(
-                sources,
-                count,
-                self._parameters,
-                layers,
-                bounds,
-                cell,
-                culls,
-                tables.states,
-            )
-            if cones:
-                bokeh_culling.count_pairs(
-                    sources,
-                    count,
-                    self._parameters,
-                    occluders.opaque,
-                    self._buffers.instances,
-                    occluders.groups,
-                    (culls, exact),
-                    tables,
-                )
-            bokeh_culling.mark_sizes(count, self._parameters, tables)
-            # The stack is given back only after the device has read it.
-            np.asarray(tables.counts.read())
+    def _draw_masks(self, counts, atlas, base, whole):
+        with atlas.bind():
+            atlas.clear(color=(1.0, 1.0, 1.0, 1.0))
+        draw = {"WARP": self._warp, "RASTER": self._rasterise}.get(counts.method)
+        if draw is None:
+            return
+        # Where a triangle lands depends on the size of the atlas in the last bits. Masks for
+        # comparison have a part of their own, so that the others are the same without them.
+        with atlas.bind(), state.confined(0, 0, base.width, base.height):
+            draw(counts, atlas, uniform_buffer(base.packed()))
+        if whole is not base:
+            above = (0, base.height, whole.width, whole.height - base.height)
+            with atlas.bind(), state.scissored(*above):
+                draw(counts, atlas, uniform_buffer(whole.packed()))
 
-    @staticmethod
-    def _choose(counts, method):
-        if counts.masked == 0:
-            return ""
-        if method != "AUTO":
-            return method
-        triangles = counts.triangles + counts.surface_pairs * CLUSTER
-        return "RASTER" if triangles * STEPS_PER_TRIANGLE <= counts.work else "WARP"
-
-    def _warp(self, sources, masked, lists, raster, layout):
-        tables = {name: lists[name] for name in ("masked", "tiles", "states")}
-        tables |= {"sources": sources, "layers": raster["layers"], "opacity": raster["opacity"]}
+    def _warp(self, counts, _, layout):
+        tables = {name: self._lists[name] for name in ("masked", "tiles", "states")}
+        tables["sources"] = self._sources
+        tables |= {name: self._raster[name] for name in ("layers", "opacity")}
         square = geometry.square_batch()
-        visibility_warp.draw_masks(square, masked, tables, self._parameters, layout)
+        visibility_warp.draw_masks(square, counts.masked, tables, self._parameters, layout)
 
-    def _raster(self, sources, count, counts, found, tables, lists, layout, atlas):
-        occluders = self._occluders
-        shared = {"sources": sources, "tiles": lists["tiles"], "instances": self._buffers.instances}
-        batch = geometry.numbered_batch(bokeh_culling.CLUSTER_CORNERS)
+    def _rasterise(self, counts, atlas, layout):
+        shared = {
+            "sources": self._sources,
+            "tiles": self._lists["tiles"],
+            "instances": self._buffers.instances,
+        }
+        batch = geometry.numbered_batch(visibility_raster.BATCH_CORNERS)
+        self._buffers.expected_pairs = counts.pairs + counts.pairs // 4
         # Places of the prefix sums begin behind the masks'.
         first = counts.masked
-        numbers = [counts.pairs, *found[bokeh_culling.COUNT_GROUPS :].tolist()]
-        rows = max(1, -(-min(max(numbers), _WINDOW) // COLUMNS))
-        with Targets(COLUMNS, rows, [TargetSpec("pairs", "RGBA32F")]) as lists_of_pairs:
-            pairs = lists_of_pairs["pairs"]
-            for number, total in enumerate(numbers, start=-1):
-                for start in range(0, total, _WINDOW):
-                    window = (first + start, min(total - start, _WINDOW))
-                    bokeh_culling.fill_pairs(
-                        sources,
-                        count,
-                        self._parameters,
-                        occluders.opaque,
-                        self._buffers.instances,
-                        occluders.groups,
-                        number,
-                        tables,
-                        pairs,
-                        window,
-                    )
-                    drawn = {**shared, "pairs": pairs}
-                    with atlas.bind():
-                        if number < 0:
-                            drawn["corners"] = occluders.opaque.corners
-                            visibility_raster.draw_clusters(
-                                batch, window[1], drawn, self._parameters, layout
-                            )
-                        else:
-                            visibility_raster.draw_surfaces(
-                                occluders.draws_of(number),
-                                window[1],
-                                drawn,
-                                self._parameters,
-                                layout,
-                            )
-                first += total
-            # The pairs are given back only after the device has read them.
-            atlas.read_color(0, 0, 1, 1, 1, 0, "FLOAT")
-
-
-def _note(counts, found):
-    for name, places in bokeh_culling.STATES.items():
-        setattr(counts, name, sum(int(found[place]) for place in places))
-    counts.work = 64 * int(found[bokeh_culling.COUNT_WORK])
-    counts.pairs = int(found[bokeh_culling.COUNT_PAIRS])
-    counts.surface_pairs = int(found[bokeh_culling.COUNT_GROUPS :].sum())
+        numbers = [counts.pairs, *self._found[bokeh_culling.COUNT_GROUPS :].tolist()]
+        listed = counts.pairs <= bokeh_cones.room_of(self._pairs)
+        for number, total in enumerate(numbers, start=-1):
+            for start in range(0, total, _WINDOW):
+                drawn = min(total - start, _WINDOW)
+                if number >= 0 or not listed:
+                    if drawn > bokeh_cones.room_of(self._pairs):
+                        self._pair_list(drawn)
+                    window = (first + start, drawn)
+                    bokeh_cones.fill_pairs(self._scene(), number, self._tables, self._pairs, window)
+                tables = {**shared, "pairs": self._pairs}
+                with atlas.bind():
+                    if number < 0:
+                        tables["corners"] = self._occluders.opaque.corners
+                        visibility_raster.draw_clusters(
+                            batch, drawn, tables, self._parameters, layout
+                        )
+                    else:
+                        draws = self._occluders.draws_of(number)
+                        visibility_raster.draw_surfaces(
+                            draws, drawn, tables, self._parameters, layout
+                        )
+            first += total

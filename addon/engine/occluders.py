@@ -15,12 +15,14 @@ import numpy as np
 
 from ..device.textures import texture_2d
 
-# Triangles of a cluster; boxes below a box. Must agree with passes/bokeh_culling.py.
-CLUSTER = 64
+# Triangles of a cluster; boxes below a box. Must agree with passes/bokeh_cones.py.
+CLUSTER = 8
 BRANCHES = 8
 # Clusters in a row of the texture of triangles; texels in a row of the tables.
-CLUSTERS_PER_ROW = 16
+CLUSTERS_PER_ROW = 128
 COLUMNS = 1024
+# Texels of a part in its table.
+PART_TEXELS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +95,47 @@ def box_tree(boxes):
     return np.concatenate(levels)
 
 
+def depth_first(boxes, leaves):
+    """Lay out a tree of boxes so that one walks through it without memory.
+
+    Parameters
+    ----------
+    boxes : ndarray of shape (B, 2, 3)
+        Of `box_tree`.
+    leaves : int
+        How many boxes it was made from.
+
+    Returns
+    -------
+    ndarray of shape (B, 2, 4)
+        Each box before those inside it. Fourth values: how many boxes on what is not inside begins;
+        number of a leaf, otherwise -1.
+    """
+    numbers, places = [leaves], [0]
+    while numbers[-1] > BRANCHES:
+        places.append(places[-1] + numbers[-1])
+        numbers.append(-(-numbers[-1] // BRANCHES))
+    sizes = [np.ones(leaves, int)]
+    for _ in numbers[1:]:
+        starts = np.arange(0, len(sizes[-1]), BRANCHES)
+        sizes.append(1 + np.add.reduceat(sizes[-1], starts))
+    laid = np.zeros((len(boxes), 2, 4), np.float32)
+    above = None
+    for level in range(len(numbers) - 1, -1, -1):
+        size = sizes[level]
+        before = np.cumsum(size) - size
+        if above is None:
+            order = before
+        else:
+            parent = np.arange(len(size)) // BRANCHES
+            order = above[parent] + 1 + before - before[parent * BRANCHES]
+        laid[order, :, :3] = boxes[places[level] : places[level] + numbers[level]]
+        laid[order, 0, 3] = size
+        laid[order, 1, 3] = np.arange(leaves) if level == 0 else -1.0
+        above = order
+    return laid
+
+
 def cut(positions, triangles):
     """Cut triangles into clusters.
 
@@ -120,10 +163,11 @@ def cut(positions, triangles):
 
 
 class ShapeCache:
-    """Shapes of meshes, cut once."""
+    """Shapes of meshes, cut once, and their tables on the device."""
 
     def __init__(self):
         self._shapes = {}
+        self._tables = None
 
     def shape(self, mesh, slot):
         """Return the shape of a mesh' material slot; None if it has no triangles.
@@ -141,9 +185,19 @@ class ShapeCache:
             self._shapes[key] = cut(mesh.positions, triangles) if len(triangles) else None
         return self._shapes[key]
 
+    def tables(self, shapes):
+        """Return the `ShapeTables` of shapes; those of the last call if they are the same."""
+        if self._tables is None or not self._tables.holds(shapes):
+            self._tables = None
+            self._tables = ShapeTables(shapes)
+        return self._tables
+
     def keep(self, uids):
         """Forget all meshes but those with these uids."""
-        self._shapes = {key: shape for key, shape in self._shapes.items() if key[0] in uids}
+        kept = {key: shape for key, shape in self._shapes.items() if key[0] in uids}
+        if len(kept) < len(self._shapes):
+            self._tables = None
+        self._shapes = kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +217,52 @@ class Part:
     shapes: tuple[Shape, ...]
 
 
+class ShapeTables:
+    """The clusters of shapes on the device; they stay as long as no mesh changes.
+
+    Parameters
+    ----------
+    shapes : sequence of Shape
+
+    Attributes
+    ----------
+    shapes : tuple of Shape
+    corners : GPUTexture
+        Corners of the triangles, CLUSTERS_PER_ROW clusters a row.
+    boxes : GPUTexture
+        Two texels a box, lower and upper corner in object space, as `depth_first` lays them out:
+        the trees of all shapes.
+    table : GPUTexture
+        One texel a shape: first box, number of boxes, first cluster.
+    bytes : int
+    """
+
+    def __init__(self, shapes):
+        self.shapes = tuple(shapes)
+        clusters = sum(len(s.corners) for s in self.shapes)
+        rows = -(-max(clusters, 1) // CLUSTERS_PER_ROW)
+        corners = np.zeros((rows * CLUSTERS_PER_ROW, CLUSTER * 3, 4), np.float32)
+        table = np.zeros((max(len(self.shapes), 1), 4))
+        box = cluster = 0
+        for number, shape in enumerate(self.shapes):
+            end = cluster + len(shape.corners)
+            corners[cluster:end, :, :3] = shape.corners
+            table[number, :3] = box, len(shape.boxes), cluster
+            box += len(shape.boxes)
+            cluster = end
+        boxes = [depth_first(s.boxes, len(s.corners)).reshape(-1, 4) for s in self.shapes]
+        self.corners = texture_2d(corners.reshape(rows, -1, 4))
+        self.boxes = _table(np.concatenate(boxes) if boxes else np.zeros((2, 4)))
+        self.table = _table(table)
+        self.bytes = _bytes_of(self.corners, self.boxes, self.table)
+
+    def holds(self, shapes):
+        """Return whether these are its shapes."""
+        return len(shapes) == len(self.shapes) and all(
+            a is b for a, b in zip(shapes, self.shapes, strict=True)
+        )
+
+
 class Occluders:
     """The parts of a scene and their clusters on the device.
 
@@ -171,38 +271,32 @@ class Occluders:
     parts : sequence of Part
     world : ndarray of shape (I, 4, 4)
         Object to world, of the instance table.
+    cache : ShapeCache, optional
+        That keeps the clusters for the next occluders of the same shapes.
 
     Attributes
     ----------
-    corners : GPUTexture
-        Corners of the triangles, CLUSTERS_PER_ROW clusters a row.
-    boxes : GPUTexture
-        Two texels a box, lower and upper corner: first the tree of the parts, in world space, then
-        those of the shapes, in object space.
+    corners, boxes, shapes : GPUTexture
+        Of `ShapeTables`.
+    part_boxes : GPUTexture
+        Two texels a box, in world space, as above: the tree of the parts.
     parts : GPUTexture
-        Two texels a part: row of the instance table, first shape, number of levels, area of a
-        triangle at full detail in world space; largest stretch of the instance.
-    shapes : GPUTexture
-        One texel a shape: first box, number of clusters, first cluster.
-    count : int
-        Number of parts.
+        PART_TEXELS texels a part: row of the instance table, first shape, number of levels, area of
+        a triangle at full detail in world space; then the largest coordinates in object space.
+    count, part_boxes_count : int
+        Number of parts, and of the boxes of their tree.
     bytes : int
     """
 
-    def __init__(self, parts, world):
-        world = world.astype(np.float64)
-        tables = occluder_tables(parts, world)
+    def __init__(self, parts, world, cache=None):
+        tables = occluder_tables(parts, world.astype(np.float64))
+        shapes = cache.tables(tables.shapes) if cache else ShapeTables(tables.shapes)
         self.count = len(tables.parts)
-        self.clusters = len(tables.corners)
-        rows = -(-max(self.clusters, 1) // CLUSTERS_PER_ROW)
-        corners = np.zeros((rows * CLUSTERS_PER_ROW, CLUSTER * 3, 4), np.float32)
-        corners[: self.clusters, :, :3] = tables.corners
-        self.corners = texture_2d(corners.reshape(rows, -1, 4))
-        self.boxes = _table(tables.boxes.reshape(-1, 3))
+        self.part_boxes_count = len(tables.boxes) if self.count else 0
+        self.corners, self.boxes, self.shapes = shapes.corners, shapes.boxes, shapes.table
+        self.part_boxes = _table(depth_first(tables.boxes, max(self.count, 1)).reshape(-1, 4))
         self.parts = _table(tables.parts.reshape(-1, 4))
-        self.shapes = _table(tables.shapes)
-        textures = (self.corners, self.boxes, self.parts, self.shapes)
-        self.bytes = sum(16 * t.width * t.height for t in textures)
+        self.bytes = shapes.bytes + _bytes_of(self.part_boxes, self.parts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,16 +305,15 @@ class OccluderTables:
 
     Parameters
     ----------
-    corners : ndarray of shape (C, 3 CLUSTER, 3)
     boxes : ndarray of shape (B, 2, 3)
-    parts : ndarray of shape (P, 2, 4)
-    shapes : ndarray of shape (S, 4)
+        The tree of the parts.
+    parts : ndarray of shape (P, PART_TEXELS, 4)
+    shapes : list of Shape
     """
 
-    corners: np.ndarray
     boxes: np.ndarray
     parts: np.ndarray
-    shapes: np.ndarray
+    shapes: list
 
 
 def occluder_tables(parts, world):
@@ -235,7 +328,7 @@ def occluder_tables(parts, world):
     -------
     OccluderTables
     """
-    rows, part_boxes, records = [], [], []
+    part_boxes, records = [], []
     shapes, numbers = [], {}
     for part in parts:
         first = numbers.get(id(part.shapes))
@@ -245,45 +338,31 @@ def occluder_tables(parts, world):
         full = part.shapes[0]
         matrices = world[part.first : part.first + part.count]
         linear = matrices[:, :3, :3]
-        middle, half = (
-            full.boxes.astype(np.float64).mean(axis=1),
-            np.diff(full.boxes, axis=1)[:, 0] / 2,
-        )
-        low, high = (middle - half).min(axis=0), (middle + half).max(axis=0)
+        boxes = full.boxes.astype(np.float64)
+        low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
         center = linear @ ((low + high) / 2) + matrices[:, :3, 3]
         reach = np.abs(linear) @ ((high - low) / 2)
         part_boxes.append(np.stack([center - reach, center + reach], axis=1))
-        scale = np.cbrt(np.abs(np.linalg.det(linear)))
-        record = np.zeros((part.count, 2, 4))
+        record = np.zeros((part.count, PART_TEXELS, 4))
         record[:, 0, 0] = part.first + np.arange(part.count)
         record[:, 0, 1] = first
         record[:, 0, 2] = len(part.shapes)
-        record[:, 0, 3] = full.area * scale**2
+        record[:, 0, 3] = full.area * np.cbrt(np.abs(np.linalg.det(linear))) ** 2
+        record[:, 1, :3] = np.maximum(np.abs(low), np.abs(high))
         records.append(record)
-        rows.append(part.count)
-    if not rows:
-        empty = np.zeros((1, 2, 3))
-        return OccluderTables(
-            np.zeros((0, CLUSTER * 3, 3)), empty, np.zeros((0, 2, 4)), np.zeros((1, 4))
-        )
+    if not records:
+        return OccluderTables(np.zeros((1, 2, 3)), np.zeros((0, PART_TEXELS, 4)), [])
     part_boxes, records = np.concatenate(part_boxes), np.concatenate(records)
     order = z_order(part_boxes.mean(axis=1))
     tree = box_tree(part_boxes[order])
     # The device tests in single precision: a part must not fall out of its box by rounding.
     slack = 1e-6 * np.abs(tree).max()
     tree = tree + np.array([-slack, slack])[:, None]
-    table = np.zeros((len(shapes), 4))
-    box, cluster = len(tree), 0
-    for number, shape in enumerate(shapes):
-        table[number, :3] = box, len(shape.corners), cluster
-        box += len(shape.boxes)
-        cluster += len(shape.corners)
-    return OccluderTables(
-        np.concatenate([s.corners for s in shapes]),
-        np.concatenate([tree, *(s.boxes for s in shapes)]),
-        records[order],
-        table,
-    )
+    return OccluderTables(tree, records[order], shapes)
+
+
+def _bytes_of(*textures):
+    return sum(16 * t.width * t.height for t in textures)
 
 
 def _table(texels):

@@ -33,6 +33,8 @@ class SceneBuffers:
         Grows when levels are added.
     shapes : ShapeCache
         Meshes as the visibility of highlights needs them.
+    expected_pairs : int
+        Of highlight and cluster of triangles; see `engine.bokeh_visibility`.
     instances : GPUTexture
     lighting : tuple of (str, GPUUniformBuf or GPUTexture)
         What lit surfaces read of the lights and the world.
@@ -49,6 +51,7 @@ class SceneBuffers:
         self.levels = {}
         self.levels_version = 0
         self.shapes = ShapeCache()
+        self.expected_pairs = 0
         self._level_meshes = {}
         self.instances = None
         self.lighting = ()

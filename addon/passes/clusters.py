@@ -115,19 +115,22 @@ _WRITE_OUT = _info(
 )
 
 _SIDE = 8
-_SOFTEN = ShaderInfo(
-    name="aplanat_clusters_soften",
-    compute=shader_source.load("passes/clusters_soften_comp.glsl"),
-    typedefs=bokeh_culling.VISIBILITY_PARAMS.source + f"shared vec2 blurs[{_SIDE * _SIDE}];\n",
-    samplers=tuple(
-        ("FLOAT_2D", f"{name}_tx") for name in ("sources", "tiles", "states", "layers", "masks")
-    ),
-    images=(("R16F", "FLOAT_2D", "soft_img", ("WRITE",)),),
-    uniforms=(("VisibilityParams", "visibility_buf"),),
-    push_constants=(("INT", "count"),),
-    defines=(("SOURCE_COLUMNS", str(COLUMNS)),),
-    local_size=(_SIDE, _SIDE, 1),
-)
+
+
+def _soften_info(layered):
+    names = ("sources", "tiles", "states", "masks", *("layers",) * layered)
+    shared = f"shared vec2 blurs[{_SIDE * _SIDE}];\n" * layered
+    return ShaderInfo(
+        name="aplanat_clusters_soften",
+        compute=shader_source.load("passes/clusters_soften_comp.glsl"),
+        typedefs=bokeh_culling.VISIBILITY_PARAMS.source + shared,
+        samplers=tuple(("FLOAT_2D", f"{name}_tx") for name in names),
+        images=(("R16F", "FLOAT_2D", "soft_img", ("WRITE",)),),
+        uniforms=(("VisibilityParams", "visibility_buf"),),
+        push_constants=(("INT", "count"),),
+        defines=(("SOURCE_COLUMNS", str(COLUMNS)), *(("LAYERS", "1"),) * layered),
+        local_size=(_SIDE, _SIDE, 1),
+    )
 
 
 @dataclass(frozen=True)
@@ -251,10 +254,11 @@ def soften(sources, count, visibility, soft):
     soft : GPUTexture
         R16F, as large as the atlas; gets the blurred masks.
     """
-    shader = compile_shader(_SOFTEN)
+    layered = visibility.layers is not None
+    shader = compile_shader(_soften_info(layered))
     shader.bind()
     shader.uniform_sampler("sources_tx", sources)
-    for name in ("tiles", "states", "layers", "masks"):
+    for name in ("tiles", "states", "masks", *("layers",) * layered):
         shader.uniform_sampler(f"{name}_tx", getattr(visibility, name))
     shader.image("soft_img", soft)
     shader.uniform_block("visibility_buf", visibility.parameters)

@@ -14,15 +14,14 @@ Jeong et al., TVCG 2020, section 4.2.
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
 from . import surface
-from .bokeh_culling import (
-    CLUSTER_CORNERS,
-    CLUSTERS_PER_ROW,
-    TILE_LAYOUT,
-    VISIBILITY_PARAMS,
-)
-from .highlights import COLUMNS
+from .bokeh_cones import CLUSTER_CORNERS, CLUSTER_DEFINES
+from .bokeh_culling import TILE_LAYOUT, VISIBILITY_PARAMS
+from .prefix_sums import COLUMNS
 
 _CLIP_DISTANCES = 6
+# Pairs that an instance of the batch draws: instances of few corners leave devices idle.
+_PAIRS_A_DRAW = 256
+BATCH_CORNERS = _PAIRS_A_DRAW * CLUSTER_CORNERS
 _DEFINES = (("SOURCE_COLUMNS", str(COLUMNS)),)
 _STRUCTS = VISIBILITY_PARAMS.source + TILE_LAYOUT.source
 _UNIFORMS = (("VisibilityParams", "visibility_buf"), ("TileLayout", "layout_buf"))
@@ -39,10 +38,11 @@ _RASTER = ShaderInfo(
         ("FLOAT_2D", f"{name}_tx") for name in ("pairs", "sources", "tiles", "instances", "corners")
     ),
     uniforms=_UNIFORMS,
+    push_constants=(("INT", "count"),),
     defines=(
         *_DEFINES,
-        ("CLUSTER_CORNERS", str(CLUSTER_CORNERS)),
-        ("CLUSTERS_PER_ROW", str(CLUSTERS_PER_ROW)),
+        *CLUSTER_DEFINES,
+        ("PAIRS_A_DRAW", str(_PAIRS_A_DRAW)),
     ),
 )
 
@@ -65,7 +65,7 @@ def draw_clusters(batch, count, tables, parameters, layout):
     Parameters
     ----------
     batch : GPUBatch
-        Of `device.geometry.numbered_batch`, with CLUSTER_CORNERS corners.
+        Of `device.geometry.numbered_batch`, with BATCH_CORNERS corners.
     count : int
         Pairs.
     tables : dict of str to GPUTexture
@@ -81,7 +81,8 @@ def draw_clusters(batch, count, tables, parameters, layout):
             shader.uniform_sampler(f"{name}_tx", texture)
         shader.uniform_block("visibility_buf", parameters)
         shader.uniform_block("layout_buf", layout)
-        batch.draw_instanced(shader, instance_count=count)
+        shader.uniform_int("count", count)
+        batch.draw_instanced(shader, instance_count=-(-count // _PAIRS_A_DRAW))
 
 
 def draw_surfaces(draws, count, tables, parameters, layout):

@@ -11,7 +11,7 @@ Jeong et al., TVCG 2020, section 4.4; Lee, Eisemann and Seidel, SIGGRAPH 2010.
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from .bokeh_culling import TILE_LAYOUT, VISIBILITY_PARAMS
-from .highlights import COLUMNS
+from .prefix_sums import COLUMNS
 
 # As many as a texel has channels.
 MOST_LAYERS = 4

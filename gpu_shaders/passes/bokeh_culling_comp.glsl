@@ -1,13 +1,15 @@
 // Sorts out sources that need no mask: their disc is outside the frame, nothing of the lens sees
 // them, or nothing stands before them.
-// Inputs: sources_tx (x, y, depth, extent); layers_tx, bounds_tx (see bokeh_culling_bounds_comp);
-// visibility_buf; count; cell; culls (0: every source
-// is undecided, for comparison).
-// Outputs: states_img: depth buffer value that nothing before the source falls below (x), class of
-// size (y), steps of a ray to the rim (z), state (w).
+// Inputs: sources_tx (x, y, depth, extent); visibility_buf; count. LAYERS: layers_tx, bounds_tx (see
+// bokeh_culling_bounds_comp); cell; again (1: only sources that are still undecided). Without
+// LAYERS, only the frame is asked for.
+// Outputs: states_img: depth buffer value that nothing before the source falls below (x); sum (y) and
+// weights (z) of the blur that its parts see occluders with (see bokeh_cones_comp); state (w).
 // Source: methods 10 (J20 section 4.3.2).
-#include "lib/bounds_lib.glsl"
 #include "lib/source_lib.glsl"
+#ifdef LAYERS
+#include "lib/bounds_lib.glsl"
+#endif
 
 // The bounds hardly shrink after the third time.
 #define ITERATIONS 4
@@ -17,19 +19,20 @@
 #define WALK 24
 
 // Whether the disc meets the frame.
-bool in_frame(Source source)
+bool in_frame(Source source, float extent)
 {
   vec2 radius = source.coc * visibility_buf.opening.w * vec2(1.0 / visibility_buf.lens.w, 1.0);
   vec2 center = source.place / visibility_buf.raster.z - visibility_buf.frame.xy;
   vec4 axis = visibility_buf.projection * vec4(0.0, 0.0, -1.0, 1.0);
   vec2 away = source.place - (axis.xy / axis.w * 0.5 + 0.5) * visibility_buf.raster.xy;
   vec2 moved = abs(away) * (visibility_buf.colors.z / visibility_buf.raster.z);
-  // For the pixel filter and the extent of the source.
-  vec2 reach = radius + moved + 4.0;
+  // For the blur of the splat: by the extent of the source and the pixel filter.
+  vec2 reach = radius + moved + 1.5 * extent + 4.0;
   return all(greaterThan(center + reach, vec2(0.0))) &&
          all(lessThan(center - reach, visibility_buf.frame.zw));
 }
 
+#ifdef LAYERS
 // Whether the surface of a texel goes on in its neighbours.
 bool joined(ivec2 texel, float depth, float most)
 {
@@ -70,9 +73,6 @@ bool free_of_texels(Source source, ivec2 low, ivec2 high)
 
 float state_of(Source source, inout float nearest)
 {
-  if (!in_frame(source)) {
-    return STATE_OUTSIDE;
-  }
   vec2 rate = source_reach(visibility_buf);
   ivec2 size = textureSize(layers_tx, 0);
   bool inside, all_inside = true;
@@ -106,6 +106,7 @@ float state_of(Source source, inout float nearest)
   }
   return STATE_OPEN;
 }
+#endif
 
 void main()
 {
@@ -113,14 +114,22 @@ void main()
   if (index >= count) {
     return;
   }
-  Source source = source_of(texelFetch(sources_tx, list_texel(index), 0), visibility_buf);
-  float nearest = 0.0;
-  float state = state_of(source, nearest);
-  if (culls == 0) {
-    state = STATE_OPEN;
+  ivec2 texel = list_texel(index);
+#ifdef LAYERS
+  if (again == 1 && imageLoad(states_img, texel).w != STATE_OPEN) {
+    return;
   }
-  vec2 rate = source_reach(visibility_buf);
-  float steps = max(rate.x, rate.y) * max(source.depth - nearest, 0.0);
-  int size = source_class(source.coc, visibility_buf);
-  imageStore(states_img, list_texel(index), vec4(nearest, float(size), steps, state));
+#endif
+  vec4 a = texelFetch(sources_tx, texel, 0);
+  Source source = source_of(a, visibility_buf);
+  float state = in_frame(source, a.w) ? STATE_OPEN : STATE_OUTSIDE;
+#ifdef LAYERS
+  float nearest = 0.0;
+  if (state == STATE_OPEN) {
+    state = state_of(source, nearest);
+  }
+#else
+  float nearest = source.depth;
+#endif
+  imageStore(states_img, texel, vec4(nearest, 0.0, 0.0, state));
 }

@@ -1,6 +1,7 @@
 // Says for every source what becomes of it, and gives the masks their places in the atlas.
-// Inputs: states_tx; keys_tx, totals_tx (prefix sums); layout_buf; count; rows (of a segment of
-// keys); kind (of sources that need a mask).
+// Inputs: sources_tx; states_tx; keys_tx, totals_tx (prefix sums); visibility_buf, layout_buf; count;
+// rows (of a segment of keys); kind (of sources that need a mask); kinds (segments of masks; see
+// bokeh_culling_keys_comp).
 // Outputs: tiles_img: place (xy) and side (z) of the mask, kind (w); in a splat: x: depth buffer value
 // that nothing before the source falls below. masked_img: sources with a mask, in order of size.
 // Source: methods 10, 11.
@@ -14,7 +15,8 @@ void main()
   }
   ivec2 texel = list_texel(index);
   vec4 record = texelFetch(states_tx, texel, 0);
-  if (record.w != STATE_OPEN) {
+  bool open = record.w == STATE_OPEN;
+  if (!open && kinds == SIZES) {
     bool seen = record.w == STATE_VISIBLE || record.w == STATE_FREE || record.w == STATE_EDGE;
     imageStore(tiles_img, texel, vec4(vec3(0.0), seen ? SOURCE_UNMASKED : SOURCE_DROP));
     return;
@@ -23,7 +25,8 @@ void main()
     imageStore(tiles_img, texel, vec4(record.x, 0.0, 0.0, SOURCE_IN_SPLAT));
     return;
   }
-  int size = int(record.y);
+  Source source = source_of(texelFetch(sources_tx, texel, 0), visibility_buf);
+  int size = source_class(source.coc, visibility_buf) + (open ? 0 : SIZES);
   int row = texel.y + size * rows;
   uint rank = texelFetch(keys_tx, ivec2(texel.x, row), 0).x +
               texelFetch(totals_tx, list_texel(row), 0).x;

@@ -1,41 +1,26 @@
-// Blurs the masks of merged sources: their parts see what hides them from different sides. A part
-// that the picture shows e px away sees the lens through an occluder as if that were shifted by
-//   e (1 - z (d - f) / ((d - z) f)) px        (orthographic: e (1 - (d - f) / (d - z)))
-// for the depths d of the source, z of the occluder and f of the focus: hardly in front of the
-// source, its shadow moves across the whole lens.
-// A group of threads for each source. The occluders' mean blur is found by samples around the source
-// in the peeled layers, nearer ones ever denser.
-// Inputs: sources_tx, tiles_tx, states_tx (see bokeh_culling_comp), layers_tx, masks_tx;
-// visibility_buf; count.
+// Blurs the masks of merged sources: their parts see what hides them from different sides, see
+// lib/occluder_blur_lib.glsl.
+// A group of threads for each source. The occluders' mean blur was found with what meets the
+// source's cone; LAYERS: it is found by samples around the source in the peeled layers, nearer ones
+// ever denser.
+// Inputs: sources_tx, tiles_tx, states_tx (see bokeh_culling_comp), masks_tx; visibility_buf; count.
+// LAYERS: layers_tx.
 // Outputs: soft_img, the atlas with blurred masks; other texels are not written.
-// Source: J-D section 5.1.2, equation 5.4, with each occluder's own depth.
-#include "lib/source_lib.glsl"
+// Source: J-D section 5.1.2.
+#include "lib/occluder_blur_lib.glsl"
 
 #define SIDE 8
 #define SCALES 4
 #define TAPS 4
-// Blur over more than the lens is none the softer, radii of the lens.
-#define WIDEST 2.0
 // Below this many texels, interpolation is blur enough.
 #define LEAST_TEXELS 0.5
 
+#ifdef LAYERS
 float depth_of(float value)
 {
   float rate = visibility_buf.sweep.w;
   float from = value - visibility_buf.sweep.z;
   return (visibility_buf.lens.y > 0.5) ? from / rate : rate / from;
-}
-
-// Side of the square on the lens, in its radii, that an occluder's shadow is blurred over.
-float blur_of(Source source, float extent, float z)
-{
-  float d = source.cone.depth, focus = visibility_buf.colors.w;
-  vec4 lens = vec4(focus, visibility_buf.lens.yzw);
-  // The lens may focus some wavelengths there.
-  float coc = max(abs(coc_radius_px(d, lens)), 0.1);
-  float gamma = (d - focus) / max(d - z, 1e-6 * d);
-  gamma *= (visibility_buf.lens.y > 0.5) ? 1.0 : z / focus;
-  return min(extent * abs(1.0 - gamma) / coc, WIDEST);
 }
 
 // Blur and weight of what a thread's samples find.
@@ -54,32 +39,37 @@ vec2 sample_occluders(Source source, float extent, float nearest, ivec2 lane)
       // In its shadow lies a part of the lens.
       if (values[k] < source.limit && way > 0.0 && length(offset / spread) <= 1.0) {
         float weight = (reach.x * reach.y * size * size) / max(spread.x * spread.y, 1e-12);
-        found += weight * vec2(blur_of(source, extent, depth_of(values[k])), 1.0);
+        found += weight * vec2(occluder_blur(source, extent, depth_of(values[k]), visibility_buf), 1.0);
       }
     }
   }
   return found;
 }
+#endif
 
 void main()
 {
   int index = int(gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
   ivec2 lane = ivec2(gl_LocalInvocationID.xy);
-  int number = lane.x + lane.y * SIDE;
   ivec2 texel = list_texel(min(index, count - 1));
   vec4 tile = texelFetch(tiles_tx, texel, 0);
   vec4 a = texelFetch(sources_tx, texel, 0);
   Source source = source_of(a, visibility_buf);
   bool masked = index < count && tile.w == SOURCE_MASKED;
-  blurs[number] = masked ? sample_occluders(source, a.w, texelFetch(states_tx, texel, 0).x, lane) :
-                         vec2(0.0);
+  vec4 record = texelFetch(states_tx, texel, 0);
+#ifdef LAYERS
+  int number = lane.x + lane.y * SIDE;
+  blurs[number] = masked ? sample_occluders(source, a.w, record.x, lane) : vec2(0.0);
   barrier();
-  if (!masked) {
-    return;
-  }
   vec2 sum = vec2(0.0);
   for (int i = 0; i < SIDE * SIDE; i++) {
     sum += blurs[i];
+  }
+#else
+  vec2 sum = record.yz;
+#endif
+  if (!masked) {
+    return;
   }
   float width = sum.x / max(sum.y, 1e-20);
   bool sharp = width * 0.5 * tile.z < LEAST_TEXELS;

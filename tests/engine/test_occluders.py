@@ -1,9 +1,18 @@
 """Clusters of triangles, the boxes round them, and the atlas of masks."""
 
 import numpy as np
+import pytest
 
-from addon.engine.bokeh_visibility import lay_out
-from addon.engine.occluders import BRANCHES, CLUSTER, Part, box_tree, cut, occluder_tables
+from addon.engine.occluders import (
+    BRANCHES,
+    CLUSTER,
+    Part,
+    box_tree,
+    cut,
+    depth_first,
+    occluder_tables,
+)
+from addon.engine.visibility_plan import lay_out, lay_out_more
 from addon.passes import bokeh_culling
 
 
@@ -88,3 +97,31 @@ def test_many_masks_share_the_room_that_there_is():
     layout = lay_out(many, room)
     assert (sides[1] ** 2 * 10000).sum() <= room
     assert layout.width * layout.height < 1.2 * room
+
+
+@pytest.mark.parametrize("leaves", [1, 8, 9, 65, 700])
+def test_a_tree_is_walked_without_memory(leaves):
+    low = np.random.default_rng(4).random((leaves, 3))
+    boxes = np.stack([low, low + 0.05], axis=1).astype(np.float32)
+    laid = depth_first(box_tree(boxes), leaves)
+    for point in np.random.default_rng(5).random((20, 3)).astype(np.float32):
+        place, met = 0, []
+        while place < len(laid):
+            inside = (laid[place, 0, :3] <= point).all() and (point <= laid[place, 1, :3]).all()
+            if inside and laid[place, 1, 3] >= 0:
+                met.append(int(laid[place, 1, 3]))
+            place += 1 if inside else int(laid[place, 0, 3])
+        holds = (boxes[:, 0] <= point).all(axis=1) & (point <= boxes[:, 1]).all(axis=1)
+        assert sorted(met) == np.flatnonzero(holds).tolist()
+
+
+def test_further_masks_leave_the_others_in_place():
+    numbers, further = [37, 50, 11, 5, 3, 1], [3, 0, 70, 0, 1, 0]
+    layout = lay_out(numbers)
+    more = lay_out_more(layout, sum(numbers), further)
+    assert np.array_equal(more.sizes[:6], layout.sizes)
+    used = np.zeros((more.height, more.width), int)
+    for x, y, side in tiles_of(more, [*numbers, *further]):
+        used[y : y + side, x : x + side] += 1
+    assert used.max() == 1
+    assert more.sizes[:, 0].tolist() == np.cumsum([0, *numbers, *further])[:-1].tolist()

@@ -7,6 +7,7 @@ import pytest
 
 from addon.device import readback
 from addon.device.textures import texture_2d
+from addon.engine import bokeh_visibility
 from addon.engine.bokeh_visibility import BokehVisibility, SceneOccluders
 from addon.engine.scene_buffers import SceneBuffers
 from addon.passes.highlights import COLUMNS
@@ -265,3 +266,16 @@ def test_a_half_hidden_highlight_looks_as_lens_samples_show_it(lamp_depth, metho
     # Edges of a pixel round a disc of about ten, and the samples' own noise.
     assert error < 0.12
     assert mirrored > 2.0 * error
+
+
+def test_masks_are_the_same_where_pairs_are_listed_in_parts(monkeypatch):
+    scene = Scene(snapshot(slanted(9)))
+    sources = sources_at((7.0, 8.0), count=1500)
+    monkeypatch.setattr(bokeh_visibility, "_LEAST_PAIRS", 1)
+    monkeypatch.setattr(bokeh_visibility, "_WINDOW", 1024)
+    _, in_parts, counts = scene.find(sources, "RASTER")
+    assert counts.pairs > 2 * 1024
+    monkeypatch.undo()
+    _, at_once, _ = scene.find(sources, "RASTER")
+    for a, b in zip(in_parts, at_once, strict=True):
+        assert (a is None and b is None) or np.array_equal(a, b)
