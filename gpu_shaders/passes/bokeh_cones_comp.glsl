@@ -12,6 +12,11 @@
 #include "lib/cones_lib.glsl"
 #include "lib/instance_lib.glsl"
 
+// Side of a triangle of a level of detail, in texels of a mask. A level is made to lie much closer to
+// the surface than its triangles are large: on a street of 400000 triangles in one mesh, this differs
+// from full detail by 1e-4 in SSIM, and draws a tenth of the triangles.
+#define TRIANGLE_TEXELS 5.0
+
 // Whether any triangle of a cluster may meet the cone.
 bool meets_cluster(LensView view, int cluster)
 {
@@ -47,40 +52,36 @@ bool next_leaf(sampler2D boxes, LensView view, int end, inout int box, out vec4 
 
 // A part of the scene as a source sees it.
 struct Part {
-  int row;      // of the instance table
-  float area;   // of a triangle, m^2
-  int cluster;  // first one
-  ivec2 boxes;  // first and behind the last of its tree
+  int row;        // of the instance table
+  int shape;      // of level of detail 0
+  int levels;
+  float area;     // of a triangle at level 0, m^2
   LensView view;  // from object space
 };
 
-// Level of detail at which a part's triangles are about as large as a texel of the source's mask.
-// `record`: of the part; `low`, `high`: its box; `view`: from world space.
-int level_of(Source source, LensView view, vec4 record, vec3 low, vec3 high)
-{
-  float w = dot(view.w.xyz, 0.5 * (low + high)) + view.w.w -
-            dot(abs(view.w.xyz), 0.5 * (high - low));
-  float side = visibility_buf.tiles.y * exp2(float(source_class(source.coc, visibility_buf)));
-  float texel = 2.0 * min(visibility_buf.opening.x, visibility_buf.opening.y) * w / side;
-  if (texel <= 0.0) {
-    return 0;
-  }
-  return clamp(int(floor(log2(texel * texel / max(record.w, 1e-30)))), 0, int(record.z) - 1);
-}
-
-Part part_of(Source source, LensView view, int number, vec3 low, vec3 high)
+Part part_of(LensView view, int number)
 {
   vec4 record = texelFetch(parts_tx, list_texel(PART_TEXELS * number), 0);
   vec4 far = texelFetch(parts_tx, list_texel(PART_TEXELS * number + 1), 0);
-  int level = level_of(source, view, record, low, high);
-  vec4 shape = texelFetch(shapes_tx, list_texel(int(record.y) + level), 0);
-  Part part;
-  part.row = int(record.x);
-  part.area = record.w;
-  part.cluster = int(shape.z);
-  part.boxes = ivec2(int(shape.x), int(shape.x + shape.y));
-  part.view = lens_view_in(view, instance_world(instances_tx, part.row), far.xyz);
-  return part;
+  mat4 world = instance_world(instances_tx, int(record.x));
+  LensView own = lens_view_in(view, world, far.xyz);
+  return Part(int(record.x), int(record.y), int(record.z), record.w, own);
+}
+
+// From which w on a part is drawn at a level of detail: where its triangles are about as large as a
+// few texels of the source's mask, near the lens ever coarser. They grow by two from level to level.
+// A cluster that lies in the ranges of two levels is drawn at both, so that no gap is left.
+float least_w(Source source, Part part, int level)
+{
+  if (level == 0) {
+    return -1e30;
+  }
+  if (level == part.levels) {
+    return 1e30;
+  }
+  float side = visibility_buf.tiles.y * exp2(float(source_class(source.coc, visibility_buf)));
+  float width = 2.0 * min(visibility_buf.opening.x, visibility_buf.opening.y);
+  return sqrt(part.area * exp2(float(level))) * side / (width * TRIANGLE_TEXELS);
 }
 
 void main()
@@ -123,31 +124,41 @@ void main()
   int at = 0;
   vec4 low, high;
   while (next_leaf(part_boxes_tx, view, parts, at, low, high)) {
-    Part part = part_of(source, view, int(high.w), low.xyz, high.xyz);
-    int within = part.boxes.x;
-    while (next_leaf(boxes_tx, part.view, part.boxes.y, within, low, high)) {
-      int cluster = part.cluster + int(high.w);
-      if (!meets_cluster(part.view, cluster)) {
+    Part part = part_of(view, int(high.w));
+    for (int level = 0; level < part.levels; level++) {
+      LensView own = part.view;
+      own.range.x = max(own.range.x, least_w(source, part, level));
+      own.range.y = min(own.range.y, least_w(source, part, level + 1));
+      if (own.range.x > own.range.y) {
         continue;
       }
+      vec4 shape = texelFetch(shapes_tx, list_texel(part.shape + level), 0);
+      int within = int(shape.x);
+      int end = within + int(shape.y);
+      while (next_leaf(boxes_tx, own, end, within, low, high)) {
+        int cluster = int(shape.z + high.w);
+        if (!meets_cluster(own, cluster)) {
+          continue;
+        }
 #ifdef EDGES
-      record.w = STATE_OPEN;
-      imageStore(states_img, texel, record);
-      return;
+        record.w = STATE_OPEN;
+        imageStore(states_img, texel, record);
+        return;
 #else
 #ifdef FILL
-      uint at_place = place - uint(window.x) + met.found;
-      met.found++;
+        uint at_place = place - uint(window.x) + met.found;
+        met.found++;
 #else
-      uint at_place = imageAtomicAdd(counts_img, ivec2(COUNT_PAIRS, 0), 1u);
-      float area = part.area * float(CLUSTER_CORNERS / 3);
-      meet(met, part.view, source, a.w, area, low.xyz, high.xyz, visibility_buf);
+        uint at_place = imageAtomicAdd(counts_img, ivec2(COUNT_PAIRS, 0), 1u);
+        float area = part.area * exp2(float(level)) * float(CLUSTER_CORNERS / 3);
+        meet(met, own, source, a.w, area, low.xyz, high.xyz, visibility_buf);
 #endif
-      if (at_place < uint(window.y)) {
-        vec4 pair = vec4(index, part.row, cluster, 0.0);
-        imageStore(pairs_img, list_texel(int(at_place)), pair);
+        if (at_place < uint(window.y)) {
+          vec4 pair = vec4(index, part.row, cluster, 0.0);
+          imageStore(pairs_img, list_texel(int(at_place)), pair);
+        }
+#endif
       }
-#endif
     }
   }
 #if !defined(FILL) && !defined(EDGES)
