@@ -103,6 +103,7 @@ def _bokeh(scene, data, lens):
         "similarity": bokeh.similarity,
         "global_merge": bokeh.global_merge,
         "visibility": bokeh.visibility.lower(),
+        "debug_view": bokeh.debug_view.lower(),
         "layers": bokeh.layers,
         "lens_views": bokeh.lens_views,
         "overscan": bokeh.overscan,
