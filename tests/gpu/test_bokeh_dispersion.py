@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from addon.bokeh.appearance import Appearance
+from addon.bokeh.vignetting_model import cat_eye
 from addon.engine.plan import plan_frame
 from addon.sampling.chromatic import ChromaticAberration
 from addon.sampling.field_maps import FieldMap
@@ -13,6 +15,7 @@ from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
 from addon.scene.snapshot import ImageSnapshot, Sampling, World, next_uid
 from tests.pictures import save_side_by_side, ssim
+from tests.splat_pictures import library_lens
 
 from .conftest import WORLD_COLOR, make_renderer, render_snapshot, triangles_snapshot
 from .test_bokeh import LAMPS, LENS, LIGHTS, PASSES, energy, lamp, with_bokeh
@@ -234,3 +237,50 @@ def test_a_finer_raster_of_the_samples_leaves_the_discs_as_they_are(chromatic, m
     monkeypatch.setattr("addon.engine.plan.subpixels", lambda *_: 2)
     assert plan_frame(snapshot).subpixels == 2
     assert render_snapshot(snapshot)["Bokeh"].tobytes() == expected.tobytes()
+
+
+# With a real lens ------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def real_lens():
+    return library_lens("double-gauss-50mm-f2")
+
+
+def with_lens(snapshot, real_lens, **settings):
+    snapshot = with_bokeh(snapshot, passes=("Bokeh",), **settings)
+    return replace(snapshot, camera=replace(snapshot.camera, real_lens=real_lens))
+
+
+LOOKS = {
+    "pupil": {"vignetting": "LENS"},
+    "profile": {"vignetting": "NONE"},
+    "rims": {"vignetting": "ANALYTIC", "appearance": Appearance(rims=cat_eye(0.3, 0.6, 3))},
+}
+
+
+def parting(picture):
+    """Return by how much the channels of a picture differ, as a share of its brightest."""
+    light = picture[..., :3].astype(np.float64)
+    return np.ptp(light, axis=-1).max() / light.max()
+
+
+@pytest.mark.parametrize("look", list(LOOKS))
+def test_any_look_has_all_the_light_in_colors(look, real_lens):
+    corners, _ = SCENES["behind"]
+    snapshot = triangles_snapshot(corners, [WHITE], WIDTH, HEIGHT, LENS, 12)
+    snapshot = with_chromatic(snapshot, aberration())
+    thin = energy(render_snapshot(with_bokeh(snapshot, passes=("Bokeh",)))["Bokeh"])
+    drawn = render_snapshot(with_lens(snapshot, real_lens, **LOOKS[look]))["Bokeh"]
+    # Discs of 4 to 10 pixels by texels of tables.
+    assert energy(drawn) == pytest.approx(thin, rel=0.03)
+    assert parting(drawn) > 0.1
+
+
+@pytest.mark.parametrize("look", ["profile", "rims"])
+def test_a_real_lens_alone_has_no_colors(look, real_lens):
+    corners, _ = SCENES["behind"]
+    snapshot = triangles_snapshot(corners, [WHITE], WIDTH, HEIGHT, LENS, 12)
+    drawn = render_snapshot(with_lens(snapshot, real_lens, **LOOKS[look]))["Bokeh"]
+    # Half precision of the opening's channels.
+    assert parting(drawn) < 2e-3
