@@ -30,6 +30,7 @@ def plan_of(
         projection=projection.copy(),
         lens_views=((0.0, 0.0),),
         colors=None,
+        draft=False,
     )
     return SimpleNamespace(
         bokeh=bokeh,

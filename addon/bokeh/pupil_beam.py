@@ -12,11 +12,13 @@ import numpy as np
 
 from ..errors import InputError
 from .pupil_box import beam_axes
-from .pupil_tables import MARGIN, RIMS
+from .pupil_tables import MARGIN, ODD_IN_X, RIMS
 from .spline import spline_matrix
 
 _SEARCH_GRID = 49
 _GRID = 97
+# The search for a chief ray: parts that an interval is divided into, until it is 1e-14 radians.
+_CHIEF_PARTS, _CHIEF_STEPS = 64, 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,6 +176,11 @@ def beam_from_point(tables, height, depth, f_number=None, wavelength=0, box=None
     InputError
         If the point is not in front of the lens.
     """
+    return _beam(tables, *_chief_ray(tables, height, depth), f_number, wavelength, box)
+
+
+def _chief_ray(tables, height, depth):
+    """Angle of the ray from a point to the pupil's centre, and the pupil's distance along it."""
     if not (np.isfinite(height) and np.isfinite(depth) and depth > 0.0 and height >= 0.0):
         raise InputError(
             f"a point {depth:g} mm in front of the lens and {height:g} mm from its axis casts no"
@@ -188,19 +195,38 @@ def beam_from_point(tables, height, depth, f_number=None, wavelength=0, box=None
             f"a point {depth:g} mm in front of surface 1 lies behind the entrance pupil"
             f" ({distance:.4g} mm); move it away from the lens"
         )
-    return _beam(tables, angle, distance, f_number, wavelength, box)
+    return angle, distance
 
 
-def _beam(tables, angle, distance, f_number, wavelength, given=None):
-    scale = 1.0 if f_number is None else min(1.0, tables.f_number / f_number)
+def box_from_infinity(tables, angle, f_number=None):
+    """Return the `box` that `beam_from_infinity` finds."""
+    return _open_box(tables, float(angle), np.inf, _stop_scale(tables, f_number), 0)
+
+
+def box_from_point(tables, height, depth, f_number=None):
+    """Return the `box` that `beam_from_point` finds."""
+    angle, distance = _chief_ray(tables, height, depth)
+    return _open_box(tables, angle, distance, _stop_scale(tables, f_number), 0)
+
+
+def _stop_scale(tables, f_number):
+    return 1.0 if f_number is None else min(1.0, tables.f_number / f_number)
+
+
+def _open_box(tables, angle, distance, scale, wavelength):
     half_x, _, half_v = tables.curves_at(angle)[1:]
     wide = 1.0 + MARGIN if np.isinf(distance) else 1.5
     box = (-half_x * wide, half_x * wide, -half_v * wide, half_v * wide)
     # The open part of a small stop, a near point's or a vignetted pupil is smaller than the box.
-    for _ in range(0 if given else 2):
+    for _ in range(2):
         x, v, values, _ = _rays(tables, angle, distance, box, _SEARCH_GRID, wavelength)
         box = _open_part(x, v, values, scale) or box
-    box = given or box
+    return tuple(map(float, box))
+
+
+def _beam(tables, angle, distance, f_number, wavelength, given=None):
+    scale = _stop_scale(tables, f_number)
+    box = given or _open_box(tables, angle, distance, scale, wavelength)
     x, v, values, solid = _rays(tables, angle, distance, box, _GRID, wavelength)
     cell = (x[0, 1] - x[0, 0]) * (v[1, 0] - v[0, 0])
     centre = _rays(tables, angle, distance, (-1e-6, 1e-6, -1e-6, 1e-6), 3, wavelength)[2][1, 1]
@@ -221,12 +247,25 @@ def _beam(tables, angle, distance, f_number, wavelength, given=None):
 
 def _rays(tables, angle, distance, box, grid, wavelength):
     """Rays through a regular grid in the plane of the pupil, and what the tables say of them."""
-    x, v = np.meshgrid(np.linspace(*box[:2], grid), np.linspace(*box[2:], grid))
+    if grid % 2 and abs(box[0] + box[1]) < 1e-9 * abs(box[1]):
+        # The picture of a lens of revolution is its own mirror image.
+        half = _columns(tables, angle, distance, box, grid, wavelength, grid // 2)
+        x, v, values, solid = (
+            np.concatenate([part[:, :0:-1] * sign, part], axis=1)
+            for part, sign in zip(half, (-1.0, 1.0, ODD_IN_X, 1.0), strict=True)
+        )
+        return x, v, values, solid
+    return _columns(tables, angle, distance, box, grid, wavelength, 0)
+
+
+def _columns(tables, angle, distance, box, grid, wavelength, first):
+    """Return what `_rays` does, from a column on."""
+    x, v = np.meshgrid(np.linspace(*box[:2], grid)[first:], np.linspace(*box[2:], grid))
     centre = tables.curves_at(angle)[2]
     if np.isinf(distance):
         flat = np.full(x.size, angle)
         values = tables.look_up(flat, x.ravel(), (v + centre).ravel(), wavelength)
-        return x, v, values.reshape(grid, grid, -1), np.ones_like(x)
+        return x, v, values.reshape(*x.shape, -1), np.ones_like(x)
     direction, axis = beam_axes(angle)
     along = _pupil_along(tables, angle)
     point = centre * axis + (along - distance) * direction
@@ -244,7 +283,7 @@ def _rays(tables, angle, distance, box, grid, wavelength):
     ray_x = point[0] * my - point[1] * mx
     ray_v = cos * (point[0] * mx + point[1] * my) - sin * point[2]
     found = tables.look_up(ray_angle.ravel(), ray_x.ravel(), ray_v.ravel(), wavelength)
-    found = found.reshape(grid, grid, -1)
+    found = found.reshape(*x.shape, -1)
     values = found.copy()
     for first in (0, 2, 4):
         across, outwards = found[..., first], found[..., first + 1]
@@ -280,9 +319,10 @@ def _pupil_along(tables, angle):
 def _chief_angle(tables, height, depth):
     """Angle of the ray from a point to the centre of the pupil's box."""
     low, high = 0.0, 0.5 * np.pi
-    # The point rises over the chief ray with the angle: halving finds the one crossing.
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        over = depth * np.sin(middle) - height * np.cos(middle) - tables.curves_at(middle)[2]
-        low, high = (low, middle) if over > 0.0 else (middle, high)
+    # The point rises over the chief ray with the angle: there is one crossing.
+    for _ in range(_CHIEF_STEPS):
+        angles = np.linspace(low, high, _CHIEF_PARTS + 1)
+        over = depth * np.sin(angles) - height * np.cos(angles) - tables.curves_at(angles)[:, 2]
+        part = int(np.searchsorted(over[1:-1] > 0.0, True))
+        low, high = angles[part], angles[part + 1]
     return 0.5 * (low + high)

@@ -59,7 +59,7 @@ _BOX_TERMS = 5
 _CURVE_STEPS = 129
 FIELDS = 25
 # Change of sign of the channels when the picture is mirrored in x, and in y.
-_ODD_IN_X = np.array([-1, 1, -1, 1, -1, 1, 1, 1, 1, 1, 1.0])
+ODD_IN_X = np.array([-1, 1, -1, 1, -1, 1, 1, 1, 1, 1, 1.0])
 _ODD_IN_Y = np.array([1, -1, 1, -1, 1, -1, 1, 1, 1, 1, 1.0])
 
 
@@ -140,19 +140,28 @@ class PupilTables:
         rows, wv = cubic_taps(np.clip(at_v, -1.0, 1.0) * middle + middle, count)
         layers, wa = cubic_taps(angle / self.field_step + 1.0, len(self.tables) + 1)
         values = np.zeros((len(angle), len(CHANNELS)))
+        # `take` from rows is several times as fast as an index an axis.
+        flat = self.tables.reshape(-1, len(CHANNELS))
+        further = self.chromatic[wavelength - 1].reshape(len(flat), -1) if wavelength > 0 else None
         for layer, weight_a in zip(layers, wa, strict=True):
             # Layer 0 is the first field on the other side of the axis: the mirror of layer 2.
             across = layer == 0
-            layer = np.where(across, 1, layer - 1)
-            sign = np.where(across[:, None], _ODD_IN_Y, 1.0)
+            mirrored = across.any()
+            first = np.where(across, 1, layer - 1) * count
+            part = np.zeros_like(values)
             for row, weight_v in zip(rows, wv, strict=True):
-                row = np.where(across, count - 1 - row, row)
+                start = (
+                    first + (np.where(across, count - 1 - row, row) if mirrored else row)
+                ) * count
+                weight_av = weight_a * weight_v
                 for column, weight_x in zip(columns, wx, strict=True):
-                    weight = (weight_a * weight_v * weight_x)[:, None] * sign
-                    values += weight * self.tables[layer, row, column]
+                    weight = (weight_av * weight_x)[:, None]
+                    part += weight * flat.take(start + column, axis=0)
                     if wavelength > 0:
-                        further = self.chromatic[wavelength - 1, layer, row, column]
-                        values[:, :4] += weight[:, :4] * further
+                        part[:, :4] += weight * further.take(start + column, axis=0)
+            if mirrored:
+                part[across] *= _ODD_IN_Y
+            values += part
         values[:, 1] += height
         # All that passes is inside the box: beyond the table rays are blocked.
         outside = np.maximum(np.maximum(np.abs(at_x), np.abs(at_v)) - 1.0, 0.0)
@@ -339,7 +348,7 @@ class _FieldTracer:
         values[:, 10] = traced.transmission
         shape = (grid, len(half))
         values = _continued(values.reshape(*shape, -1), known.reshape(shape))
-        mirrored = values[:, :0:-1] * _ODD_IN_X
+        mirrored = values[:, :0:-1] * ODD_IN_X
         return np.concatenate([mirrored, values], axis=1)
 
 

@@ -13,6 +13,7 @@ the picture keeps the camera's field of view and blur and takes the lens' patter
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -122,7 +123,22 @@ def distance_from_h(profile, from_pupil):
     return distance
 
 
-def profile_layers(rows, opening, strength=1.0):
+def light_on_radii(opening):
+    """Return the `radial_weights` of an opening's layers.
+
+    Parameters
+    ----------
+    opening : ndarray of shape (layers, size, size, 4)
+        From `opening_layers`.
+
+    Returns
+    -------
+    list of ndarray of shape (3, RADII)
+    """
+    return [radial_weights(light, extent(layer)) for layer, light in enumerate(opening)]
+
+
+def profile_layers(rows, opening, strength=1.0, weights=None):
     """Make the layers of a profile.
 
     Parameters
@@ -132,6 +148,8 @@ def profile_layers(rows, opening, strength=1.0):
         From `opening_layers`.
     strength : float
         0: even discs, 1: the profile.
+    weights : list of ndarray, optional
+        `light_on_radii` of the opening, where it is known already.
 
     Returns
     -------
@@ -144,13 +162,12 @@ def profile_layers(rows, opening, strength=1.0):
     density = 1.0 - strength + strength * np.pi * density
     result = np.empty((len(opening), len(rows.extents), RADII, 4), np.float32)
     result[..., 3] = rows.extents[:, None]
-    for layer, light in enumerate(opening):
+    for layer, light in enumerate(weights or light_on_radii(opening)):
         reach = extent(layer)
         width = LEAST_BLUR * 2.0**layer
         factors = np.maximum(density @ _blur(width, reach).T, 0.0)
-        weights = radial_weights(light, reach)
-        energy = np.einsum("crj,cj->cr", factors, weights)
-        factors *= (weights.sum(axis=1)[:, None] / np.maximum(energy, 1e-30))[..., None]
+        energy = np.einsum("crj,cj->cr", factors, light)
+        factors *= (light.sum(axis=1)[:, None] / np.maximum(energy, 1e-30))[..., None]
         result[layer, ..., :3] = np.moveaxis(factors, 0, -1)
     return result
 
@@ -203,6 +220,7 @@ def _finer(light):
     return light
 
 
+@lru_cache(maxsize=16)
 def _blur(width, reach):
     """Matrix that blurs a radial function on rings, as it is read at the texels of a layer."""
     # A Gaussian with the variance of a box of this width; texels are no finer than half a ring.

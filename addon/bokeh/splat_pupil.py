@@ -12,23 +12,21 @@ Beams are traced for a few vergences and interpolated.
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
-from .deposit import deposit, open_weights, rays_for
 from .opening import LEAST_BLUR, extent
-from .pupil_beam import PupilBeam, beam_from_infinity, beam_from_point
+from .pupil_beam import beam_from_infinity, beam_from_point, box_from_infinity, box_from_point
 from .ray_map import lagrange_weights
+from .spline import spline_matrix
+from .tile_drawing import RAYS, STOP_OFFSET, STOP_SCALE, HalfGrid, blur_matrix, draw_tile
 
 FIELDS, DEPTHS = 9, 25
 # Blur of the tiles in units of half their width, as the side of a box of the same variance; the
 # first one is what texels of the sharp tiles do. Must agree with lib/bokeh_look_lib.glsl.
 BLURS = (1.0 / 48.0, 1.0 / 20.0, 1.0 / 7.0, 1.0 / 2.0)
 SHARP, SOFT = 128, 64
-# Rays along a side of a tile's grid, at most: neighbours then land a texel apart for most light.
-_MOST_RAYS = 224
-# Places in the stop are stored as (s + 1.5) / 3, to be positive.
-STOP_OFFSET, STOP_SCALE = 1.5, 3.0
 AZIMUTHS = 48
 # Texels of a tile that are taken together.
 _STEP = 2
@@ -68,6 +66,8 @@ def reach(blur):
 class PupilBeams:
     """Beams of a lens at an f-number over field and vergence.
 
+    Rays are lines behind the lens: the same beams serve all places of the sensor.
+
     Parameters
     ----------
     tables : PupilTables
@@ -92,45 +92,92 @@ class PupilBeams:
         turn = np.linspace(0.0, np.pi, _VERGENCES)
         self.sensor = tables.sensor
         self._nodes = largest_vergence * 0.5 * (1.0 - np.cos(turn))
-        self._beams = []
+        self._image, self._rest = [], []
         for tangent in self.tangents:
-            ends = self._nodes[[0, _VERGENCES // 2, -1]]
-            boxes = [_box(_traced(tables, pupil, f_number, tangent, v)) for v in ends]
+            points = [_point(pupil, tangent, vergence) for vergence in self._nodes]
+            ends = [points[k] for k in (0, _VERGENCES // 2, -1)]
+            sides = np.array([_box(tables, point, f_number) for point in ends]).T
             # One grid for all: a ray of the grid is then a smooth function of the vergence.
-            sides = np.array(boxes).T
             box = (sides[0].min(), sides[1].max(), sides[2].min(), sides[3].max())
-            self._beams.append(
-                [_traced(tables, pupil, f_number, tangent, v, box) for v in self._nodes]
+            beams = [_traced(tables, point, f_number, box) for point in points]
+            scale = beams[0].stop_scale
+            self._image.append([np.concatenate([b.image, b.slope], axis=-1) for b in beams])
+            self._rest.append(
+                [
+                    np.concatenate([b.stop / scale, b.weight[..., None], b.rims], axis=-1)
+                    for b in beams
+                ]
             )
+        self._image = np.array(self._image)
+        self._rest = np.array(self._rest, np.float32)
 
-    def at(self, field, vergence):
-        """Return the beam of a field's number and a vergence."""
-        weights, _ = lagrange_weights(self._nodes, vergence, len(self._nodes))
-        beams = self._beams[field]
-        mixed = {
-            name: sum(w * getattr(b, name) for w, b in zip(weights, beams, strict=True))
-            for name in ("image", "slope", "stop", "rims", "weight", "transmission", "pupil")
-        }
-        first = beams[0]
-        return PupilBeam(
-            **mixed,
-            chief=first.chief,
-            angle=first.angle,
-            distance=first.distance,
-            stop_scale=first.stop_scale,
-        )
+    def grids(self, field, vergences, shift):
+        """Return the rays of a field's beams on a fine grid.
+
+        Parameters
+        ----------
+        field : int
+        vergences : sequence of float
+        shift : float
+            Sensor's distance behind the sensor plane of the tables, mm.
+
+        Returns
+        -------
+        grids : list of HalfGrid
+            y is relative to `centers`.
+        centers : ndarray of shape (V,)
+            Where the rays through the middle of the stop land: the points' pinhole pictures, mm
+            from an origin that is the same for all.
+        """
+        count = len(self._nodes)
+        mix = np.array([lagrange_weights(self._nodes, v, count)[0] for v in vergences])
+        image = self._image[field]
+        landing = image[..., :2] + image[..., 2:] * shift
+        side = landing.shape[1]
+        # The meridional column of rays.
+        heights = mix @ landing[:, :, side // 2, 1]
+        stops = mix @ self._rest[field][:, :, side // 2, 1].astype(float)
+        centers = np.array([_at_zero(*pair) for pair in zip(stops, heights, strict=True)])
+        # 32 bits are enough for what is near the origin.
+        landing[..., 1] -= centers.mean()
+        coarse = np.concatenate([landing.astype(np.float32), self._rest[field]], axis=-1)
+        rows = _refining(side)
+        fine = np.tensordot(rows[RAYS // 2 :], coarse, axes=(1, 2))
+        fine = np.tensordot(rows, fine, axes=(1, 2))
+        # rows, columns, nodes, channels
+        fine = np.ascontiguousarray(fine.transpose(2, 3, 0, 1))
+        channels, shape = fine.shape[1], fine.shape[2:]
+        mixed = mix.astype(np.float32) @ fine.reshape(count, -1)
+        grids = []
+        for part in mixed.reshape(-1, channels, *shape):
+            x, y, stop_x, stop_y, weight, *rims = part
+            grids.append(HalfGrid(x, y, stop_x, stop_y, tuple(rims), np.maximum(weight, 0.0)))
+        return grids, centers - centers.mean()
 
 
-def _traced(tables, pupil, f_number, tangent, vergence, box=None):
+@cache
+def _refining(count):
+    """Matrix of a spline from a grid's rays to the middles of `RAYS` cells."""
+    at = (np.arange(RAYS) + 0.5) / RAYS * (count - 1)
+    return spline_matrix(np.arange(count), at).astype(np.float32)
+
+
+def _point(pupil, tangent, vergence):
+    """Height and depth before surface 1 of a point, mm; its tangent alone at infinity."""
     if vergence * 1e7 < 1.0:
-        return beam_from_infinity(tables, float(np.arctan(tangent)), f_number, box=box)
+        return (float(np.arctan(tangent)),)
     distance = 1.0 / vergence
-    return beam_from_point(tables, tangent * distance, distance - pupil, f_number, box=box)
+    return (tangent * distance, distance - pupil)
 
 
-def _box(beam):
-    (x0, v0), (x1, v1) = beam.pupil[0, 0], beam.pupil[-1, -1]
-    return float(x0), float(x1), float(v0), float(v1)
+def _box(tables, point, f_number):
+    find = box_from_infinity if len(point) == 1 else box_from_point
+    return find(tables, *point, f_number)
+
+
+def _traced(tables, point, f_number, box):
+    trace = beam_from_infinity if len(point) == 1 else beam_from_point
+    return trace(tables, *point, f_number, box=box)
 
 
 def pupil_tiles(beams, shift, blur, soft, w_range):
@@ -155,17 +202,23 @@ def pupil_tiles(beams, shift, blur, soft, w_range):
     places = np.zeros((FIELDS, DEPTHS, 4), np.float32)
     soft_tiles = np.zeros((len(BLURS) - 1, FIELDS, DEPTHS, SOFT, SOFT, 4), np.float32)
     sharp_tiles = np.zeros((FIELDS, DEPTHS, SHARP, SHARP, 4), np.float32)
-    for j, w in enumerate(np.linspace(*w_range, DEPTHS)):
-        c = soft * w / (1.0 - abs(w))
-        vergence = max((c - blur[0]) / blur[1], 0.0)
-        for i in range(FIELDS):
-            tile, place = _tile(beams.at(i, vergence), shift)
-            places[i, j, :3] = np.array(place) / (abs(c) + soft)
-            sharp_tiles[i, j, ..., :3] = tile * _to_unit(tile, 0)
-            for layer, width in enumerate(BLURS[1:], 1):
-                matrix = _blur_matrix(width)
-                blurred = np.moveaxis(matrix @ np.moveaxis(tile, -1, 0) @ matrix.T, 0, -1)
-                soft_tiles[layer - 1, i, j, ..., :3] = blurred * _to_unit(blurred, layer)
+    depths = np.linspace(*w_range, DEPTHS)
+    signed = soft * depths / (1.0 - np.abs(depths))
+    vergences = np.maximum((signed - blur[0]) / blur[1], 0.0)
+    sizes = np.abs(signed) + soft
+    spans = [reach(width) for width in BLURS]
+    matrices = [
+        blur_matrix(width, SHARP, spans[0], SOFT, span)
+        for width, span in zip(BLURS[1:], spans[1:], strict=True)
+    ]
+    for i in range(FIELDS):
+        grids, centers = beams.grids(i, vergences, shift)
+        for j, grid in enumerate(grids):
+            tile, (middle, half_x, half_y) = draw_tile(grid, SHARP, spans[0])
+            places[i, j, :3] = np.array([middle - centers[j], half_x, half_y]) / sizes[j]
+            _store(sharp_tiles[i, j], tile, 0)
+            for layer, matrix in enumerate(matrices, 1):
+                _store(soft_tiles[layer - 1, i, j], matrix @ tile @ matrix.T, layer)
     return PupilTiles(
         sharp_tiles.reshape(-1, SHARP, SHARP, 4),
         soft_tiles.reshape(-1, SOFT, SOFT, 4),
@@ -174,64 +227,18 @@ def pupil_tiles(beams, shift, blur, soft, w_range):
     )
 
 
-def _tile(beam, shift):
-    """Light and stop places of a beam, and where the pattern stands, mm."""
-    landing = beam.landing(shift)
-    _, half_x, half_y = _bounds(beam, landing)
-    count = rays_for(beam, shift, 2.0 * max(half_x, half_y) / SHARP)
-    fine = beam.refined(min(count, _MOST_RAYS))
-    # On the fine grid: rims of neighbouring tiles then lie at the same place.
-    middle, half_x, half_y = _bounds(fine, fine.landing(shift))
-    light = open_weights(fine)
-    # The camera sees the stop turned by half a turn against the sensor's picture.
-    stop = -fine.stop / fine.stop_scale
-    at = (fine.landing(shift) - (0.0, middle)) / (half_x, half_y) / reach(BLURS[0])
-    at = (at + 1.0) * (0.5 * SHARP)
-    share = np.clip((stop + STOP_OFFSET) / STOP_SCALE, 0.0, 1.0)
-    layers = [light, light * share[..., 0], light * share[..., 1]]
-    tile = np.stack([deposit(at, layer, SHARP) for layer in layers], axis=-1)
-    return tile, (middle - _center(beam, landing), half_x, half_y)
-
-
-def _bounds(beam, landing):
-    """Middle of a pattern along y and half its width in x and y, up to where rims cut it."""
-    stop = np.hypot(beam.stop[..., 0], beam.stop[..., 1]) / beam.stop_scale
-    clear = np.minimum(beam.clearance, 1.0 - stop)
-    inside = clear > 0.0
-    if not inside.any():
-        inside = clear == clear.max()
-    found = [landing[inside]]
-    for axis in (0, 1):
-        rays, signed = np.moveaxis(landing, axis, 0), np.moveaxis(clear, axis, 0)
-        cut = (signed[1:] > 0.0) != (signed[:-1] > 0.0)
-        low, high = signed[:-1][cut], signed[1:][cut]
-        share = (low / (low - high))[:, None]
-        found.append(rays[:-1][cut] * (1.0 - share) + rays[1:][cut] * share)
-    x, y = np.concatenate(found).T
-    half_x, half_y = np.abs(x).max(), 0.5 * (y.max() - y.min())
-    return 0.5 * (y.min() + y.max()), max(half_x, 1e-6), max(half_y, 1e-6)
-
-
-def _center(beam, landing):
-    """Height where the ray through the middle of the stop lands: the point's pinhole picture."""
-    column = beam.stop.shape[1] // 2
-    stop, height = beam.stop[:, column, 1], landing[:, column, 1]
+def _at_zero(stop, height):
+    """Height where the ray through the middle of the stop lands."""
     near = np.argsort(np.abs(stop))[:9]
     # A vignetted pupil may end before the middle of the stop.
     return float(np.polyval(np.polyfit(stop[near], height[near], 2), 0.0))
 
 
-def _to_unit(tile, layer):
-    """Factor that makes the light of a tile 1 over its own units."""
-    texel = 2.0 * reach(BLURS[layer]) / len(tile)
-    return 1.0 / max(tile[..., 0].sum() * texel**2, 1e-30)
-
-
-def _blur_matrix(width):
-    """Matrix that blurs the texels of a sharp tile and samples them at those of a soft one."""
-    source = (np.arange(SHARP) + 0.5) * (2.0 * reach(BLURS[0]) / SHARP) - reach(BLURS[0])
-    at = (np.arange(SOFT) + 0.5) * (2.0 * reach(width) / SOFT) - reach(width)
-    return np.exp(-0.5 * ((at[:, None] - source) * np.sqrt(12.0) / width) ** 2)
+def _store(place, tile, layer):
+    """Store a tile, (3, size, size), with its light 1 over its own units."""
+    texel = 2.0 * reach(BLURS[layer]) / len(place)
+    light = float(tile[0].sum(dtype=np.float64)) * texel**2
+    np.multiply(np.moveaxis(tile, 0, -1), np.float32(1.0 / max(light, 1e-30)), out=place[..., :3])
 
 
 def light_left(tiles, opening):

@@ -17,7 +17,13 @@ from ..bokeh import splat_pupil, splat_rims
 from ..bokeh.iris_mask import BladedIris, texel_centres
 from ..bokeh.opening import LAYERS, LEAST_BLUR, layers_of_mask
 from ..bokeh.pupil_tables import build_pupil_tables
-from ..bokeh.splat_profile import distance_from_h, profile_layers, rows_of_edge, rows_of_lens
+from ..bokeh.splat_profile import (
+    distance_from_h,
+    light_on_radii,
+    profile_layers,
+    rows_of_edge,
+    rows_of_lens,
+)
 from ..device.textures import texture_2d, texture_array
 from ..device.uniforms import uniform_buffer
 from ..errors import AplanatError
@@ -34,6 +40,8 @@ _RINGING_MASK = 512
 _REFERENCE_M = 587.5618e-9
 # Focus distance over that of the nearest tile: still nearer patterns only grow.
 _NEAREST = 4.0
+# Steps in which beams reach nearer, per doubling: the fewer, the coarser are beams in between.
+_SHARED = 4
 _MM = 1000.0
 # Colours part by no more, px.
 _FARTHEST = 1e9
@@ -88,7 +96,10 @@ def describe_look(plan):
     bokeh = plan.bokeh
     settings = bokeh.settings
     appearance = _appearance(settings.appearance, bokeh.iris)
-    arrays = {"opening_tx": _opening(replace(appearance, rims=(), edge=0.0), _fresnel_scale(plan))}
+    # Without ringing the opening is the same at every focus.
+    ringing = appearance.diffraction is not None
+    fresnel = _fresnel_scale(plan) if ringing else 0.0
+    arrays = {"opening_tx": _opening(replace(appearance, rims=(), edge=0.0), fresnel)}
     lens = bokeh.real_lens and _Lens(bokeh.real_lens)
     tangent = _largest_tangent(plan)
     params = {
@@ -97,7 +108,9 @@ def describe_look(plan):
         "field": (1.0 / tangent, 0.0, 1.0, 0.0),
         "rims": np.zeros((MOST_RIMS, 4)),
     }
-    if lens is not None and settings.vignetting == "LENS" and not plan.orthographic:
+    # A draft has the lens' pattern of the axis, which is there at once.
+    tiled = settings.vignetting == "LENS" and not plan.orthographic and not bokeh.draft
+    if lens is not None and tiled:
         _add_tiles(plan, appearance, tangent, arrays, params)
         return ("TILES",), arrays, params
     variants = ()
@@ -284,7 +297,12 @@ def _lens_rows(lens, focus_distance):
 @lru_cache(maxsize=4)
 def _profile(rows_and_opening, strength):
     rows, opening = rows_and_opening.parts
-    return profile_layers(rows, opening, strength)
+    return profile_layers(rows, opening, strength, _light_on_radii(_Arrays(opening)))
+
+
+@lru_cache(maxsize=4)
+def _light_on_radii(opening):
+    return light_on_radii(*opening.parts)
 
 
 @lru_cache(maxsize=4)
@@ -313,7 +331,12 @@ def _tiles(lens, focus_distance, tangent):
     state = profile.focused(distance)
     focus = distance if lens.settings.prescription.focus else np.inf
     nearest = min(float(state.ray_map.vergences[-1]), _NEAREST / (focus_distance * _MM))
-    beams = _beams(lens, focus, float(state.ray_map.pupil), tangent, nearest)
+    reach = nearest
+    if np.isinf(focus):
+        # The same beams serve every focus; those that reach a little nearer, several in a row.
+        reach = 2.0 ** (np.ceil(np.log2(nearest) * _SHARED) / _SHARED)
+        reach = min(float(state.ray_map.vergences[-1]), float(reach))
+    beams = _beams(lens, focus, float(state.ray_map.pupil), tangent, reach)
     rows = _lens_rows(lens, focus_distance)
     plane = state.image_plane(distance)
     # The circle of confusion of the lens, c = k0 + k1 V, is 0 at the focus.

@@ -4,9 +4,22 @@ import numpy as np
 import pytest
 
 from addon.bokeh.appearance import Appearance
+from addon.bokeh.deposit import deposit, open_weights
 from addon.bokeh.iris_mask import BladedIris
-from addon.bokeh.splat_pupil import AZIMUTHS, BLURS, DEPTHS, FIELDS, SHARP, SOFT, reach
+from addon.bokeh.pupil_beam import beam_from_point
+from addon.bokeh.splat_pupil import (
+    AZIMUTHS,
+    BLURS,
+    DEPTHS,
+    FIELDS,
+    SHARP,
+    SOFT,
+    PupilBeams,
+    reach,
+)
+from addon.bokeh.tile_drawing import draw_tile
 from addon.engine.bokeh_look import describe_look
+from addon.scene.lens_profiles import lens_pupil
 from tests.splat_pictures import library_lens, plan_of
 
 LENS = "double-gauss-50mm-f2"
@@ -40,3 +53,38 @@ def test_a_six_sided_opening_leaves_the_same_of_an_axial_beam_every_sixth_turn(a
     turned = np.roll(left, AZIMUTHS // 6, axis=0)
     # Texels of tile and opening are squares.
     assert np.abs(left - turned).max() < 0.01 * left.max()
+
+
+def smoothed(picture):
+    """Means over 3 x 3 texels, of unit sum."""
+    shifts = [np.roll(picture, (i, j), axis=(0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    return np.mean(shifts, axis=0) / picture.sum()
+
+
+@pytest.mark.parametrize("field", [0, 5, 8])
+@pytest.mark.parametrize("distance_mm", [600.0, 1900.0, 9000.0])
+def test_a_tile_is_the_pattern_of_its_point(aplanat_bpy, field, distance_mm):
+    lens = library_lens(LENS)
+    tables = lens_pupil(lens)
+    # The image of what is 2 m away is about here.
+    pupil, shift = 20.0, 1.28
+    beams = PupilBeams(tables, pupil, lens.f_number, 0.3, 1.0 / 500.0)
+    (grid,), _ = beams.grids(field, [1.0 / distance_mm], shift)
+    tile, (middle, half_x, half_y) = draw_tile(grid, SHARP, reach(BLURS[0]))
+    height = beams.tangents[field] * distance_mm
+    fine = beam_from_point(tables, height, distance_mm - pupil, lens.f_number).refined(500)
+    light, landing = open_weights(fine), fine.landing(shift)
+    low, high = (landing[..., 1][light > 0.0].min(), landing[..., 1][light > 0.0].max())
+    assert high - low == pytest.approx(2.0 * half_y, rel=0.02)
+    at = (landing - (0.0, 0.5 * (low + high))) / (half_x, half_y) / reach(BLURS[0])
+    wanted = smoothed(deposit((at + 1.0) * 0.5 * SHARP, light, SHARP))
+    # Half of a texel at the rim is a hundredth of the light; caustics are sharper than that.
+    assert np.abs(smoothed(tile[0]) - wanted).sum() < 0.06
+
+
+def test_a_draft_has_the_pattern_of_the_axis():
+    plan = plan_of(lens=library_lens(LENS), vignetting="LENS")
+    plan.bokeh.draft = True
+    variants, arrays, _ = describe_look(plan)
+    assert variants == ("PROFILE",)
+    assert "sharp_tx" not in arrays
