@@ -28,8 +28,9 @@ FIELDS, DEPTHS = 9, 25
 BLURS = (1.0 / 48.0, 1.0 / 20.0, 1.0 / 7.0, 1.0 / 2.0)
 SHARP, SOFT = 128, 64
 AZIMUTHS = 48
-# Texels of a tile that are taken together.
-_STEP = 2
+# Texels of a sharp tile that are taken together, and places along the stop, for what an opening
+# leaves.
+_STEP, _PLACES = 2, 128
 _VERGENCES = 7
 _LEAST_LIGHT = 1e-3
 
@@ -244,6 +245,9 @@ def _store(place, tile, layer):
 def light_left(tiles, opening):
     """Share of the tiles' light that an opening leaves at each azimuth.
 
+    A splat reads a layer of the opening for blurs from that of the layer before to that of the
+    layer after; the tiles are blurred as it is.
+
     Parameters
     ----------
     tiles : PupilTiles
@@ -252,36 +256,74 @@ def light_left(tiles, opening):
 
     Returns
     -------
-    ndarray of float32, shape (layers * FIELDS, AZIMUTHS + 1, DEPTHS, 4)
-        Red, green, blue: means of the opening's density over the light.
+    ndarray of float32, shape (layers * 3 * FIELDS, AZIMUTHS + 1, DEPTHS, 4)
+        Layer by layer for three blurs: that of the layer before, its own and that of the layer
+        after. Red, green, blue: means of the opening's density over the light.
     """
-    count, size = opening.shape[:2]
-    result = np.empty((count, FIELDS, AZIMUTHS + 1, DEPTHS, 4), np.float32)
-    turn = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS - 0.5 * np.pi
-    turns = np.stack([np.cos(turn), np.sin(turn)])[..., None]
-    blurs = [_as_blurred(tiles, LEAST_BLUR * 2.0**layer) for layer in range(count)]
-    for layer, (light, blurred) in enumerate(zip(opening, blurs, strict=True)):
-        for i in range(FIELDS):
-            for j in range(DEPTHS):
-                tile = blurred[i, j][blurred[i, j, :, 0] > 1e-6 * blurred[i, j, :, 0].max()]
-                stop = tile[:, 1:3] / tile[:, :1] * STOP_SCALE - STOP_OFFSET
-                stop /= np.maximum(np.hypot(stop[:, 0], stop[:, 1]), 1.0)[:, None]
-                x = stop[:, 0] * turns[0] - stop[:, 1] * turns[1]
-                y = stop[:, 0] * turns[1] + stop[:, 1] * turns[0]
-                weight = tile[:, 0] / tile[:, 0].sum()
-                at = ((np.stack([y, x]) / extent(layer) + 1.0) * (0.5 * size)).astype(int)
-                passed = light[np.clip(at[0], 0, size - 1), np.clip(at[1], 0, size - 1), :3]
-                result[layer, i, :AZIMUTHS, j, :3] = np.einsum("n,anc->ac", weight, passed)
-    result[:, :, AZIMUTHS] = result[:, :, 0]
+    count = len(opening)
+    through = _light_in_stop(tiles)
+    channels = 3 if np.ptp(opening[..., :3], axis=-1).any() else 1
+    result = np.empty((count, 3, FIELDS, AZIMUTHS + 1, DEPTHS, 4), np.float32)
+    for layer, light in enumerate(opening):
+        turned = _turned(light[..., :channels], extent(layer)).reshape(-1, _PLACES**2)
+        passed = (through @ turned.T).reshape(len(BLURS), FIELDS, DEPTHS, -1)
+        for step in range(3):
+            mixed = np.tensordot(_tile_shares(LEAST_BLUR * 2.0 ** (layer + step - 1)), passed, 1)
+            mixed = mixed.reshape(FIELDS, DEPTHS, AZIMUTHS, channels)
+            result[layer, step, :, :AZIMUTHS, :, :3] = np.moveaxis(mixed, 2, 1)
+    result[..., AZIMUTHS, :, :] = result[..., 0, :, :]
     result[..., 3] = 0.0
     return np.maximum(result, _LEAST_LIGHT).reshape(-1, AZIMUTHS + 1, DEPTHS, 4)
 
 
-def _as_blurred(tiles, blur):
-    """Texels of the tiles that a shader reads for a blur, shape (FIELDS, DEPTHS, texels, 4)."""
-    nearest = int(np.argmin(np.abs(np.log2(np.array(BLURS) / blur))))
-    if nearest > 0:
-        soft = tiles.soft.reshape(-1, FIELDS, DEPTHS, SOFT * SOFT, 4)
-        return soft[nearest - 1]
-    sharp = tiles.sharp.reshape(FIELDS, DEPTHS, SHARP // _STEP, _STEP, SHARP // _STEP, _STEP, 4)
-    return sharp.sum(axis=(3, 5)).reshape(FIELDS, DEPTHS, -1, 4)
+def _light_in_stop(tiles):
+    """Light of the tiles over places in the stop, shape (blurs * FIELDS * DEPTHS, places)."""
+    sharp = tiles.sharp.reshape(-1, SHARP // _STEP, _STEP, SHARP // _STEP, _STEP, 4)
+    every = [sharp.sum(axis=(2, 4)), *tiles.soft.reshape(len(BLURS) - 1, -1, SOFT, SOFT, 4)]
+    result = np.zeros((len(BLURS), FIELDS * DEPTHS, _PLACES**2), np.float32)
+    for blurred, rows in zip(every, result, strict=True):
+        for tile, row in zip(blurred.reshape(FIELDS * DEPTHS, -1, 4), rows, strict=True):
+            lit = tile[:, 0] > 1e-6 * tile[:, 0].max()
+            light = tile[lit, 0]
+            stop = tile[lit, 1:3] / light[:, None] * STOP_SCALE - STOP_OFFSET
+            stop /= np.maximum(np.hypot(stop[:, 0], stop[:, 1]), 1.0)[:, None]
+            at = (stop + 1.0) * (0.5 * (_PLACES - 1))
+            low = np.minimum(at.astype(np.int64), _PLACES - 2)
+            part = at - low
+            first = low[:, 1] * _PLACES + low[:, 0]
+            for j, across in enumerate((1.0 - part[:, 1], part[:, 1])):
+                for i, along in enumerate((1.0 - part[:, 0], part[:, 0])):
+                    place = first + (j * _PLACES + i)
+                    row += np.bincount(place, light * across * along, minlength=_PLACES**2)
+            row /= max(float(light.sum(dtype=np.float64)), 1e-30)
+    return result.reshape(-1, _PLACES**2)
+
+
+def _turned(light, reach):
+    """Turn an opening's layer: shape (AZIMUTHS, channels, places), float32."""
+    size = len(light)
+    axis = np.linspace(-1.0, 1.0, _PLACES)
+    x, y = (part.ravel() for part in np.meshgrid(axis, axis))
+    turn = 2.0 * np.pi * np.arange(AZIMUTHS)[:, None] / AZIMUTHS - 0.5 * np.pi
+    cos, sin = np.cos(turn), np.sin(turn)
+    places = np.stack([x * cos - y * sin, x * sin + y * cos])
+    # Corners of the grid are outside of the stop: no light comes through there.
+    at = np.clip((places / reach + 1.0) * (0.5 * size) - 0.5, 0.0, size - 1.001)
+    low = at.astype(np.int64)
+    (along, across), (column, row) = (at - low)[..., None], low
+    result = np.zeros((AZIMUTHS, _PLACES**2, light.shape[-1]))
+    for j, up in enumerate((1.0 - across, across)):
+        for i, right in enumerate((1.0 - along, along)):
+            result += light[row + j, column + i] * (up * right)
+    return np.moveaxis(result, 1, 2).astype(np.float32)
+
+
+def _tile_shares(blur):
+    """Shares of the tiles' blurs in what a shader mixes for a blur."""
+    squares = np.square(BLURS)
+    wanted = np.clip(blur**2, squares[0], squares[-1])
+    low = min(int(np.searchsorted(squares, wanted, side="right")) - 1, len(BLURS) - 2)
+    shares = np.zeros(len(BLURS), np.float32)
+    shares[low + 1] = (wanted - squares[low]) / (squares[low + 1] - squares[low])
+    shares[low] = 1.0 - shares[low + 1]
+    return shares

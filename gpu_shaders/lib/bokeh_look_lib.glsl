@@ -112,14 +112,14 @@ vec3 tile_light(sampler2DArray sharp_tx, sampler2DArray soft_tx, vec2 place, flo
   return vec3(light.x, stop);
 }
 
-// Light that a layer of the opening leaves of tiles; array over layers and fields, azimuth by depth.
-vec3 tile_left(sampler2DArray tx, float layer, vec2 chief, vec2 at)
+// Light that the opening leaves of tiles; array over tables and fields, azimuth by depth.
+vec3 tile_left(sampler2DArray tx, float table, vec2 chief, vec2 at)
 {
   float turn = (dot(chief, chief) > 0.0) ? atan(chief.y, chief.x) / 6.28318531 : 0.25;
   vec2 size = vec2(textureSize(tx, 0).xy);
   vec2 uv = (vec2(at.y, (turn - floor(turn)) * (size.y - 1.0)) + 0.5) / size;
   float low = clamp(floor(at.x), 0.0, float(TILE_FIELDS - 2));
-  float first = layer * float(TILE_FIELDS) + low;
+  float first = table * float(TILE_FIELDS) + low;
   return mix(texture(tx, vec3(uv, first)).rgb, texture(tx, vec3(uv, first + 1.0)).rgb, at.x - low);
 }
 

@@ -126,9 +126,15 @@ void main()
   v_upright = (coc < 0.0) ? -1.0 : 1.0;
   v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (pattern.y * pattern.z));
   if (splat_buf.field.w > 0.5) {
-    float layer = opening_layers(float(textureSize(opening_tx, 0).z), v_blur).x;
-    v_left_lower = tile_left(left_tx, layer, v_chief, v_tile_at);
-    v_left_upper = tile_left(left_tx, layer + 1.0, v_chief, v_tile_at);
+    vec2 layers = opening_layers(float(textureSize(opening_tx, 0).z), v_blur);
+    // Three tables a layer of the opening: for the blur of the one before, its own and the next.
+    float table = 3.0 * layers.x + 1.0;
+    v_left_lower = mix(tile_left(left_tx, table, v_chief, v_tile_at),
+                       tile_left(left_tx, table + 1.0, v_chief, v_tile_at),
+                       layers.y);
+    v_left_upper = mix(tile_left(left_tx, table + 2.0, v_chief, v_tile_at),
+                       tile_left(left_tx, table + 3.0, v_chief, v_tile_at),
+                       layers.y);
   }
   // The widest blur of the tiles, or the pattern with its own.
   vec2 reach = 1.0 + vec2(min(2.0 * v_blur + 0.07, 0.5)) + 0.5 / pattern.yz;

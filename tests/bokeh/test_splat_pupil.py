@@ -47,7 +47,8 @@ def test_every_tile_holds_unit_light(arrays):
 
 
 def test_a_six_sided_opening_leaves_the_same_of_an_axial_beam_every_sixth_turn(arrays):
-    left = arrays["left_tx"].reshape(-1, FIELDS, AZIMUTHS + 1, DEPTHS, 4)[1, 0, :AZIMUTHS, :, 0]
+    left = arrays["left_tx"].reshape(-1, 3, FIELDS, AZIMUTHS + 1, DEPTHS, 4)
+    left = left[1, 1, 0, :AZIMUTHS, :, 0]
     # Its area over that of the disc, or its density times the share of the light inside it.
     assert left == pytest.approx(np.full_like(left, 1.0 / np.pi), rel=0.25)
     turned = np.roll(left, AZIMUTHS // 6, axis=0)

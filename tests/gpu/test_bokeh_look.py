@@ -90,9 +90,9 @@ def test_the_pupil_of_a_lens_keeps_the_light(chief, blades):
     for depth in (1.0, 1e6):
         coc = plan.coc_scale * (1.0 / plan.focus_distance - 1.0 / depth)
         picture = mean_energy(plan, coc, chief=chief)
-        # What blades leave of a tile is tabulated for single blurs of both; between them light is
-        # won or lost, measured up to 1.1 %.
-        assert picture == pytest.approx([1.0] * 3, abs=1.5e-2 if blades else 3e-3)
+        # What blades leave is tabulated for single tiles; between fields, the place in the stop is
+        # that of the mixture. Measured up to 0.8 %.
+        assert picture == pytest.approx([1.0] * 3, abs=1e-2 if blades else 3e-3)
 
 
 def test_a_cat_eye_is_cut_along_the_azimuth_as_the_sprite_is():
