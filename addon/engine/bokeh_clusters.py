@@ -6,11 +6,13 @@ needs no setting by scene or resolution.
 
 from ..passes.clusters import Similarity
 
-# CLUSTERED: cells from half a radius of the disc to twice its diameter, as long as the disc is
-# blurred by little more than its radius.
-_CELL = 0.25
-_EXTENT = 1.6
-_HARM = 1.0
+# CLUSTERED: cells from half a radius of the disc to twice its diameter and more, as long as it is
+# blurred by no more than its diameter. The harm of one merge, at most, and that of as many as there
+# are highlights: what each changes adds up.
+_CELL = 0.3
+_EXTENT = 2.0
+_HARM = 1.5
+_HARM_OF_ALL = 7500.0
 # Rounds of pairwise merging.
 _PAIRS = 3
 
@@ -48,7 +50,7 @@ def similarity_of(settings, count):
             settings.cluster_levels,
             _CELL * similar,
             _EXTENT * similar,
-            _HARM * similar**2,
+            min(_HARM, _HARM_OF_ALL / max(count, 1)) * similar**2,
             pairs,
         )
     if count <= POINT_BUDGET:

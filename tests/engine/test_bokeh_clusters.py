@@ -24,3 +24,11 @@ def test_clusters_follow_the_settings():
     assert two.pairs > 0
     assert two.cell == 2.0 * one.cell
     assert two.harm == 4.0 * one.harm
+
+
+def test_the_more_highlights_there_are_the_less_harm_a_merge_may_do():
+    few, some, many = (
+        similarity_of(BokehSettings(model="CLUSTERED"), count).harm for count in (10, 10000, 40000)
+    )
+    assert few > some > many
+    assert many == 0.25 * some
