@@ -25,7 +25,7 @@ from .tile_drawing import RAYS, STOP_OFFSET, STOP_SCALE, HalfGrid, blur_matrix, 
 FIELDS, DEPTHS = 9, 25
 # Blur of the tiles in units of half their width, as the side of a box of the same variance; the
 # first one is what texels of the sharp tiles do. Must agree with lib/bokeh_look_lib.glsl.
-BLURS = (1.0 / 48.0, 1.0 / 20.0, 1.0 / 7.0, 1.0 / 2.0)
+BLURS = (1.0 / 48.0, 1.0 / 20.0, 1.0 / 9.0, 1.0 / 4.0, 1.0 / 2.0)
 SHARP, SOFT = 128, 64
 AZIMUTHS = 48
 # Texels of a sharp tile that are taken together, and places along the stop, for what an opening
@@ -44,7 +44,7 @@ class PupilTiles:
     sharp : ndarray of float32, shape (FIELDS * DEPTHS, SHARP, SHARP, 4)
         Density of light in a square from -e to e, e = 1 + the blur; integral 1 over the tile's
         own units. Then density times the place in the stop, x and y.
-    soft : ndarray of float32, shape (3 * FIELDS * DEPTHS, SOFT, SOFT, 4)
+    soft : ndarray of float32, shape ((len(BLURS) - 1) * FIELDS * DEPTHS, SOFT, SOFT, 4)
         The same with more blur, blur by blur.
     places : ndarray of float32, shape (FIELDS, DEPTHS, 4)
         Outward shift of the pattern's middle and half its width across and along the azimuth,
@@ -154,6 +154,15 @@ class PupilBeams:
             x, y, stop_x, stop_y, weight, *rims = part
             grids.append(HalfGrid(x, y, stop_x, stop_y, tuple(rims), np.maximum(weight, 0.0)))
         return grids, centers - centers.mean()
+
+    def width_in_focus(self, shift, vergence):
+        """Return the largest half width of a focused point's patterns over the fields, mm."""
+        widths = []
+        for field in range(FIELDS):
+            grids, _ = self.grids(field, np.array([vergence]), shift)
+            _, (_, *halves) = draw_tile(grids[0], SHARP, reach(BLURS[0]))
+            widths += halves
+        return float(max(widths))
 
 
 @cache

@@ -337,17 +337,17 @@ def _tiles(lens, focus_distance, tangent):
         reach = 2.0 ** (np.ceil(np.log2(nearest) * _SHARED) / _SHARED)
         reach = min(float(state.ray_map.vergences[-1]), float(reach))
     beams = _beams(lens, focus, float(state.ray_map.pupil), tangent, reach)
-    rows = _lens_rows(lens, focus_distance)
     plane = state.image_plane(distance)
     # The circle of confusion of the lens, c = k0 + k1 V, is 0 at the focus.
     linear = state.ray_map.reference[0] + (plane - state.ray_map.plane) * state.ray_map.reference[1]
     opening = profile.stop_fraction(lens.settings.f_number)
     k0, k1 = (-opening * state.ray_map.pupil_radius * linear).tolist()
-    soft = rows.soft * abs(k0)
+    # Far from the axis patterns change where they are as small as that field's aberrations.
+    soft = beams.width_in_focus(plane - beams.sensor, -k0 / k1)
     ends = [k0 + k1 * vergence for vergence in (0.0, nearest)]
     w_range = tuple(sorted(c / (abs(c) + soft) for c in ends))
     tiles = splat_pupil.pupil_tiles(beams, plane - beams.sensor, (k0, k1), soft, w_range)
-    return tiles, w_range, rows.soft
+    return tiles, w_range, soft / abs(k0)
 
 
 @lru_cache(maxsize=2)

@@ -6,7 +6,8 @@
 #include "lib/opening_lib.glsl"
 
 // Blur of the tiles in units of half their width, and how they are counted: splat_pupil.py.
-#define TILE_BLUR vec4(1.0 / 48.0, 1.0 / 20.0, 1.0 / 7.0, 1.0 / 2.0)
+#define TILE_BLUR_SHARP (1.0 / 48.0)
+#define TILE_BLUR_SOFT vec4(1.0 / 20.0, 1.0 / 9.0, 1.0 / 4.0, 1.0 / 2.0)
 #define TILE_FIELDS 9
 #define TILE_DEPTHS 25
 #define STOP_OFFSET 1.5
@@ -98,10 +99,13 @@ vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at)
 vec3 tile_light(sampler2DArray sharp_tx, sampler2DArray soft_tx, vec2 place, float blur, vec2 at)
 {
   float count = float(TILE_FIELDS * TILE_DEPTHS);
-  float wide = clamp(blur, TILE_BLUR.x, TILE_BLUR.w);
-  int layer = (wide < TILE_BLUR.y) ? 0 : (wide < TILE_BLUR.z) ? 1 : 2;
-  float low = TILE_BLUR[layer];
-  float high = TILE_BLUR[layer + 1];
+  float wide = clamp(blur, TILE_BLUR_SHARP, TILE_BLUR_SOFT.w);
+  int layer = (wide < TILE_BLUR_SOFT.x) ? 0 :
+              (wide < TILE_BLUR_SOFT.y) ? 1 :
+              (wide < TILE_BLUR_SOFT.z) ? 2 :
+                                          3;
+  float low = (layer == 0) ? TILE_BLUR_SHARP : TILE_BLUR_SOFT[layer - 1];
+  float high = TILE_BLUR_SOFT[layer];
   // Variances add up: the mixture has that of the blur.
   float share = (wide * wide - low * low) / (high * high - low * low);
   vec3 softer = tile_layer(soft_tx, place, high, float(layer) * count, at);
