@@ -34,7 +34,7 @@ _MAY_BE_NEGATIVE = {"--frames", "--field-deg", "--planes-mm", "--rho"}
 # Of `bench --bokeh`.
 BOKEH_MEASURES = (
     *("pictures", "truth", "models", "culling", "visibility", "time", "peers", "pan"),
-    *("scaling", "focus-pull"),
+    *("scaling", "focus-pull", "lens"),
 )
 
 _LATER = {

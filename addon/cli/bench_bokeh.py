@@ -16,6 +16,7 @@ Of built scenes:
 
 - ``scaling``: 1000, 10000 and 100000 small lamps.
 - ``focus-pull``: the focus moves past a half-hidden lamp and what hides it.
+- ``lens``: lamps through real lenses against Cycles tracing the same lenses (`bench_bokeh_lens`).
 """
 
 import math
@@ -28,6 +29,7 @@ from ..files.whole_file import check_writable, removed_on_signals
 from . import statistics
 from .bench_bokeh_charts import EDGE_DEPTH, LAMP_DEPTH, half_hidden, many_highlights
 from .bench_bokeh_frames import BokehScene
+from .bench_bokeh_lens import lenses
 from .bench_bokeh_lines import line
 from .bench_bokeh_pan import pan
 from .bench_curve import Curve, samples_to_reach
@@ -372,7 +374,7 @@ OF_SCENES = {
     "peers": _Study.peers,
     "pan": _Study.pan,
 }
-OF_CHARTS = {"scaling": _Study.scaling, "focus-pull": _Study.focus_pull}
+OF_CHARTS = {"scaling": _Study.scaling, "focus-pull": _Study.focus_pull, "lens": lenses}
 
 
 def _is_sum(frame):

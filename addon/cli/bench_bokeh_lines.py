@@ -117,6 +117,17 @@ def _focus_pull(run):
     return f"focus pull, SSIM against {run['samples']} samples: {told}"
 
 
+def _lens(run):
+    if "missing" in run:
+        return f"real lenses: {run['missing']}"
+    told = "; ".join(
+        f"{each['lens']} f/{each['f_number']:.3g} {each['least_psnr_db']:.1f} dB (noise of Cycles"
+        f" {each['least_noise_db']:.1f} dB)"
+        for each in run["lenses"]
+    )
+    return f"lamps through real lenses against Cycles, the least alike of {run['lamps']}: {told}"
+
+
 _LINES = {
     "pictures": _pictures,
     "truth": _truth,
@@ -128,4 +139,5 @@ _LINES = {
     "pan": _pan,
     "scaling": _scaling,
     "focus-pull": _focus_pull,
+    "lens": _lens,
 }
