@@ -37,9 +37,10 @@ __all__ = ("BokehVisibility", "SceneOccluders", "Visibility", "VisibilityCounts"
 # Pairs that are listed at once, and least room for them.
 _WINDOW = 1 << 20
 _LEAST_PAIRS = 1 << 18
-# More sources are left to the layers alone, which cost the less a source the smaller the masks are;
-# and texels of their atlas, and of that of drafts.
-_MOST_CONES = 1 << 15
+# More sources are left to the layers alone, which cost the less a source the smaller the masks are.
+_MOST_CONES = 1 << 17
+# Texels of the atlas where sources are many, and of that of drafts.
+_MANY = 1 << 15
 _ATLAS_OF_MANY = 1 << 23
 _DRAFT_ATLAS = 1 << 19
 
@@ -304,7 +305,7 @@ class _Search:
         """Return how many texels masks may take."""
         if self._plan.bokeh.draft:
             return _DRAFT_ATLAS
-        return LARGEST_ATLAS if self._count <= _MOST_CONES else _ATLAS_OF_MANY
+        return LARGEST_ATLAS if self._count <= _MANY else _ATLAS_OF_MANY
 
     def _format(self):
         # Products of several surfaces must not be rounded to 8 bits each.
