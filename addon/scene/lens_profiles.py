@@ -22,9 +22,7 @@ def lens_profile(lens):
     PrescriptionError
         If the lens forms no image.
     """
-    return profile_cache.profile(
-        lens.prescription, lens.label, chromatic=False, lens_id=lens.id
-    )
+    return profile_cache.profile(lens.prescription, lens.label, chromatic=False, lens_id=lens.id)
 
 
 def lens_pupil(lens):
