@@ -9,8 +9,8 @@
 // Outputs: pairs_img: source, row of the instance table, cluster; keys_img (pairs of a source),
 // counts_img, states_img (see bokeh_culling_comp).
 // Source: methods 10 (J20 section 4.3.3).
-#include "lib/cones_lib.glsl"
 #include "lib/instance_lib.glsl"
+#include "passes/bokeh_cones_source.glsl"
 
 // Side of a triangle of a level of detail, in texels of a mask. A level is made to lie much closer to
 // the surface than its triangles are large: on a street of 400000 triangles in one mesh, this differs
@@ -87,48 +87,25 @@ float least_w(Source source, Part part, int level)
 void main()
 {
   int index = int(gl_GlobalInvocationID.x);
-  ivec2 texel = list_texel(index);
-#ifndef EDGES
-  ivec2 key = texel + ivec2(0, segment);
-#endif
-#ifdef FILL
-  if (index >= count) {
-    return;
-  }
-  vec4 record = texelFetch(states_tx, texel, 0);
-  uint place = texelFetch(keys_tx, key, 0).x + texelFetch(totals_tx, list_texel(key.y), 0).x;
-  bool tested = state_is_open(record.w) || culls == 0;
-#elif defined(EDGES)
-  vec4 record = index < count ? imageLoad(states_img, texel) : vec4(0.0);
-  bool tested = record.w == STATE_EDGE;
-#else
-  vec4 record = index < count ? imageLoad(states_img, texel) : vec4(0.0);
-  bool tested = index < count && (state_is_open(record.w) || culls == 0);
-  if (!tested) {
-    imageStore(keys_img, key, uvec4(0u));
-  }
-#endif
-  if (!tested) {
-    return;
-  }
-  vec4 a = texelFetch(sources_tx, texel, 0);
-  Source source = source_of(a, visibility_buf);
 #ifdef EDGES
-  LensView view = lens_view_of(source, edge_depth(source, visibility_buf), visibility_buf);
+  ConeSource from = source_of_thread(index, 0);
 #else
-  LensView view = lens_view_of(source, source.hides, visibility_buf);
+  ConeSource from = source_of_thread(index, segment);
   Met met = nothing_met();
 #endif
+  if (!from.tested) {
+    return;
+  }
   // Parts' boxes have a margin for rounding.
-  view = lens_view_in(view, visibility_buf.view, vec3(0.0));
+  LensView view = lens_view_in(from.view, visibility_buf.view, vec3(0.0));
   int at = 0;
   vec4 low, high;
   while (next_leaf(part_boxes_tx, view, parts, at, low, high)) {
     Part part = part_of(view, int(high.w));
     for (int level = 0; level < part.levels; level++) {
       LensView own = part.view;
-      own.range.x = max(own.range.x, least_w(source, part, level));
-      own.range.y = min(own.range.y, least_w(source, part, level + 1));
+      own.range.x = max(own.range.x, least_w(from.source, part, level));
+      own.range.y = min(own.range.y, least_w(from.source, part, level + 1));
       if (own.range.x > own.range.y) {
         continue;
       }
@@ -141,17 +118,18 @@ void main()
           continue;
         }
 #ifdef EDGES
+        vec4 record = from.record;
         record.w = STATE_OPEN;
-        imageStore(states_img, texel, record);
+        imageStore(states_img, from.texel, record);
         return;
 #else
 #ifdef FILL
-        uint at_place = place - uint(window.x) + met.found;
+        uint at_place = from.place - uint(window.x) + met.found;
         met.found++;
 #else
         uint at_place = imageAtomicAdd(counts_img, ivec2(COUNT_PAIRS, 0), 1u);
         float area = part.area * exp2(float(level)) * float(CLUSTER_CORNERS / 3);
-        meet(met, own, source, a.w, area, low.xyz, high.xyz, visibility_buf);
+        meet(met, own, from.source, from.side, area, low.xyz, high.xyz, visibility_buf);
 #endif
         if (at_place < uint(window.y)) {
           vec4 pair = vec4(index, part.row, cluster, 0.0);
@@ -162,7 +140,8 @@ void main()
     }
   }
 #if !defined(FILL) && !defined(EDGES)
-  imageStore(keys_img, key, uvec4(met.found));
-  imageStore(states_img, texel, record_after(record, met, source, true, visibility_buf));
+  imageStore(keys_img, from.key, uvec4(met.found));
+  vec4 record = record_after(from.record, met, from.source, true, visibility_buf);
+  imageStore(states_img, from.texel, record);
 #endif
 }

@@ -8,58 +8,36 @@
 // Outputs: keys_img (pairs of a source), counts_img, states_img; FILL: pairs_img: source, row of the
 // instance table.
 // Source: methods 10 (J20 section 4.3.3).
-#include "lib/cones_lib.glsl"
 #include "lib/instance_lib.glsl"
+#include "passes/bokeh_cones_source.glsl"
 
 void main()
 {
   int index = int(gl_GlobalInvocationID.x);
-  ivec2 texel = list_texel(index);
-#ifndef EDGES
-  ivec2 key = texel + ivec2(0, extent.z);
-#endif
-#ifdef FILL
-  if (index >= count) {
-    return;
-  }
-  vec4 record = texelFetch(states_tx, texel, 0);
-  uint place = texelFetch(keys_tx, key, 0).x + texelFetch(totals_tx, list_texel(key.y), 0).x;
-  bool tested = state_is_open(record.w) || culls == 0;
-#elif defined(EDGES)
-  vec4 record = index < count ? imageLoad(states_img, texel) : vec4(0.0);
-  bool tested = record.w == STATE_EDGE;
-#else
-  vec4 record = index < count ? imageLoad(states_img, texel) : vec4(0.0);
-  bool tested = index < count && (state_is_open(record.w) || culls == 0);
-  if (!tested) {
-    imageStore(keys_img, key, uvec4(0u));
-  }
-#endif
-  if (!tested) {
-    return;
-  }
-  vec4 a = texelFetch(sources_tx, texel, 0);
-  Source source = source_of(a, visibility_buf);
 #ifdef EDGES
-  LensView eye = lens_view_of(source, edge_depth(source, visibility_buf), visibility_buf);
+  ConeSource own = source_of_thread(index, 0);
 #else
-  LensView eye = lens_view_of(source, source.hides, visibility_buf);
+  ConeSource own = source_of_thread(index, extent.z);
   Met met = nothing_met();
 #endif
+  if (!own.tested) {
+    return;
+  }
   vec3 far = max(abs(box_low.xyz), abs(box_high.xyz));
   for (int row = extent.x; row <= extent.y; row++) {
     mat4 matrix = visibility_buf.view * instance_world(instances_tx, row);
-    LensView view = lens_view_in(eye, matrix, far);
+    LensView view = lens_view_in(own.view, matrix, far);
     if (!meets_box(view, box_low.xyz, box_high.xyz)) {
       continue;
     }
 #ifdef EDGES
+    vec4 record = own.record;
     record.w = STATE_OPEN;
-    imageStore(states_img, texel, record);
+    imageStore(states_img, own.texel, record);
     return;
 #else
 #ifdef FILL
-    uint within = place - uint(window.x) + met.found;
+    uint within = own.place - uint(window.x) + met.found;
     if (within < uint(window.y)) {
       imageStore(pairs_img, list_texel(int(within)), vec4(index, row, 0.0, 0.0));
     }
@@ -68,15 +46,16 @@ void main()
     vec3 sides = box_high.xyz - box_low.xyz;
     sides *= vec3(length(matrix[0]), length(matrix[1]), length(matrix[2]));
     float area = max(sides.x * sides.y, max(sides.y * sides.z, sides.z * sides.x));
-    meet(met, view, source, a.w, area, box_low.xyz, box_high.xyz, visibility_buf);
+    meet(met, view, own.source, own.side, area, box_low.xyz, box_high.xyz, visibility_buf);
 #endif
 #endif
   }
 #if !defined(FILL) && !defined(EDGES)
-  imageStore(keys_img, key, uvec4(met.found));
+  imageStore(keys_img, own.key, uvec4(met.found));
   if (met.found > 0u) {
     imageAtomicAdd(counts_img, ivec2(extent.w, 0), met.found);
   }
-  imageStore(states_img, texel, record_after(record, met, source, false, visibility_buf));
+  vec4 record = record_after(own.record, met, own.source, false, visibility_buf);
+  imageStore(states_img, own.texel, record);
 #endif
 }
