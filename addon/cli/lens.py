@@ -6,12 +6,9 @@ most answers to compute.
 
 import sys
 from importlib import import_module
-from pathlib import Path
 
-from ..errors import InputError, LensFileError
-from ..lens_io.findings import Finding
+from ..errors import InputError
 from ..lens_io.library import Library
-from ..lens_io.toml_reader import LensFile
 
 # By word: the module beside this one, and what it does with arguments and console.
 _WORDS = {
@@ -22,8 +19,6 @@ _WORDS = {
     "plot": ("lens_plot", "plot"),
     "import": ("lens_import", "import_file"),
 }
-# Of the formats that can be imported.
-_FOREIGN_ENDINGS = {".dat", ".zmx", ".seq", ".txt"}
 
 
 def lens(arguments, console):
@@ -80,30 +75,10 @@ def open_lens(word):
     """
     if not word:
         raise InputError("the lens has an empty name (see `aplanat lens list`)")
-    path = Path(word)
-    if path.suffix.lower() not in _FOREIGN_ENDINGS or not path.is_file():
-        return library().open(word)
-    from ..lens_io.importers import import_lens
-
-    try:
-        imported = import_lens(path)
-    except LensFileError as error:
-        raise _with_advice(error) from error
-    return LensFile(imported.prescription, tuple(imported.warnings), path)
+    return library().open(word)
 
 
 def tell_warnings(read, console):
     """Print a lens' warnings on stderr."""
     for found in read.warnings:
         console.say(f"warning: {found.code} {found.path}: {found.message}")
-
-
-def _with_advice(error):
-    # What a file leaves open is settled by options that only one word has.
-    found = [
-        Finding(one.code, one.path, f"{one.message} (options of `aplanat lens import`)")
-        if one.code in ("I05", "I06")
-        else one
-        for one in error.findings
-    ]
-    return LensFileError(error.file_name, found, error.warnings)

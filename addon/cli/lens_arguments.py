@@ -201,11 +201,12 @@ def _add_import(words):
     )
     answers.add_argument(
         "--glass",
-        metavar="NAME=ND,VD",
+        metavar="NAME=ND,VD|GLASS",
         type=_glass,
         action="append",
         default=[],
-        help="a glass that the catalogue does not have; may be repeated",
+        help="a glass that the catalogue does not have, by index and Abbe number or as a glass that"
+        " it has; may be repeated",
     )
 
 

@@ -46,7 +46,8 @@ def first_order_values(configuration, wavelength_nm):
     Returns
     -------
     dict of str to float
-        mm; None for an exit pupil at infinity.
+        mm; None for an exit pupil at infinity. What is measured from the last vertex is measured
+        from the last one that refracts.
 
     Raises
     ------
@@ -55,18 +56,20 @@ def first_order_values(configuration, wavelength_nm):
     """
     values = first_order(configuration, wavelength_nm)
     distance = _OBJECT_MM - first_order(configuration).h
+    # A stop behind the glass is no vertex to measure from.
+    behind = configuration.vertices[-1] - configuration.rear_vertex
     return {
         "efl_mm": values.efl,
-        "bfl_mm": values.bfl,
+        "bfl_mm": values.bfl + behind,
         "ffl_mm": values.ffl,
         "h_mm": values.h,
-        "h_prime_mm": values.h_prime,
+        "h_prime_mm": values.h_prime + behind,
         "enp_z_mm": values.enp_z,
         "enp_diameter_mm": values.enp_diameter,
-        "exp_z_mm": values.exp_z,
+        "exp_z_mm": None if values.exp_z is None else values.exp_z + behind,
         "exp_diameter_mm": values.exp_diameter,
         "f_number": values.f_number,
-        "image_distance_1000_mm": image_distance(configuration, distance, wavelength_nm),
+        "image_distance_1000_mm": image_distance(configuration, distance, wavelength_nm) + behind,
         "magnification_1000": magnification(configuration, distance, wavelength_nm),
     }
 

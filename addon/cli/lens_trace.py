@@ -77,7 +77,7 @@ def axis_fan(configuration, object_to_first_vertex, rho, planes, wavelength_nm):
     )
     failed = np.isin(traced.status, (RayStatus.MISSED, RayStatus.TOTAL_REFLECTION))
     ahead = np.where(failed, 1.0, traced.directions[:, 2])
-    last = configuration.vertices[-1]
+    last = configuration.rear_vertex
     return {
         "object_to_first_vertex_mm": object_to_first_vertex,
         "plane_distance_mm": list(planes),
@@ -101,11 +101,12 @@ def default_planes(configuration, object_to_first_vertex):
     Returns
     -------
     tuple of 5 float
-        mm behind the last vertex.
+        mm behind the last vertex that refracts.
     """
     values = first_order(configuration)
-    image = image_distance(configuration, object_to_first_vertex)
-    return (*(image + share * values.efl for share in _PLANES), values.bfl)
+    behind = configuration.vertices[-1] - configuration.rear_vertex
+    image = image_distance(configuration, object_to_first_vertex) + behind
+    return (*(image + share * values.efl for share in _PLANES), values.bfl + behind)
 
 
 def beam(configuration, field_deg, wavelength_nm, grid):

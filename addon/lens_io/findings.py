@@ -10,7 +10,7 @@ class Finding:
     Parameters
     ----------
     code : str
-        E01 to E25, W01 to W06, or I01 to I08.
+        E01 to E25, W01 to W07, or I01 to I08.
     path : str
         Where in the file: a key such as ``surface[3].radius_mm`` (counted from 1), or a line.
         Empty if the whole file is meant.

@@ -10,8 +10,9 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from ..errors import LensFileError
+from .any_lens_file import read_any_lens
 from .library import SHIPPED_FOLDER, Library
-from .toml_reader import LensFile, read_lens
+from .toml_reader import LensFile
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +166,7 @@ class LensShelf:
             If the file cannot be used.
         """
         path = Path(path).absolute()
-        read_lens(path)
+        read_any_lens(path)
         with self._lock:
             for lens_id, known in self._known_paths().items():
                 if known == path:
@@ -230,7 +231,7 @@ def _read(lens_id, path):
     stamp = _stamp(path)
     shipped = path.parent == SHIPPED_FOLDER
     try:
-        return ShelvedLens(lens_id, path, shipped, read_lens(path), None, stamp)
+        return ShelvedLens(lens_id, path, shipped, read_any_lens(path), None, stamp)
     except LensFileError as error:
         return ShelvedLens(lens_id, path, shipped, None, error, stamp)
 

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from ..errors import LensFileError
+from .any_lens_file import read_any_lens
 from .findings import Finding
-from .toml_reader import read_lens
 
 SHIPPED_FOLDER = Path(__file__).resolve().parents[2] / "lens_profiles"
 ENDING = ".toml"
@@ -66,7 +66,7 @@ class Library:
         Parameters
         ----------
         lens : str or Path
-            An id, or the path of a lens file; an id goes first.
+            An id, or the path of a lens file of any format; an id goes first.
 
         Returns
         -------
@@ -79,10 +79,10 @@ class Library:
         """
         paths = self.paths()
         if str(lens) in paths:
-            return read_lens(paths[str(lens)])
+            return read_any_lens(paths[str(lens)])
         if _looks_like_path(lens):
-            return read_lens(lens)
-        return read_lens(self.path_of(str(lens)))
+            return read_any_lens(lens)
+        return read_any_lens(self.path_of(str(lens)))
 
     def paths(self):
         """Return the file of every lens.

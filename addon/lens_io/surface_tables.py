@@ -2,9 +2,9 @@
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from ..optics.prescription import Surface
+from ..optics.prescription import Surface, may_overlap
 from .material import read_material
 from .optical_checks import asphere_fault
 from .toml_table import Range, Table, show
@@ -19,6 +19,7 @@ SURFACE_KEYS = (
     "asphere",
     "stop",
     "curved_along",
+    "overlap_mm",
 )
 ASPHERE_ORDERS = {f"a{order}_per_mm{order - 1}": order for order in range(2, 21, 2)}
 FEWEST_SURFACES, MOST_SURFACES = 2, 100
@@ -77,6 +78,7 @@ def read_surfaces(document):
         for number, row in enumerate(rows[:MOST_SURFACES], 1)
     ]
     surfaces = [None if table is None else _read_surface(table) for table in tables]
+    _read_overlaps(tables, surfaces)
     _check_stops(rows, findings)
     numbers = _read_ids(rows, tables)
     sound = None not in surfaces and all(
@@ -150,6 +152,29 @@ def _read_surface(table):
     check_rim(surface, surface.semi_diameter, table.at("semi_diameter_mm"), table.findings)
     check_asphere(surface, table.at("asphere"), table.findings)
     return surface
+
+
+def _read_overlaps(tables, surfaces):
+    for number, table in enumerate(tables, 1):
+        if table is None or "overlap_mm" not in table:
+            continue
+        overlap = table.number("overlap_mm", POSITIVE)
+        surface = surfaces[number - 1]
+        if surface is None or overlap is None:
+            continue
+        if surface.thickness != 0.0:
+            table.add("E09", "overlap_mm", "an overlap needs thickness_mm = 0")
+        elif surface.id is not None:
+            table.add("E09", "overlap_mm", "a distance with an overlap cannot have an id")
+        else:
+            surfaces[number - 1] = replace(surface, thickness=-overlap)
+            if not may_overlap(surfaces, number):
+                table.add(
+                    "E09",
+                    "overlap_mm",
+                    f"{overlap!r} is not possible: only a plane stop with one medium on both sides"
+                    " may overlap with its neighbour, and no deeper than that is curved at its rim",
+                )
 
 
 def _read_radius(table):

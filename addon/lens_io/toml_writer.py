@@ -3,7 +3,7 @@
 import math
 
 from ..optics.glass import AbbeGlass, Air, ConstantGlass, SellmeierGlass, SeriesGlass
-from ..optics.prescription import Diaphragm
+from ..optics.prescription import Diaphragm, may_overlap
 from .glass_catalog import catalog_glass, catalog_names
 from .surface_tables import ID_PATTERN
 
@@ -34,8 +34,9 @@ def lens_toml(prescription):
     if prescription.focus is not None:
         ends = (("first", prescription.focus.first), ("last", prescription.focus.last))
         blocks.append(["[focus]", *(f"{key} = {_text(ids[end - 1])}" for key, end in ends)])
-    for surface, name in zip(prescription.surfaces, ids, strict=True):
-        blocks.append(["[[surface]]", *_surface_lines(surface, name)])
+    for number, (surface, name) in enumerate(zip(prescription.surfaces, ids, strict=True), 1):
+        overlaps = surface.thickness < 0.0 and may_overlap(prescription.surfaces, number)
+        blocks.append(["[[surface]]", *_surface_lines(surface, name, overlaps)])
     blocks.extend(["[[zoom]]", *_zoom_lines(position)] for position in prescription.zoom)
     return "\n\n".join("\n".join(block) for block in blocks) + "\n"
 
@@ -67,13 +68,15 @@ def _diaphragm_lines(diaphragm):
     yield f"rotation_deg = {_number(diaphragm.rotation_deg)}"
 
 
-def _surface_lines(surface, name):
+def _surface_lines(surface, name, overlaps):
     if name is not None:
         yield f"id = {_text(name)}"
     yield f"radius_mm = {_number(surface.radius)}"
     if surface.curved_along is not None:
         yield f"curved_along = {_text(surface.curved_along)}"
-    yield f"thickness_mm = {_number(surface.thickness)}"
+    yield f"thickness_mm = {_number(0.0 if overlaps else surface.thickness)}"
+    if overlaps:
+        yield f"overlap_mm = {_number(-surface.thickness)}"
     yield f"semi_diameter_mm = {_number(surface.semi_diameter)}"
     yield f"material = {_material(surface.glass)}"
     if surface.conic != 0.0:

@@ -5,11 +5,16 @@ when the centre of curvature lies on the +z side. Surfaces are counted from 1 in
 light meets them, the stop included.
 """
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from ..errors import PrescriptionError
-from .glass import Glass
+from .glass import AIR, Glass
+from .surfaces import sag
+
+# Patents print the place of a stop at the rim of a surface with few digits.
+_ROUNDED_BULGE = 1.1
 
 
 @dataclass(frozen=True)
@@ -23,7 +28,8 @@ class Surface:
     radius : float
         Radius of curvature at the vertex in mm; inf for a plane.
     thickness : float
-        To the next vertex, mm; the last one to the image plane of an object at infinity.
+        To the next vertex, mm; the last one to the image plane of an object at infinity. Negative
+        only beside a stop that lies within the bulge of its neighbour; see `may_overlap`.
     semi_diameter : float
         Clear radius, mm: a ray that hits farther from the axis is blocked.
     glass : Glass
@@ -53,6 +59,41 @@ class Surface:
     def curvature(self):
         """1 / radius in 1/mm; 0 for a plane."""
         return 1.0 / self.radius
+
+
+def may_overlap(surfaces, number):
+    """Tell whether the distance behind a surface may be as negative as it is.
+
+    The opening of an iris may lie behind the vertex of the surface that follows, or in front of
+    that of the one before it, where their rims leave room. It is a plane that refracts nothing, so
+    that rays can be followed to it and back.
+
+    Parameters
+    ----------
+    surfaces : sequence of (Surface or None)
+        None for one that is not known.
+    number : int
+        From 1.
+
+    Returns
+    -------
+    bool
+    """
+    for stop, neighbour in ((number, number + 1), (number + 1, number)):
+        if max(stop, neighbour) > len(surfaces):
+            continue
+        plane, bulging = surfaces[stop - 1], surfaces[neighbour - 1]
+        before = surfaces[stop - 2] if stop > 1 else None
+        if plane is None or bulging is None or (stop > 1 and before is None):
+            continue
+        idle = plane.glass == (AIR if stop == 1 else before.glass)
+        if plane.is_stop and idle and math.isinf(plane.radius) and not plane.asphere:
+            overlap = -surfaces[number - 1].thickness
+            bulge = sag(bulging, 0.0, bulging.semi_diameter)
+            # The bulge is on the side of the stop.
+            depth = float(bulge if neighbour > stop else -bulge)
+            return overlap <= _ROUNDED_BULGE * depth
+    return False
 
 
 @dataclass(frozen=True)
@@ -173,6 +214,14 @@ class Configuration:
         for surface in self.surfaces[:-1]:
             positions.append(positions[-1] + surface.thickness)
         return tuple(positions)
+
+    @cached_property
+    def rear_vertex(self):
+        """The z of the last vertex that refracts, mm, from surface 1; a stop behind it has none."""
+        before = [AIR, *(surface.glass for surface in self.surfaces[:-1])]
+        vertices = zip(self.surfaces, before, self.vertices, strict=True)
+        bending = [z for surface, medium, z in vertices if surface.glass != medium]
+        return bending[-1] if bending else self.vertices[-1]
 
     @property
     def sensor(self):

@@ -122,24 +122,26 @@ def _draw_title(figure, prescription, configuration):
 
 def _draw_facts(figure, prescription, configuration):
     facts, values = lens_facts(prescription, configuration.label), first_order(configuration)
+    # From the last vertex that refracts.
+    behind = configuration.vertices[-1] - configuration.rear_vertex
     focal_length = f"{facts.focal_length:.2f} mm"
     if facts.horizontal_focal_length is not None:
         focal_length += f" (horizontally {facts.horizontal_focal_length:.2f} mm)"
     iris = prescription.diaphragm
     exit_pupil = "at infinity"
     if values.exp_z is not None:
-        exit_pupil = f"{values.exp_diameter:.2f} mm at {values.exp_z:.2f} mm"
+        exit_pupil = f"{values.exp_diameter:.2f} mm at {values.exp_z + behind:.2f} mm"
     rows = [
         ("Focal length", focal_length),
         ("f-number", f"{values.f_number:.2f}"),
         ("Field", f"{2.0 * configuration.half_field_deg:.3g}°, {prescription.projection}"),
         ("Image circle", f"{facts.image_circle_diameter:.3g} mm"),
         ("Elements / groups", f"{facts.elements} / {facts.groups}"),
-        ("Length", f"{configuration.vertices[-1]:.2f} mm"),
-        ("Back focus", f"{values.bfl:.2f} mm"),
+        ("Length", f"{configuration.rear_vertex:.2f} mm"),
+        ("Back focus", f"{values.bfl + behind:.2f} mm"),
         ("Entrance pupil", f"{values.enp_diameter:.2f} mm at {values.enp_z:.2f} mm"),
         ("Exit pupil", exit_pupil),
-        ("Principal planes", f"{values.h:.2f} mm, {values.h_prime:.2f} mm"),
+        ("Principal planes", f"{values.h:.2f} mm, {values.h_prime + behind:.2f} mm"),
         ("Iris", f"{iris.blades} blades" if iris.blades else "round"),
     ]
     if prescription.zoom:

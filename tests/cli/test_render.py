@@ -10,6 +10,7 @@ import OpenEXR
 import pytest
 
 from addon.cli.render import frame_path
+from tests.lens_io.importers.foreign_texts import ZEMAX
 
 
 def exr_channels(path):
@@ -331,3 +332,14 @@ def test_lens_may_be_a_file(aplanat, small_blend, tmp_path):
     assert done.code == 0, done.err
     assert done.answer["settings"]["lens"] == "mine"
     assert done.answer["settings"]["zoom_position"] == "36 mm"
+
+
+def test_lens_may_be_a_file_in_a_foreign_format(aplanat, small_blend, tmp_path):
+    own = tmp_path / "singlet.zmx"
+    own.write_text(ZEMAX, encoding="utf-8")
+    done = aplanat(
+        *("render", small_blend, "-o", tmp_path / "a.png", "--samples", "2", "--json"),
+        *("--lens", own),
+    )
+    assert done.code == 0, done.err
+    assert done.answer["settings"]["lens"] == "singlet"

@@ -5,6 +5,7 @@ each with radius or curvature, thickness and glass, followed by commands for tha
 """
 
 import math
+import re
 
 from ...optics.glass import AIR, REFERENCE_WAVELENGTH_NM
 from .codev_text import commands
@@ -16,7 +17,19 @@ FORMAT_NAME = "CODE V sequence"
 UNITS_MM = {"M": 1.0, "C": 10.0, "I": 25.4}
 # Farther than this, in the file's unit, an object is at infinity: the program writes 1e10 or more.
 _FARTHEST = 1.0e9
-_APERTURES = {"EPD": "entrance pupil", "FNO": "f-number", "NA": "image NA", "NAO": "object NA"}
+_APERTURES = {
+    "EPD": "entrance pupil",
+    "FNO": "working f-number",
+    "NA": "image NA",
+    "NAO": "object NA",
+}
+# Words for a distance without end, as other programs write them into sequences.
+_ENDLESS = {"INF", "INFINITY"}
+# In a surface, a curvature or thickness may be solved for a ray or picked up; the program keeps the
+# value that it found in the S line.
+_SOLVED = {"CUY", "RDY", "THI"}
+_SOLVE_WORDS = "UMY UCY UMX UCX HMY HCY HMX HCX IMY ICY IPY APY ASY PIK CRP SYM"
+_SOLVES = set(_SOLVE_WORDS.split())
 _FIELDS = {
     "AN": "angle",
     "IM": "image height",
@@ -34,6 +47,8 @@ _SHAPE_WORDS = """
 _OTHER_SHAPES = set(_SHAPE_WORDS.split())
 # A lens that is changed after it was written down.
 _EDITS = {"SCA", "FLY", "INS", "DEL", "COP", "RDY", "CUY", "THI", "GLA", "INV"}
+# A label of an aperture, such as L'rim'.
+_LABEL = re.compile(r"[Ll]'[^']*'")
 _LENS_WORDS = {"LEN", "TITLE", "DIM", "RDM", "WL", "REF", "SO", "S", "SI", "GO"}
 
 
@@ -112,6 +127,11 @@ class _Reader:
             refuse("I03", line, f"{command.text}: tilts and decentres are not supported")
         elif keyword in _OTHER_SHAPES:
             refuse("I04", line, f"{command.text}: this surface or rim is no figure of revolution")
+        elif self._is_solve(command):
+            self.draft.passed_over.add(
+                f"solve {clean(' '.join(words[:2]))[:20]}: the value of the S line holds",
+                line,
+            )
         elif keyword in _EDITS:
             refuse("I04", line, f"{command.text}: changes of a lens after its S lines are not read")
         elif keyword[:1] in ("X", "Y") and keyword[1:] in _FIELDS:
@@ -120,6 +140,15 @@ class _Reader:
             self.aperture = (keyword, self._one(command), line)
         elif not self._take_lens_word(command) and not self._take_surface_word(command):
             self.draft.passed_over.add(clean(keyword)[:20], line)
+
+    def _is_solve(self, command):
+        words = command.words
+        return (
+            self.surface is not None
+            and command.keyword in _SOLVED
+            and len(words) > 1
+            and words[1].upper() in _SOLVES
+        )
 
     def _take_lens_word(self, command):
         keyword, words = command.keyword, command.words
@@ -131,7 +160,7 @@ class _Reader:
             if self.options.radii not in (None, self.radii):
                 self.draft.passed_over.add("option --radii: the file has RDM", command.line)
         elif keyword in ("TIT", "TITLE"):
-            self.draft.name = clean(" ".join(words[1:]))
+            self._read_title(command)
         elif keyword == "WL":
             self.wavelengths = self._numbers(command)
         elif keyword == "REF":
@@ -143,6 +172,16 @@ class _Reader:
         else:
             return False
         return True
+
+    def _read_title(self, command):
+        words = command.words[1:]
+        if words and re.fullmatch(r"Z\d{1,3}", words[0], re.IGNORECASE):
+            # Of one zoom position; Z1 is that of the S lines.
+            if words[0].upper() != "Z1":
+                self.draft.passed_over.add("TIT of another zoom position", command.line)
+                return
+            words = words[1:]
+        self.draft.name = clean(" ".join(words))
 
     def _read_unit(self, command):
         unit = command.words[1].upper() if len(command.words) > 1 else "none"
@@ -182,20 +221,34 @@ class _Reader:
         if len(command.words) == 1:
             self.surface.is_stop = True
             return
-        named = whole_number(command.words[1].upper().removeprefix("S"))
-        if named is None or not 1 <= named <= len(self.draft.surfaces):
-            self.draft.refusals.add("I07", command.line, f"{command.text} names no surface so far")
-        else:
-            self.draft.surfaces[named - 1].is_stop = True
+        named = self._surface_named(command, f"S{command.words[1].upper().removeprefix('S')}")
+        if named is not None:
+            named.is_stop = True
 
     def _read_rim(self, command):
-        words = [word.upper() for word in command.words[1:]]
+        # A qualifier says what the circle is (clear aperture unless told), a label names it.
+        words = [word.upper() for word in command.words[1:] if not _LABEL.fullmatch(word)]
+        surface = self.surface
+        if words and re.fullmatch(r"S\d{1,9}", words[0]):
+            surface = self._surface_named(command, words.pop(0))
         if "OBS" in words or "HOL" in words:
             self.draft.refusals.add("I04", command.line, f"{command.text}: a hole round the axis")
         elif "EDG" in words:
             self.draft.passed_over.add("CIR EDG", command.line)
-        else:
-            self.surface.semi_diameter = self._one(command) * self.scale
+        elif surface is not None:
+            numbers = [word for word in words if word != "CLR"]
+            radius = number(numbers[0]) if len(numbers) == 1 else None
+            if radius is None:
+                self.draft.refusals.add("I07", command.line, f"{command.text} is not one number")
+            else:
+                surface.semi_diameter = radius * self.scale
+
+    def _surface_named(self, command, word):
+        named = whole_number(word[1:])
+        if named is None or not 1 <= named <= len(self.draft.surfaces):
+            self.draft.refusals.add("I07", command.line, f"{command.text} names no surface so far")
+            return None
+        return self.draft.surfaces[named - 1]
 
     def _read_coefficient(self, command):
         order = _COEFFICIENTS[command.keyword]
@@ -211,8 +264,8 @@ class _Reader:
             self.object_line = line
         elif self.image_line is not None:
             self.draft.refusals.add("I07", line, "SI must be the last surface")
-        shape = self._number_at(command, 1)
-        thickness = self._number_at(command, 2) * self.scale
+        shape = self._shape_at(command, 1)
+        thickness = self._distance_at(command, 2)
         self.surface = DraftSurface(line, len(self.draft.surfaces) + 1, thickness=thickness)
         self._set_shape(shape, line)
         glass = words[3] if len(words) > 3 else "AIR"
@@ -260,6 +313,22 @@ class _Reader:
             self.draft.notes.append(note)
         return glass
 
+    def _shape_at(self, command, position):
+        # An endless radius is a plane, which sequences otherwise write as 0.
+        if self._is_endless(command, position) and (self.radii or self.options.radii) == "radius":
+            return 0.0
+        return self._number_at(command, position)
+
+    def _distance_at(self, command, position):
+        if command.keyword == "SO" and self._is_endless(command, position):
+            return math.inf
+        return self._number_at(command, position) * self.scale
+
+    @staticmethod
+    def _is_endless(command, position):
+        words = command.words
+        return position < len(words) and words[position].upper().lstrip("+-") in _ENDLESS
+
     def _number_at(self, command, position):
         word = command.words[position] if position < len(command.words) else "0"
         value = number(word)
@@ -300,14 +369,17 @@ class _Reader:
         return draft
 
     def _check_shape(self, surface):
+        # Without a word for its shape, a surface has the one that its constants ask for.
         shape = self.shapes.get(id(surface))
-        lost = (surface.conic and shape not in ("CON", "ASP")) or (
-            surface.asphere and shape != "ASP"
+        if shape == "SPH" and (surface.conic or surface.asphere):
+            told = "K or A to J"
+        elif shape == "CON" and surface.asphere:
+            told = "A to J"
+        else:
+            return
+        self.draft.refusals.add(
+            "I07", surface.line, f"the surface is called {shape}, but has {told}; which one holds?"
         )
-        if lost:
-            self.draft.refusals.add(
-                "I07", surface.line, "K needs CON or ASP, and A to J need ASP, in their surface"
-            )
 
     def _opening(self):
         if self.aperture is None:

@@ -11,7 +11,7 @@ from .source_text import excerpt
 
 # A quote that is not closed takes the rest of the line.
 _TOKEN = re.compile(
-    r"'(?P<single>[^']*)'|\"(?P<double>[^\"]*)\"|(?P<open>['\"].*)|(?P<comment>!.*)"
+    r"(?P<label>[Ll]'[^']*')|'(?P<single>[^']*)'|\"(?P<double>[^\"]*)\"|(?P<open>['\"].*)|(?P<comment>!.*)"
     r"|(?P<part>;)|(?P<word>[^\s;!]+)"
 )
 

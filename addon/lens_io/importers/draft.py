@@ -58,9 +58,11 @@ class Opening:
     Parameters
     ----------
     kind : str
-        "entrance pupil" (diameter, mm), "f-number" (EFL over entrance pupil diameter), "image NA"
-        (object at infinity), "object NA" (at the file's object distance), or "stop" (the stop's
-        own rim is the aperture).
+        "entrance pupil" (diameter, mm), "f-number" (EFL over entrance pupil diameter), "working
+        f-number" (1 over twice the paraxial marginal slope in the image of the file's object),
+        "image NA" (half the inverse of that), "object NA" (sine of the marginal ray's angle at the
+        file's object), "object cone angle" (that angle in degrees), or "stop" (the stop's own rim
+        is the aperture).
     value : float
         0 for "stop".
     wavelength_nm : float

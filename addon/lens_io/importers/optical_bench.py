@@ -13,6 +13,7 @@ The tables of photonstophotos.net and the programs that read them.
 """
 
 import math
+import re
 
 from ...optics.glass import REFERENCE_WAVELENGTH_NM, AbbeGlass, ConstantGlass
 from .draft import Draft, DraftPosition, DraftSurface, Field, Opening
@@ -28,6 +29,8 @@ _SECTIONS = (
     "figure",
     "notes",
 )
+# Spaces that part cells; a single one parts the words of a cell.
+_RUNS = re.compile(r" {2,}")
 _PLANES = {"AS", "FS", "CG", "INFINITY"}
 # Number, radius, thickness, nd, diameter, vd, name and maker of the glass.
 _COLUMNS = 8
@@ -65,6 +68,7 @@ def read(lines, options):
     """
     reader = _Reader()
     section = None
+    spaces = _spaces_of_a_tab(lines)
     for line, text in lines:
         if not text.strip() or text.lstrip().startswith("#"):
             continue
@@ -75,8 +79,32 @@ def read(lines, options):
             continue
         if reader.draft.is_full(len(reader.rows), line):
             break
-        reader.take(section, line, [cell.strip() for cell in text.split("\t")], text)
+        reader.take(section, line, _cells(text, spaces), text)
     return reader.finish(options)
+
+
+def _spaces_of_a_tab(lines):
+    """Return how many spaces stand for a tab in a table that was copied without its tabs.
+
+    Parameters
+    ----------
+    lines : list of (int, str)
+
+    Returns
+    -------
+    int or None
+        None if there are tabs, or runs of spaces are not all multiples of one of two or more, as
+        where columns were aligned: which cells are empty is not known then.
+    """
+    if any("\t" in text for _, text in lines):
+        return None
+    runs = {len(run) for _, text in lines for run in _RUNS.findall(text.strip())}
+    return min(runs) if runs and not any(run % min(runs) for run in runs) else None
+
+
+def _cells(text, spaces):
+    separator = " " * spaces if spaces else "\t"
+    return [cell.strip() for cell in text.strip(" ").split(separator)]
 
 
 def _section(text):
@@ -132,6 +160,7 @@ class _Reader:
         for index, (line, cells, text) in enumerate(self.rows, 1):
             draft.surfaces.append(self._surface(index, line, cells, text))
             distances.append(self._distances(line, cells, text, columns))
+        self._advise_tabs()
         self._apply_aspheres()
         for surface, thicknesses in zip(draft.surfaces, distances, strict=True):
             surface.thickness = thicknesses[0]
@@ -157,6 +186,16 @@ class _Reader:
         draft.choose_stop(options)
         self._pass_over_variables()
         return draft
+
+    def _advise_tabs(self):
+        # Rows without tabs look right, and cannot be told apart.
+        if self.draft.refusals and not any("\t" in text for _, _, text in self.rows):
+            self.draft.refusals.add(
+                "I07",
+                self.rows[0][0],
+                "the rows of [lens data] have no tabs; part the cells by tabs, or each tab by the"
+                " same number of spaces (two or more), so that empty cells can be told",
+            )
 
     def _far_columns(self):
         # The columns with the object at infinity, as far as their focal lengths rise.

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from ...errors import InputError
+from ...errors import GlassNotFoundError, InputError
 from ...optics.glass import AbbeGlass, ConstantGlass
+from ..glass_catalog import catalog_glass
 
 _NUMBER = re.compile(r"\d{1,4}(\.\d{1,20})?", re.ASCII)
 # What a lens file may say of a glass.
@@ -68,13 +69,14 @@ def glass_option(text):
     Parameters
     ----------
     text : str
-        ``NAME=ND,VD``, or ``NAME=ND`` for a glass without dispersion.
+        ``NAME=ND,VD``, ``NAME=ND`` for a glass without dispersion, or ``NAME=GLASS`` for one of the
+        catalogue.
 
     Returns
     -------
     str
         The name as it stands in the lens file.
-    AbbeGlass or ConstantGlass
+    AbbeGlass, ConstantGlass or SellmeierGlass
 
     Raises
     ------
@@ -83,8 +85,16 @@ def glass_option(text):
     """
     name, _, values = text.partition("=")
     parts = [part.strip() for part in values.split(",")]
+    if name.strip() and len(parts) == 1 and parts[0][:1].isalpha():
+        try:
+            return name.strip(), catalog_glass(parts[0])
+        except GlassNotFoundError as error:
+            raise InputError(f"glass '{text[:60]}': {error}") from error
     if not name.strip() or len(parts) > 2 or not all(_NUMBER.fullmatch(part) for part in parts):
-        raise InputError(f"glass '{text[:60]}' must be NAME=ND,VD such as BK7=1.5168,64.17")
+        raise InputError(
+            f"glass '{text[:60]}' must be NAME=ND,VD or NAME=GLASS, such as BK7=1.5168,64.17 or"
+            " BK7=N-BK7"
+        )
     nd, *rest = (float(part) for part in parts)
     if not 1.0 < nd <= _LARGEST_INDEX:
         raise InputError(f"glass '{text[:60]}': nd must be above 1 and at most {_LARGEST_INDEX:g}")

@@ -3,7 +3,8 @@
 Four numbers a row: radius, thickness, index behind the surface, diameter; mm, scene side first; `#`
 starts a comment. Index 0 marks the stop. Two dialects share the ending and the column header: the
 thickness is the gap behind the row (its last row has 0), or, in older files, the gap in front of it
-(its first row has 0). The tables tell no dispersion, field, f-number or image distance.
+(its first row has 0). Tables of ISET have the focal length in mm in a row of its own in front. The
+tables tell no dispersion, field, f-number or image distance.
 """
 
 import math
@@ -19,7 +20,7 @@ _HEADER_WORDS = {"radius", "axpos", "n", "aperture", "thickness", "sep", "sd", "
 
 
 def looks_like(lines):
-    """Tell whether the first line that is no comment has three to five numbers.
+    """Tell whether the first line that is no comment has three to five numbers, or one before such.
 
     Parameters
     ----------
@@ -30,7 +31,10 @@ def looks_like(lines):
     bool
     """
     rows = (line.partition("#")[0].split() for _, line in lines)
-    words = next((row for row in rows if row), ())
+    rows = (row for row in rows if row)
+    words = next(rows, ())
+    if len(words) == 1 and number(words[0]) is not None:
+        words = next(rows, ())
     return 3 <= len(words) <= 5 and all(number(word) is not None for word in words)
 
 
@@ -70,7 +74,7 @@ def read(lines, options):
 
 
 def _read_rows(lines, draft):
-    rows, comments = [], []
+    rows, comments, focal_length = [], [], None
     for line, text in lines:
         text, mark, comment = text.partition("#")
         if mark and clean(comment):
@@ -81,7 +85,9 @@ def _read_rows(lines, draft):
         if draft.is_full(len(rows), line):
             break
         values = [number(word) for word in words]
-        if len(words) != len(_COLUMNS) or None in values:
+        if len(words) == 1 and values[0] and values[0] > 0.0 and not rows and not focal_length:
+            focal_length = draft.focal_length = values[0]
+        elif len(words) != len(_COLUMNS) or None in values:
             draft.refusals.add(
                 "I07",
                 line,

@@ -97,14 +97,43 @@ def _asked_radius(lens, opening, object_distance):
         diameter = opening.value
     elif opening.kind == "f-number":
         diameter = values.efl / opening.value
+    elif opening.kind == "working f-number":
+        diameter = _working_diameter(values, object_distance, opening.value)
     elif opening.kind == "image NA":
-        diameter = 2.0 * values.efl * opening.value
-    elif math.isinf(object_distance) or opening.value >= 1.0:
+        diameter = _working_diameter(values, object_distance, 0.5 / opening.value)
+    elif math.isinf(object_distance):
         return None
     else:
-        slope = math.tan(math.asin(opening.value))
-        diameter = 2.0 * slope * (object_distance + values.enp_z)
+        diameter = 2.0 * _object_slope(opening) * abs(object_distance + values.enp_z)
     return diameter * scale
+
+
+def _object_slope(opening):
+    cone = opening.kind == "object cone angle"
+    limit, unit = (90.0, " degrees") if cone else (1.0, "")
+    if opening.value >= limit:
+        raise FileValueError(
+            "I07",
+            f"the {opening.kind} is {opening.value:g}{unit}; it must be below {limit:g}{unit}",
+        )
+    return math.tan(math.radians(opening.value) if cone else math.asin(opening.value))
+
+
+def _working_diameter(values, object_distance, working_f_number):
+    """Return the diameter of the entrance pupil that gives a marginal slope behind the lens, mm."""
+    if math.isinf(object_distance):
+        return values.efl / working_f_number
+    # Newton's equation: the lateral magnification by the distance from the front focal point. The
+    # marginal ray's slope in front of the lens is that behind it times the magnification.
+    from_focus = object_distance + values.ffl
+    if from_focus == 0.0:
+        raise FileValueError(
+            "I06",
+            "the object of the file stands in the front focal plane, where the working f-number is"
+            " not defined; choose with --f-number X",
+        )
+    magnification = values.efl / from_focus
+    return abs((object_distance + values.enp_z) * magnification) / working_f_number
 
 
 def fields_of(lens, field, object_distance):

@@ -7,13 +7,16 @@ from ...optics.glass import REFERENCE_WAVELENGTH_NM
 from .draft import Draft, Field, Opening
 from .source_text import excerpt, number, whole_number
 
-UNITS_MM = {"MM": 1.0, "CM": 10.0, "M": 1000.0, "IN": 25.4}
+# The program itself writes METER; M and IN are those of its documentation and of other writers.
+UNITS_MM = {"MM": 1.0, "CM": 10.0, "M": 1000.0, "IN": 25.4, "METER": 1000.0}
 APERTURES = {
     "ENPD": "entrance pupil",
     "FNUM": "f-number",
     "FLOA": "stop",
     "OBNA": "object NA",
 }
+# What the aperture is where the second number of its row is 1.
+_FLAGGED_APERTURES = {"FNUM": "working f-number", "OBNA": "object cone angle"}
 # Farther than this, in the file's unit, an object is at infinity: programs write 1e10.
 _FARTHEST = 1.0e9
 _FIELD_KINDS = {0: "angle", 1: "object height", 2: "image height", 3: "real image height"}
@@ -155,6 +158,8 @@ def opening(header, wavelength, override=None):
             continue
         if kind == "stop":
             return Opening(kind, 0.0, wavelength)
+        if header.count(keyword, 2) == 1:
+            kind = _FLAGGED_APERTURES.get(keyword, kind)
         row, position = (row, 1) if override is None else (override, 3)
         found = value(row, position, header.draft)
         if found <= 0.0:

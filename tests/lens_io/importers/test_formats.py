@@ -254,7 +254,7 @@ def test_zemax_zoom_positions_rise_by_focal_length():
         ("  CIR 10", "  CYL", "I04", "CYL"),
         ("  CIR 10", "  CIR OBS 3", "I04", "hole"),
         ("  STO\n", "", "I06", "--stop N"),
-        ("  CIR 10", "  A 1e-5", "I07", "ASP"),
+        ("  CIR 10", "  SPH\n  A 1e-5", "I07", "SPH"),
         ("  CIR 10", "  CIR ten", "I07", "ten"),
         ("TITLE 'Singlet'", "TITLE 'Singlet", "I07", "quote"),
         ("SI 0.0 0.0\n", "", "I07", "SI"),
