@@ -80,6 +80,27 @@ class DeviceLimitError(AplanatError):
         self.needed = needed
 
 
+class ShaderResourceError(AplanatError):
+    """A shader and the values given to it do not fit: a defect of Aplanat, not of a scene.
+
+    Parameters
+    ----------
+    pass_name : str
+        The pass that was being drawn.
+    names : sequence of str
+        The push constants, blocks, samplers or images.
+    what : str
+        What is wrong with them.
+    """
+
+    def __init__(self, pass_name, names, what):
+        super().__init__(
+            f"shader of pass '{pass_name}': {', '.join(names)}: {what}; please report this scene"
+        )
+        self.pass_name = pass_name
+        self.names = tuple(names)
+
+
 class ShaderCompileError(AplanatError):
     """A shader that the driver refused.
 

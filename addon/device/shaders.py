@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 from ..errors import ShaderCompileError
 from . import compiler_log, shader_source
+from .bound_shader import Shader
 
 _cache = {}
 # The device goes before Python does when the process ends; no shader may outlive it.
@@ -62,6 +63,10 @@ class ShaderInfo:
 def compile_shader(info):
     """Return the compiled shader for `info`, compiling it at its first use.
 
+    Returns
+    -------
+    Shader
+
     Raises
     ------
     ShaderCompileError
@@ -69,7 +74,7 @@ def compile_shader(info):
     """
     shader = _cache.get(info)
     if shader is None:
-        shader = _cache[info] = _compile(info)
+        shader = _cache[info] = Shader(info, _compile(info))
     return shader
 
 
@@ -82,7 +87,8 @@ def dispatch(shader, groups_x, groups_y, groups_z=1):
     """Run a compute shader; what it wrote can be read by the next draw or dispatch."""
     import gpu
 
-    gpu.compute.dispatch(shader, groups_x, groups_y, groups_z)
+    shader.check_given()
+    gpu.compute.dispatch(shader.program, groups_x, groups_y, groups_z)
 
 
 def _compile(info):

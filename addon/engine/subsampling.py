@@ -23,7 +23,7 @@ class SubsampleBlur:
     ----------
     plan : FramePlan
     nearest : float
-        Least depth of anything that can be seen, m.
+        Least depth of anything that can be seen, m; inf where nothing can.
     wavelengths : callable, optional
         From a sample to its `passes.chromatic.ChromaticSample`, with chromatic aberration.
     """
@@ -53,6 +53,9 @@ class SubsampleBlur:
         self._layers = nbuffer.layers(min(blur + 1.0, max(plan.width, plan.height)))
 
     def _window_depth(self, depth):
+        if np.isinf(depth):
+            # Nothing is in view: no depth but that of the background.
+            return 1.0
         plan = self._plan
         clip = plan.projection @ np.array([0.0, 0.0, -depth, 1.0])
         return np.clip(clip[2] / max(clip[3], 1e-9) * 0.5 + 0.5, 0.0, 1.0)

@@ -69,4 +69,4 @@ def _add(fullscreen, info, texture, weights, tint=None):
     shader.uniform_float("rows", padded(weights[1]))
     if tint is not None:
         shader.uniform_float("tint", tint)
-    fullscreen.draw(shader)
+    shader.draw(fullscreen)

@@ -102,4 +102,4 @@ def _draw(
         wavelength.bind(shader)
     for name, resource in bindings:
         bind_resource(shader, name, resource)
-    fullscreen.draw(shader)
+    shader.draw(fullscreen)

@@ -102,7 +102,7 @@ def draw_marks(square, marks, count, textures, view_buffer, parameters, stride=1
     shader.uniform_block("mark_buf", parameters)
     shader.uniform_int("stride", stride)
     pieces = _RING_PIECES if marks.shape == "RING" else 1
-    square.draw_instanced(shader, instance_count=number * pieces)
+    shader.draw_instanced(square, number * pieces)
 
 
 def _picture_info():
@@ -137,4 +137,4 @@ def draw_picture(fullscreen, picture, marks, origin=(0, 0), pixel_size=1):
     shader.uniform_sampler("marks_tx", marks)
     shader.uniform_int("origin", origin)
     shader.uniform_int("pixel_size", pixel_size)
-    fullscreen.draw(shader)
+    shader.draw(fullscreen)

@@ -113,4 +113,4 @@ def draw_ranks(fullscreen, tables, kinds, kind, index, weight):
     shader.uniform_int("first_layer", list(kinds).index(kind) * pairs)
     shader.uniform_int("rank", 2 * index)
     shader.uniform_float("scale", 1.0 / weight)
-    fullscreen.draw(shader)
+    shader.draw(fullscreen)

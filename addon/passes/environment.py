@@ -56,7 +56,7 @@ def linear_pixels(image):
 
 
 def shrink(pixels, largest):
-    """Average an image down until it is at most `largest` texels wide.
+    """Average an image down until it is at most `largest` texels wide and high.
 
     Parameters
     ----------
@@ -74,11 +74,9 @@ def shrink(pixels, largest):
 
 def _halve(pixels):
     height, width = pixels.shape[:2]
-    if height < 2 or width < 2:
-        return pixels
-    # An odd last row or column is given to its neighbour.
-    rows = np.linspace(0, height, height // 2 + 1).round().astype(int)[:-1]
-    columns = np.linspace(0, width, width // 2 + 1).round().astype(int)[:-1]
+    # An odd last row or column is given to its neighbour; a single one stays.
+    rows = np.linspace(0, height, max(height // 2, 1) + 1).round().astype(int)[:-1]
+    columns = np.linspace(0, width, max(width // 2, 1) + 1).round().astype(int)[:-1]
     sums = np.add.reduceat(np.add.reduceat(pixels, rows, axis=0), columns, axis=1)
     counts = np.diff(np.append(rows, height))[:, None] * np.diff(np.append(columns, width))
     return (sums / counts[..., None]).astype(np.float32)
@@ -178,7 +176,7 @@ def prefilter(pixels):
         shader.bind()
         for name, texture in textures.items():
             shader.uniform_sampler(name, texture)
-        geometry.fullscreen_batch().draw(shader)
+        shader.draw(geometry.fullscreen_batch())
     levels = targets["levels"]
     levels.filter_mode(True)
     levels.extend_mode("EXTEND")

@@ -84,4 +84,4 @@ def draw_bounds(fullscreen, levels, sweep, opening, depth_range, gain=None, wave
     if wavelength is not None:
         wavelength.bind_resources(shader)
         shader.uniform_float("gain", tuple(gain))
-    fullscreen.draw(shader)
+    shader.draw(fullscreen)

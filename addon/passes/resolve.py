@@ -64,4 +64,4 @@ def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1, bokeh=None, 
         blur = distortion.filter_width / np.sqrt(12.0)
         square = distortion.radius**2
         shader.uniform_float("model", (distortion.k, square, distortion.fineness, float(blur)))
-    fullscreen.draw(shader)
+    shader.draw(fullscreen)

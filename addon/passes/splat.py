@@ -118,4 +118,4 @@ def splat(square, count, textures, look, view_buffer, rays=None):
     shader.uniform_block("view_buf", view_buffer)
     for block in look.blocks:
         shader.uniform_block("splat_buf", block)
-        square.draw_instanced(shader, instance_count=count)
+        shader.draw_instanced(square, count)

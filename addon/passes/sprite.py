@@ -63,4 +63,4 @@ def _draw(fullscreen, stores, color, depth, mattes, origin):
     if mattes is not None:
         shader.uniform_sampler("mattes_tx", mattes)
     shader.uniform_int("origin", origin)
-    fullscreen.draw(shader)
+    shader.draw(fullscreen)

@@ -87,4 +87,4 @@ def blur(
         wavelength.bind(shader)
         shader.uniform_float("gain", tuple(gain))
         shader.uniform_float("tint", wavelength.tint)
-    fullscreen.draw(shader)
+    shader.draw(fullscreen)

@@ -60,6 +60,8 @@ class SurfaceTarget:
         It calls ``surface_closure()`` for every surface, not only for transparent ones.
     splits : bool
         It divides light into highlights and the rest; reads ``highlight_buf``.
+    seen : bool
+        It is seen through the lens: reads ``view_buf``, `lens_sample` and `sample_index`.
     vertex : str
         Its vertex shader below ``gpu_shaders/``; it must call ``forward_attributes()``.
     """
@@ -78,6 +80,7 @@ class SurfaceTarget:
     names_material: bool = False
     shades: bool = True
     splits: bool = False
+    seen: bool = True
     vertex: str = "passes/surface_vert.glsl"
 
 
@@ -135,7 +138,7 @@ class Draw:
     constants : GPUUniformBuf or None
     textures : tuple of (str, GPUTexture)
     transparent : bool
-        The shader reads the sample's index.
+        Chance decides what it shows: another sample's picture of it cannot be shared.
     lighting : tuple of (str, GPUUniformBuf or GPUTexture)
         What a lit surface reads of the lights and the world, the same for all of them.
     material_id : float or None
@@ -144,8 +147,6 @@ class Draw:
         Which of the content's groups is drawn.
     level : int
         Its level of detail.
-    splits : bool
-        The shader reads ``highlight_buf``.
     slot : int
         The material slot of its mesh.
     """
@@ -162,7 +163,6 @@ class Draw:
     material_id: float | None = None
     group: int = 0
     level: int = 0
-    splits: bool = False
     slot: int = 0
 
 
@@ -184,6 +184,9 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
     -------
     GPUShader
     """
+    if holdout:
+        # A hole has no light to split.
+        target = _whole(target)
     attributes = [("VEC3", "pos")]
     varyings = [("VEC3", "world_position"), ("FLAT INT", "instance_row"), *target.varyings]
     forward = []
@@ -210,11 +213,13 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
         forward.append(f"  v_{name} = {name};")
     vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
     vertex = shader_source.join((shader_source.Text(vertex), target.vertex))
-    structs = VIEW_PARAMS.source + target.structs
-    uniforms = [("ViewParams", "view_buf"), *target.uniforms]
+    structs, uniforms = target.structs, [*target.uniforms]
     samplers = [("FLOAT_2D", "instances_tx"), *target.samplers]
-    push_constants = [("VEC4", "lens_sample"), ("INT", "instance_base"), ("INT", "sample_index")]
-    push_constants += target.push_constants
+    push_constants = [("INT", "instance_base"), *target.push_constants]
+    if target.seen:
+        structs = VIEW_PARAMS.source + structs
+        uniforms.insert(0, ("ViewParams", "view_buf"))
+        push_constants += [("VEC4", "lens_sample"), ("INT", "sample_index")]
     generated = ""
     if shades:
         generated = code.source
@@ -315,7 +320,6 @@ def _list_draws(content, buffers, target, glow, wanted=None):
                 ),
                 group=number,
                 level=level,
-                splits=drawn.splits and shaded,
                 slot=slot,
             )
             draws.append(((order, material.uid, group.mesh, slot, level), draw))
@@ -386,11 +390,10 @@ def draw_sample(
             shader.uniform_block("view_buf", view_buffer)
             shader.uniform_sampler("instances_tx", instances)
             shader.uniform_float("lens_sample", lens_sample)
-            if draw.transparent:
-                shader.uniform_int("sample_index", sample_index)
+            shader.uniform_int("sample_index", sample_index)
             for name, resource in (*draw.lighting, *bindings):
                 bind_resource(shader, name, resource)
-            if draw.splits:
+            if shader.declares("highlight_buf"):
                 shader.uniform_block("highlight_buf", highlights)
             if wavelength is not None:
                 wavelength.bind(shader)
@@ -401,4 +404,4 @@ def draw_sample(
         for name, texture in draw.textures:
             shader.uniform_sampler(name, texture)
         shader.uniform_int("instance_base", draw.first)
-        draw.batch.draw_instanced(shader, instance_count=draw.count)
+        shader.draw_instanced(draw.batch, draw.count)

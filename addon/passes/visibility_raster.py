@@ -55,6 +55,7 @@ TARGET = surface.SurfaceTarget(
     uniforms=_UNIFORMS,
     samplers=tuple(("FLOAT_2D", f"{name}_tx") for name in ("pairs", "sources", "tiles")),
     shades=False,
+    seen=False,
     vertex="passes/visibility_surface_vert.glsl",
 )
 
@@ -82,7 +83,7 @@ def draw_clusters(batch, count, tables, parameters, layout):
         shader.uniform_block("visibility_buf", parameters)
         shader.uniform_block("layout_buf", layout)
         shader.uniform_int("count", count)
-        batch.draw_instanced(shader, instance_count=-(-count // _PAIRS_A_DRAW))
+        shader.draw_instanced(batch, -(-count // _PAIRS_A_DRAW))
 
 
 def draw_surfaces(draws, count, tables, parameters, layout):
@@ -109,4 +110,4 @@ def draw_surfaces(draws, count, tables, parameters, layout):
             shader.uniform_block("layout_buf", layout)
             shader.uniform_block("material_buf", draw.constants)
             shader.uniform_int("instance_base", 0)
-            draw.batch.draw_instanced(shader, instance_count=count)
+            shader.draw_instanced(draw.batch, count)

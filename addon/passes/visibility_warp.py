@@ -92,4 +92,4 @@ def draw_masks(square, count, tables, parameters, layout):
         shader.uniform_sampler(f"{name}_tx", texture)
     shader.uniform_block("visibility_buf", parameters)
     shader.uniform_block("layout_buf", layout)
-    square.draw_instanced(shader, instance_count=count)
+    shader.draw_instanced(square, count)

@@ -113,7 +113,7 @@ def test_the_device_reads_what_was_packed(aplanat_bpy, declare):
             # A block that nobody holds is freed at once, bound or not.
             block = uniform_buffer(packed)
             shader.uniform_block("block_buf", block)
-            fullscreen_batch().draw(shader)
+            shader.draw(fullscreen_batch())
         found = read_color(framebuffer, len(reads), 1)[0]
     assert found[0].tolist() == [0.25, 1.5, -2.0, 3.0]
     assert found[1].tolist() == [4.0, 5.0, 7.0, 0.0]
