@@ -22,14 +22,22 @@ from .pacing import Pacer
 from .pipeline import FrameRenderer
 from .plan import plan_frame
 from .render_passes import cryptomatte_metadata, fill_layer, render_pass
+from .report import frame_report
 from .scene_buffers import SceneBuffers
+from .views import views_of
 
 # The picture is shown twice a second while it converges, unless that takes a tenth of the time.
 _SHOW_SECONDS = 0.5
 _SHOW_SHARE = 0.1
 
-# What an animation has reported so far.
+# What the render in progress has reported so far, over all its frames and view layers.
 _reported = set()
+
+
+@bpy.app.handlers.persistent
+def begin_report(*_):
+    """Forget what an earlier render reported; a handler of the beginning of a render."""
+    _reported.clear()
 
 
 def render_view_layer(engine, depsgraph, heard):
@@ -47,10 +55,18 @@ def render_view_layer(engine, depsgraph, heard):
     AplanatError
         `RenderCancelledError` if the user stopped the render.
     """
+    extractor = SceneExtractor()
+    for view in views_of(engine, depsgraph.scene):
+        if view is not None:
+            view.activate()
+        _render_view(engine, depsgraph, heard, extractor, view)
+
+
+def _render_view(engine, depsgraph, heard, extractor, view):
     statistics = heard.statistics
     with statistics.timed("extract"):
-        snapshot = SceneExtractor().extract(depsgraph, engine.frame_set)
-    _show_report(engine, heard, (*snapshot.camera.report, *snapshot.content.report))
+        snapshot = extractor.extract(depsgraph, engine.frame_set, view)
+    _show_report(engine, heard, frame_report(snapshot))
     with statistics.timed("plan"):
         plan = plan_frame(snapshot)
     levels = _make_levels(engine, plan, snapshot, heard)
@@ -61,7 +77,7 @@ def render_view_layer(engine, depsgraph, heard):
         with statistics.timed("upload"):
             renderer = gpu.run(_prepare(plan, snapshot, levels, statistics))
         try:
-            with _result(engine, snapshot) as result:
+            with _result(engine, snapshot, view) as result:
                 _draw(engine, gpu, renderer, result, heard)
                 pictures = _finish(gpu, renderer, result, heard)
         finally:
@@ -77,7 +93,7 @@ def render_view_layer(engine, depsgraph, heard):
             note_highlights(
                 depsgraph.scene.name, renderer.highlights, renderer.report, renderer.fates
             )
-            _show_report(engine, heard, renderer.report)
+            _show_report(engine, heard, frame_report(snapshot, renderer))
             if renderer.highlights:
                 for name, number in vars(renderer.highlights).items():
                     statistics.highlights[name] += number
@@ -89,13 +105,12 @@ def render_view_layer(engine, depsgraph, heard):
     for key, value in metadata.items():
         engine.get_result().stamp_data_add_field(key, value)
     if heard.keeps_pictures:
-        heard.layers.append(_layer_picture(depsgraph.scene, snapshot, pictures, metadata))
+        picture = _layer_picture(depsgraph.scene, snapshot, view, pictures, metadata)
+        heard.layers.append(picture)
 
 
 def _show_report(engine, heard, lines):
     heard.note(lines)
-    if not engine.is_animation:
-        _reported.clear()
     for line in lines:
         if line not in _reported:
             engine.report({"WARNING"}, line)
@@ -140,9 +155,10 @@ def _prepare(plan, snapshot, levels, statistics):
 
 
 @contextmanager
-def _result(engine, snapshot):
+def _result(engine, snapshot, view):
     _, _, width, height = snapshot.film.region
-    result = engine.begin_result(0, 0, width, height, layer=snapshot.layer_name)
+    name = view.name if view else ""
+    result = engine.begin_result(0, 0, width, height, layer=snapshot.layer_name, view=name)
     try:
         yield result
     finally:
@@ -188,11 +204,12 @@ def _finish(gpu, renderer, result, heard):
     return {name: pictures[name] for name in renderer.plan.passes if name in pictures}
 
 
-def _layer_picture(scene, snapshot, pictures, metadata):
+def _layer_picture(scene, snapshot, view, pictures, metadata):
     film = snapshot.film
     return LayerPicture(
         scene=scene.name,
         layer=snapshot.layer_name,
+        view=view.name if view else "",
         region=film.region,
         size=(film.width, film.height),
         passes={

@@ -100,6 +100,7 @@ class PassPicture:
     ----------
     channels : str
         A letter each, as given to `RenderEngine.register_pass`: ``"RGBA"``, ``"X"``, ``"XYZ"``.
+        Those of Cryptomatte are small, ``"rgba"``: they are data, not colours.
     pixels : ndarray of shape (height, width, len(channels))
         float32, bottom row first.
     """
@@ -110,12 +111,14 @@ class PassPicture:
 
 @dataclass(frozen=True, eq=False)
 class LayerPicture:
-    """The passes of one view layer.
+    """The passes of one view of a view layer.
 
     Parameters
     ----------
     scene, layer : str
         Names.
+    view : str
+        Name of the view of a stereoscopic render; empty where there is only one.
     region : tuple of 4 int
         x, y, width, height of the pixels in the whole picture, y from the bottom.
     size : tuple of 2 int
@@ -128,6 +131,7 @@ class LayerPicture:
 
     scene: str
     layer: str
+    view: str
     region: tuple[int, int, int, int]
     size: tuple[int, int]
     passes: dict[str, PassPicture]

@@ -83,12 +83,14 @@ _register, _unregister = bpy.utils.register_classes_factory((AplanatRenderEngine
 def register():
     """Register the engine and have the main thread look for its work."""
     _register()
+    bpy.app.handlers.render_init.append(final_render.begin_report)
     if not bpy.app.background:
         bpy.app.timers.register(gpu_thread.work_off_one_job, persistent=True)
 
 
 def unregister():
     """Undo `register`."""
+    bpy.app.handlers.render_init.remove(final_render.begin_report)
     if bpy.app.timers.is_registered(gpu_thread.work_off_one_job):
         bpy.app.timers.unregister(gpu_thread.work_off_one_job)
     _unregister()

@@ -38,7 +38,7 @@ class RenderPass:
     name : str
         Blender's name where Blender has one.
     channels : str
-        A letter each.
+        A letter each; ``RGBA`` in capitals are colours, which files may hold in half precision.
     kind : {'COLOR', 'VALUE', 'VECTOR'}
         How the compositor reads it.
     maker : {'COLOR', 'DATA', 'MATTE', 'CRYPTOMATTE'}
@@ -79,7 +79,8 @@ def render_pass(name):
         If Aplanat makes no such pass.
     """
     if _CRYPTOMATTE.fullmatch(name):
-        return RenderPass(name, "RGBA", "COLOR", "CRYPTOMATTE")
+        # In capitals Blender takes ids for colours and stores them in half precision at depth 16.
+        return RenderPass(name, "rgba", "COLOR", "CRYPTOMATTE")
     return _TABLE[name]
 
 

@@ -26,6 +26,7 @@ from .outcome import note_highlights
 from .pacing import Pacer
 from .pipeline import FrameRenderer
 from .plan import plan_frame
+from .report import frame_report, in_short
 from .scene_buffers import SceneBuffers
 
 # Between two answers to the user; a single sample may take longer.
@@ -203,6 +204,9 @@ class Viewport:
         done, total = level_store().progress
         if done < total:
             self.text += f" | Levels of detail {done / total:.0%}"
+        warnings = in_short(frame_report(snapshot, renderer))
+        if warnings:
+            self.text += f" | {warnings}"
         return not renderer.finished()
 
     def _refine(self, renderer):

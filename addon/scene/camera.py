@@ -13,7 +13,7 @@ from .lenses import read_real_lens
 from .snapshot import Camera
 
 
-def read_camera(depsgraph, camera, film):
+def read_camera(depsgraph, camera, film, view=None):
     """Return the scene's camera as Blender frames it.
 
     Parameters
@@ -21,6 +21,8 @@ def read_camera(depsgraph, camera, film):
     depsgraph : bpy.types.Depsgraph
     camera : bpy.types.Object or None
     film : Film
+    view : engine.views.View or None
+        The view of a stereoscopic render, which has its own camera, or place and shift of one.
 
     Returns
     -------
@@ -35,6 +37,8 @@ def read_camera(depsgraph, camera, film):
     """
     if camera is None:
         raise CameraError("the scene has no camera; add one or set Scene > Camera")
+    if view is not None:
+        camera = view.camera(depsgraph)
     camera = evaluated_camera(depsgraph, camera)
     data = camera.data
     render = depsgraph.scene.render
@@ -45,24 +49,58 @@ def read_camera(depsgraph, camera, film):
         scale_x=render.pixel_aspect_x,
         scale_y=render.pixel_aspect_y,
     )
-    world = camera.matrix_world.normalized()
+    projection = np.array(projection, np.float64)
+    if view is None:
+        world = camera.matrix_world.normalized()
+    else:
+        world = view.place(camera).normalized()
+        _shift(projection, data, render, film, view.shift_x(camera) - data.shift_x)
     real_lens, problems = read_real_lens(data)
-    lens = read_lens(depsgraph, camera, real_lens) if data.dof.use_dof else None
+    lens = read_lens(depsgraph, camera, real_lens, world) if data.dof.use_dof else None
     focus = lens.focus_distance if lens else None
     chromatic, chromatic_problems = read_chromatic(data, real_lens, focus)
     corner = corner_tangent(data, depsgraph.scene)
     bokeh, bokeh_problems = read_bokeh(data, real_lens, corner)
-    problems = (*problems, *chromatic_problems, *bokeh_problems)
     return Camera(
         view=np.array(world.inverted(), np.float64),
-        projection=np.array(projection, np.float64),
+        projection=projection,
         lens=lens,
         orthographic=data.type == "ORTHO",
         real_lens=real_lens,
-        report=tuple(f"camera '{camera.name}': {problem}" for problem in problems),
+        report=camera_report(camera, problems, chromatic_problems, bokeh_problems),
         chromatic=chromatic,
         bokeh=bokeh,
     )
+
+
+def camera_report(camera, *problems):
+    """Return what a camera asks for and does not get, as lines that name it.
+
+    Parameters
+    ----------
+    camera : bpy.types.Object
+    *problems : iterable of str
+
+    Returns
+    -------
+    tuple of str
+    """
+    return tuple(f"camera '{camera.name}': {line}" for group in problems for line in group)
+
+
+def _shift(projection, data, render, film, shift_x):
+    """Move a picture sideways as Blender's camera shift does; changes `projection`."""
+    aspect = render.pixel_aspect_y / render.pixel_aspect_x
+    width, height = film.width, aspect * film.height
+    fit = data.sensor_fit
+    if fit == "AUTO":
+        fit = "HORIZONTAL" if width >= height else "VERTICAL"
+    # In half pictures, as the projection counts; the filled side of the sensor has length 1.
+    moved = 2.0 * shift_x * (width if fit == "HORIZONTAL" else height) / width
+    if data.type == "ORTHO":
+        projection[0, 3] -= moved
+    else:
+        projection[0, 2] += moved
 
 
 def evaluated_camera(depsgraph, camera):
@@ -83,24 +121,37 @@ def evaluated_camera(depsgraph, camera):
     return camera
 
 
-def read_lens(depsgraph, camera, real_lens=None):
+def read_lens(depsgraph, camera, real_lens=None, world=None):
     """Return the thin lens of a camera with depth of field.
 
     The aperture follows Cycles: focal length over f-number, and 1 m over it where an orthographic
-    camera has no focal length. A real lens opens no wider than it can.
+    camera has no focal length. A real lens opens no wider than it can. `world` is as
+    `focus_distance` takes it.
     """
     data = camera.data
     dof = data.dof
     focal_length = 1.0 if data.type == "ORTHO" else data.lens / 1000.0
     f_number = real_lens.f_number if real_lens else dof.aperture_fstop
     iris = Iris(dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio)
-    return ThinLens(
-        aperture_radius(focal_length, f_number), focus_distance(depsgraph, camera), iris
-    )
+    distance = focus_distance(depsgraph, camera, world)
+    return ThinLens(aperture_radius(focal_length, f_number), distance, iris)
 
 
-def focus_distance(depsgraph, camera):
+def focus_distance(depsgraph, camera, world=None):
     """Return the distance of the focus plane along the optical axis, in m.
+
+    Parameters
+    ----------
+    depsgraph : bpy.types.Depsgraph
+    camera : bpy.types.Object
+        Evaluated.
+    world : mathutils.Matrix or None
+        Where the camera stands, where that is not its own place: an eye of a stereoscopic render
+        focuses on an object by its own distance from it, as in Cycles.
+
+    Returns
+    -------
+    float
 
     Raises
     ------
@@ -114,7 +165,8 @@ def focus_distance(depsgraph, camera):
     matrix = target.matrix_world
     if dof.focus_subtarget and target.pose and dof.focus_subtarget in target.pose.bones:
         matrix = matrix @ target.pose.bones[dof.focus_subtarget].matrix
-    place = camera.matrix_world.normalized().inverted() @ matrix.translation
+    world = camera.matrix_world.normalized() if world is None else world
+    place = world.inverted() @ matrix.translation
     if place.z >= 0.0 or not math.isfinite(place.z):
         raise FocusError(
             f"focus object '{target.name}' is not in front of camera '{camera.name}';"

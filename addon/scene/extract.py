@@ -15,6 +15,7 @@ from .motion import RowSources, add_motion
 from .settings import read_film, read_passes, read_sampling
 from .snapshot import InstanceGroup, InstanceTable, SceneContent, SceneSnapshot
 from .surface_graph import attributes_read
+from .unsupported import read_unsupported
 from .world import read_world
 
 
@@ -73,7 +74,7 @@ class SceneExtractor:
         for key in [key for key, known in self._known.items() if known.owners & changed]:
             self._doubtful.append(self._known.pop(key).reading)
 
-    def extract(self, depsgraph, frame_set=None):
+    def extract(self, depsgraph, frame_set=None, view=None):
         """Return the snapshot of an evaluated scene for its view layer.
 
         Parameters
@@ -82,6 +83,8 @@ class SceneExtractor:
         frame_set : callable or None
             ``frame_set(frame, subframe)`` of the render engine. With it, and only where the Vector
             pass is on, the neighbouring frames are evaluated too.
+        view : engine.views.View or None
+            Whose camera takes the picture, in a stereoscopic render.
 
         Returns
         -------
@@ -96,7 +99,7 @@ class SceneExtractor:
         film = read_film(scene)
         passes = read_passes(view_layer)
         snapshot = SceneSnapshot(
-            camera=read_camera(depsgraph, scene.camera, film),
+            camera=read_camera(depsgraph, scene.camera, film, view),
             content=self.extract_content(depsgraph, passes),
             film=film,
             sampling=read_sampling(depsgraph.scene_eval),
@@ -105,7 +108,7 @@ class SceneExtractor:
             alpha_threshold=view_layer.pass_alpha_threshold,
         )
         if "Vector" in passes and frame_set is not None:
-            snapshot = add_motion(snapshot, self._sources, depsgraph, frame_set)
+            snapshot = add_motion(snapshot, self._sources, depsgraph, frame_set, view)
             # What is known describes an evaluation that is gone.
             self._known, self._doubtful, self._content, self._stale = {}, [], None, True
         return snapshot
@@ -171,7 +174,17 @@ class SceneExtractor:
             groups=tuple(groups),
             lights=tuple(found.lights),
             world=world,
-            report=tuple(dict.fromkeys([*found.report, *notes, *world_notes, *materials.report])),
+            report=tuple(
+                dict.fromkeys(
+                    [
+                        *read_unsupported(depsgraph),
+                        *found.report,
+                        *notes,
+                        *world_notes,
+                        *materials.report,
+                    ]
+                )
+            ),
         )
 
     def _instance_table(self, found, order, passes):

@@ -5,7 +5,7 @@ its instancer; holdout and indirect-only collections act on the instancer's plac
 """
 
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,7 +18,6 @@ _UNDRAWN = {
     "CURVES": ("hair curves", "use_strand", lambda data: len(data.curves)),
     "POINTCLOUD": ("a point cloud", "use_solid", lambda data: len(data.points)),
     "VOLUME": ("a volume", "use_volumes", lambda data: True),
-    "GREASEPENCIL": ("grease pencil", "use_grease_pencil", lambda data: len(data.layers)),
 }
 
 
@@ -194,12 +193,12 @@ class _Reader:
         data = obj.data
         if data is None:
             return None
+        parent = instance.parent if instance.is_instance else obj
         if obj.type == "LIGHT":
             # It lights what the camera sees wherever it hides itself.
             if instance.show_self and self._is_in_view(obj):
-                self._read_light(obj, instance.matrix_world)
+                self._read_light(obj, parent, instance.matrix_world)
             return None
-        parent = instance.parent if instance.is_instance else obj
         number = data.session_uid or ("unnumbered", data.as_pointer())
         shown = (instance.show_self, instance.show_particles)
         # Copies of one thing in one place of the scene are alike; there may be very many.
@@ -226,6 +225,15 @@ class _Reader:
             drawn = Look(number, self._slots(obj), holdout), name
             if obj.is_shadow_catcher:
                 notes.append("a shadow catcher is drawn as any other surface")
+            if _is_diced(obj):
+                notes.append("adaptive subdivision is drawn as the levels of its modifier")
+        elif show_self and obj.type == "LIGHT_PROBE":
+            notes.append("a light probe is not used")
+        elif show_self and obj.type == "GREASEPENCIL":
+            if switches.use_grease_pencil and len(obj.data.layers):
+                notes.append(
+                    "grease pencil is drawn by Blender over the finished picture, never blurred"
+                )
         elif show_self and obj.type in _UNDRAWN:
             what, switch, size = _UNDRAWN[obj.type]
             if getattr(switches, switch) and size(obj.data):
@@ -235,13 +243,19 @@ class _Reader:
     def _is_in_view(self, obj):
         return self._space is None or obj.visible_in_viewport_get(self._space)
 
-    def _read_light(self, obj, matrix):
+    def _read_light(self, obj, parent, matrix):
         if len(self.out.lights) == MAX_LIGHTS:
             self._note(obj.name, f"more than {MAX_LIGHTS} lights; this one does not shine")
             return
         light, notes = read_light(obj.data, matrix)
         if light is not None:
+            # As in Cycles and EEVEE, an instance has the ray visibility of its instancer, too.
+            if not (obj.visible_diffuse and parent.visible_diffuse):
+                light = replace(light, diffuse_factor=0.0)
+            if not (obj.visible_glossy and parent.visible_glossy):
+                light = replace(light, specular_factor=0.0)
             self.out.lights.append(light)
+            notes += _light_object_notes(obj, parent)
         for note in notes:
             self._counts[obj.name, note] = self._counts.get((obj.name, note), 0) + 1
 
@@ -295,6 +309,20 @@ class _Reader:
             f"object '{name}': {what}" + (f" ({count} copies)" if count > 1 else "")
             for (name, what), count in self._counts.items()
         )
+
+
+def _light_object_notes(obj, parent):
+    if obj.visible_camera and parent.visible_camera:
+        yield "is to be seen by the camera; what a lamp lights is drawn, the lamp itself is not"
+    if obj.light_linking.receiver_collection is not None:
+        yield "light linking is not done; everything is lit"
+
+
+def _is_diced(obj):
+    return any(
+        modifier.type == "SUBSURF" and modifier.show_render and modifier.use_adaptive_subdivision
+        for modifier in obj.modifiers
+    )
 
 
 def _hair_notes(obj):

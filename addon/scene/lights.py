@@ -35,6 +35,10 @@ def read_light(light, matrix):
         What is not drawn as it is set.
     """
     notes = []
+    # Without Cycles' add-on a light has no settings of Cycles.
+    if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
+        notes.append("a portal of Cycles gives no light of its own; it is left out")
+        return None, notes
     matrix = np.array(matrix, np.float64)
     power = np.array(light.color[:], np.float64) * light.energy * 2.0**light.exposure
     if light.use_temperature:

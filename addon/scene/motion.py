@@ -37,7 +37,7 @@ class RowSources:
     keys: dict
 
 
-def add_motion(snapshot, sources, depsgraph, frame_set):
+def add_motion(snapshot, sources, depsgraph, frame_set, view=None):
     """Return a snapshot with motion of camera, instances and deforming meshes.
 
     Parameters
@@ -49,6 +49,8 @@ def add_motion(snapshot, sources, depsgraph, frame_set):
         Evaluated three times; what was read from it before is not valid afterwards.
     frame_set : callable
         ``frame_set(frame, subframe)``, such as a render engine's.
+    view : engine.views.View or None
+        As `read_camera` takes it.
 
     Returns
     -------
@@ -66,7 +68,7 @@ def add_motion(snapshot, sources, depsgraph, frame_set):
         for step in (-1, 1):
             frame_set(frame + step, subframe)
             world, moved = _read_pose(depsgraph, snapshot.content.instances.world, sources)
-            seen_from = read_camera(depsgraph, camera, snapshot.film)
+            seen_from = read_camera(depsgraph, camera, snapshot.film, view)
             poses.append((world, moved, (seen_from.view, seen_from.projection)))
     finally:
         frame_set(frame, subframe)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .bokeh import corner_tangent, read_bokeh
-from .camera import evaluated_camera, read_lens
+from .camera import camera_report, evaluated_camera, read_lens
 from .chromatic import read_chromatic
 from .lenses import read_real_lens
 from .snapshot import Camera, Film
@@ -68,16 +68,19 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
     stretch = np.diag([*covered, 1.0, 1.0])
     stretch[:2, 3] = covered - 1.0
     lens = real_lens = bokeh = frame = field_radius = chromatic = None
+    report = ()
     through_camera = region_3d.view_perspective == "CAMERA" and space.camera is not None
     if through_camera and space.camera.type == "CAMERA":
         camera = evaluated_camera(depsgraph, space.camera)
         frame = _camera_frame(camera, scene, window @ view)
         field_radius = _field_radius(camera, scene)
-        real_lens, _ = read_real_lens(camera.data)
+        real_lens, of_lens = read_real_lens(camera.data)
         if camera.data.dof.use_dof:
             lens = read_lens(depsgraph, camera, real_lens)
-        bokeh, _ = read_bokeh(camera.data, real_lens, corner_tangent(camera.data, scene))
-        chromatic, _ = read_chromatic(camera.data, real_lens)
+        corner = corner_tangent(camera.data, scene)
+        bokeh, of_bokeh = read_bokeh(camera.data, real_lens, corner)
+        chromatic, of_chromatic = read_chromatic(camera.data, real_lens)
+        report = camera_report(camera, of_lens, of_chromatic, of_bokeh)
     if through_camera:
         border = _border_in_frame(scene.render, frame)
     else:
@@ -104,6 +107,7 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
         bokeh=bokeh,
         chromatic=chromatic,
         field_radius=field_radius,
+        report=report,
     )
     return View(camera, film, pixel_size)
 

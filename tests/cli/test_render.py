@@ -70,7 +70,7 @@ def test_exr_is_float_and_named_as_blenders(aplanat, make_blend, tmp_path):
     assert all(c.dtype == np.float32 for c in channels.values())
     for name in (
         *("ViewLayer.Combined.R", "ViewLayer.Depth.Z", "ViewLayer.Normal.X", "ViewLayer.CoC.X"),
-        *("ViewLayer.CryptoObject00.R", "Second.Combined.A"),
+        *("ViewLayer.CryptoObject00.r", "Second.Combined.A"),
     ):
         assert name in channels, sorted(channels)
     header = exr_header(path)

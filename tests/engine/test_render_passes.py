@@ -77,5 +77,5 @@ def test_blender_is_told_name_channels_and_type():
         ("Combined", 4, "RGBA", "COLOR"),
         ("Depth", 1, "Z", "VALUE"),
         ("Vector", 4, "XYZW", "VECTOR"),
-        ("CryptoObject01", 4, "RGBA", "COLOR"),
+        ("CryptoObject01", 4, "rgba", "COLOR"),
     ]

@@ -1,0 +1,62 @@
+"""The views of a stereoscopic render: which camera sees each, from where.
+
+Blender renders all views of a view layer in one call of the engine. With *Stereo 3D* two eyes share
+a camera, moved apart and shifted or turned as its convergence asks; with *Multi-View* each view has
+a camera of its own, found by the suffix of its name. Blender works out both for the view that is
+active (`RenderEngine.active_view_set`).
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """One view of a render, as `scene.camera.read_camera` asks for it.
+
+    Parameters
+    ----------
+    engine : bpy.types.RenderEngine
+    name : str
+        Of Blender's view; empty where there is only one.
+    """
+
+    engine: object
+    name: str
+
+    def activate(self):
+        """Have Blender's answers be about this view."""
+        self.engine.active_view_set(self.name)
+
+    def camera(self, depsgraph):
+        """Return the camera that sees this view, of the evaluated scene."""
+        return self.engine.camera_override or depsgraph.scene.camera
+
+    def place(self, camera):
+        """Return where a camera stands for this view, object to world."""
+        return self.engine.camera_model_matrix(camera)
+
+    def shift_x(self, camera):
+        """Return the shift of a camera for this view, in units of the sensor's side."""
+        return self.engine.camera_shift_x(camera)
+
+
+def views_of(engine, scene):
+    """Return the views that a render of a scene has.
+
+    Parameters
+    ----------
+    engine : bpy.types.RenderEngine
+    scene : bpy.types.Scene
+
+    Returns
+    -------
+    list of View or None
+        None stands for the only view of a render without stereoscopy.
+    """
+    render = scene.render
+    if not render.use_multiview:
+        return [None]
+    found = render.stereo_views if render.views_format == "STEREO_3D" else render.views
+    views = [View(engine, view.name) for view in found if view.use]
+    # Without any, Blender renders as if there were no stereoscopy.
+    return views or [None]
