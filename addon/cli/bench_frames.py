@@ -63,6 +63,7 @@ class BenchScene:
         # Nothing that an earlier run has left on disk may help.
         self._folder = tempfile.TemporaryDirectory()
         self._store = LevelStore(folder=Path(self._folder.name))
+        self._levels = self._store.open()
         with timed(self.seconds, "extract"):
             self._read()
         with timed(self.seconds, "upload"):
@@ -114,15 +115,15 @@ class BenchScene:
         for stage in ("make", "from_memory"):
             with timed(seconds, stage):
                 uids = meshes_with_levels(snapshot.content, plan_frame(snapshot))
-                self._store.request([snapshot.content.meshes[uid] for uid in uids], least)
-                self._store.finish()
+                self._levels.request([snapshot.content.meshes[uid] for uid in uids], least)
+                self._levels.finish()
         # As in a render of this frame alone.
         for uid in self._buffers.levels.keys() - set(uids):
             del self._buffers.levels[uid]
         with timed(seconds, "upload"):
             for uid in uids:
                 if uid not in self._buffers.levels:
-                    self._buffers.add_levels(uid, self._store.ready(uid))
+                    self._buffers.add_levels(uid, self._levels.ready(uid))
         return {**seconds, "meshes": len(uids)}
 
     def draw(self, snapshot, samples=None, progress=None, plan=None):
@@ -213,6 +214,7 @@ class BenchScene:
 
     def close(self):
         """Give back what the levels of detail hold."""
+        self._levels.close()
         self._store.close()
         self._folder.cleanup()
 

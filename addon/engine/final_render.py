@@ -90,9 +90,7 @@ def _render_view(engine, depsgraph, heard, extractor, view):
             statistics.triangles_full_detail += counts.triangles_full_detail
             statistics.sprites_drawn += counts.sprites_drawn
             statistics.sprites_copied += counts.sprites_copied
-            note_highlights(
-                depsgraph.scene.name, renderer.highlights, renderer.report, renderer.fates
-            )
+            note_highlights(depsgraph.scene, renderer.highlights, renderer.report, renderer.fates)
             _show_report(engine, heard, frame_report(snapshot, renderer))
             if renderer.highlights:
                 for name, number in vars(renderer.highlights).items():
@@ -127,19 +125,18 @@ def _make_levels(engine, plan, snapshot, heard):
     statistics, content = heard.statistics, snapshot.content
     wanted = meshes_with_levels(content, plan)
     with statistics.timed("levels"):
-        store = level_store()
-        decimations, replays = store.decimations, store.replays
-        store.request([content.meshes[uid] for uid in wanted], plan.least_triangles)
 
         def progress(done, total):
             engine.update_stats("", f"Levels of detail: {done:,} of {total:,} triangles")
 
-        try:
-            store.finish(progress, engine.test_break)
-        finally:
-            statistics.decimations += store.decimations - decimations
-            statistics.replays += store.replays - replays
-    return {uid: store.ready(uid) for uid in wanted}
+        with level_store().open() as levels:
+            levels.request([content.meshes[uid] for uid in wanted], plan.least_triangles)
+            try:
+                levels.finish(progress, engine.test_break)
+            finally:
+                statistics.decimations += levels.work.decimations
+                statistics.replays += levels.work.replays
+            return {uid: levels.ready(uid) for uid in wanted}
 
 
 def _prepare(plan, snapshot, levels, statistics):

@@ -17,7 +17,7 @@ from ..files.whole_file import whole_file
 from ..scene.mesh_levels import Halving
 
 # Grows when the same mesh would get other levels.
-_VERSION = 2
+_VERSION = 3
 _FIELDS = tuple(field.name for field in fields(Halving))
 
 
@@ -41,7 +41,7 @@ class LevelFiles:
         return self.folder / f"{key}.npz"
 
     def read(self, key):
-        """Return the halvings of a key, or None if there are none that can be used."""
+        """Return halvings and shrinkage of a key, or None if there are none that can be used."""
         path = self.path(key)
         try:
             with open(path, "rb") as file, np.load(file, allow_pickle=False) as arrays:
@@ -51,14 +51,23 @@ class LevelFiles:
                     Halving(*(arrays[f"{name}_{number}"] for name in _FIELDS))
                     for number in range(int(arrays["count"]))
                 )
+                shrinkage = float(arrays["shrinkage"])
         except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
             return None
         with contextlib.suppress(OSError):
             os.utime(path)
-        return halvings
+        return halvings, shrinkage
 
-    def write(self, key, halvings):
-        """Keep halvings; a folder that cannot be written to keeps nothing."""
+    def write(self, key, halvings, shrinkage):
+        """Keep halvings; a folder that cannot be written to keeps nothing.
+
+        Parameters
+        ----------
+        key : str
+        halvings : sequence of Halving
+        shrinkage : float
+            See `level_making.Collapses`.
+        """
         arrays = {
             f"{name}_{number}": getattr(halving, name)
             for number, halving in enumerate(halvings)
@@ -66,6 +75,7 @@ class LevelFiles:
         }
         arrays["version"] = np.array(_VERSION)
         arrays["count"] = np.array(len(halvings))
+        arrays["shrinkage"] = np.array(shrinkage, np.float64)
         arrays["digest"] = np.array(_digest(arrays))
         with contextlib.suppress(OSError, OutputError):
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -73,10 +83,11 @@ class LevelFiles:
                 np.savez(file, **arrays)
             self._make_room()
 
-    def forget(self, key):
-        """Remove the halvings of a key."""
-        with contextlib.suppress(OSError):
-            self.path(key).unlink()
+    def clear(self):
+        """Remove the halvings of all keys."""
+        for path in self.folder.glob("*.npz"):
+            with contextlib.suppress(OSError):
+                path.unlink()
 
     def _make_room(self):
         found = [(path, path.stat()) for path in self.folder.glob("*.npz")]

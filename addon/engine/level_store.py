@@ -1,50 +1,88 @@
 """The levels of detail of the scene's meshes: made in the background, kept, shared.
 
-Meshes of equal content share their levels. A mesh that has the name and the triangles of one that
-was simplified before, but other positions, has been deformed: its levels follow by the same
-collapses. What was made for large meshes is kept on disk.
+Every client - each scene that 3D views show, each final render - opens a handle of its own, asks by
+it, waits by it, and hears by it of its own errors; none sees what others ask for. Behind the
+handles, meshes of equal content share their levels, and one thread makes what is missing, first
+for those who wait. What is kept from before only saves time: see `level_making`.
 """
 
 import atexit
-import hashlib
 import threading
 import weakref
-from collections import OrderedDict
-from dataclasses import dataclass
+from collections import OrderedDict, deque
+from dataclasses import dataclass, field
 from functools import cache
-
-import numpy as np
 
 from ..errors import RenderCancelledError
 from ..files.cache_folder import cache_folder
-from ..scene.mesh_levels import replay, simplify
 from .level_files import LevelFiles
+from .level_making import LevelMaker, LevelWork, content_key, size_of_levels
 
 _MEMORY_LIMIT = 1 << 30
 _DISK_LIMIT = 2 << 30
-# Smaller meshes are simplified about as fast as they are read.
-_LEAST_TRIANGLES_ON_DISK = 50_000
 # How often a waiting caller looks whether it was cancelled.
 _POLL_SECONDS = 0.05
-# A mesh of the same name and triangles is not the same one deformed if its area shrinks more by
-# this factor on the way to the coarsest level.
-_AREA_TOLERANCE = 1.15
+
+
+@dataclass(eq=False)
+class _Client:
+    """What one handle asked for.
+
+    Attributes
+    ----------
+    wanted : dict of int to MeshSnapshot
+        By uid.
+    keys : dict of int to bytes
+        Content of those whose levels were made.
+    queue : OrderedDict of int to MeshSnapshot
+        Those that are still to be made, in that order.
+    batch, done : dict of int to int
+        Triangles of what was asked for since nothing was left to do, and of what is done of it.
+    begun : int
+        Triangles done of the mesh that is being made.
+    """
+
+    least_triangles: int = 0
+    wanted: dict = field(default_factory=dict)
+    keys: dict = field(default_factory=dict)
+    queue: OrderedDict = field(default_factory=OrderedDict)
+    batch: dict = field(default_factory=dict)
+    done: dict = field(default_factory=dict)
+    begun: int = 0
+    errors: dict = field(default_factory=dict)
+    work: LevelWork = field(default_factory=LevelWork)
+    waits: bool = False
+
+    def is_small(self, mesh):
+        return len(mesh.triangles) < 2 * self.least_triangles
+
+    def progress(self):
+        total = sum(self.batch.values())
+        return min(sum(self.done.values()) + self.begun, total), total
+
+    def finish_mesh(self, uid):
+        self.begun = 0
+        if uid in self.batch:
+            self.done[uid] = self.batch[uid]
+
+    def give_up(self):
+        """Ask for nothing that is still to be made."""
+        self.queue.clear()
+        self.batch.clear()
+        self.done.clear()
+        self.begun = 0
 
 
 @dataclass(frozen=True, eq=False)
-class _Made:
-    levels: tuple
-    bytes: int
-
-
-@dataclass(frozen=True, eq=False)
-class _Known:
-    halvings: tuple
-    shrinkage: float
+class _Job:
+    client: _Client
+    mesh: object
+    least_triangles: int
+    generation: int
 
 
 class LevelStore:
-    """Levels of detail by mesh.
+    """Levels of detail by the content of meshes, shared by all that open a handle.
 
     Safe to use from several threads. The work is done by one thread, which exists while there is
     some.
@@ -54,39 +92,271 @@ class LevelStore:
     memory_limit : int
         Bytes of levels that are kept for meshes that nobody requests at the moment.
     folder : Path, optional
-        For the levels of large meshes; default the user's cache.
+        For the collapses of large meshes; default the user's cache.
     disk_limit : int
         Bytes that the folder may take.
 
     Attributes
     ----------
-    decimations, replays, loads : int
-        How many meshes were simplified, got their levels by the collapses of another mesh or frame,
-        and by those on disk.
+    work : LevelWork
+        Of all handles together.
     """
 
     def __init__(self, memory_limit=_MEMORY_LIMIT, folder=None, disk_limit=_DISK_LIMIT):
-        self.decimations = self.replays = self.loads = 0
+        self.work = LevelWork()
         self._memory_limit = memory_limit
-        self._files = LevelFiles(cache_folder("levels") if folder is None else folder, disk_limit)
+        files = LevelFiles(cache_folder("levels") if folder is None else folder, disk_limit)
+        self._maker = LevelMaker(files, memory_limit)
         self._changed = threading.Condition()
-        self._least_triangles = None
-        self._wanted = {}
-        self._keys = {}
+        self._clients = []
+        # Of handles that were lost without being closed; taken off where the lock is held, because
+        # garbage may be collected anywhere.
+        self._abandoned = deque()
         self._made = OrderedDict()
-        self._known = OrderedDict()
-        self._queue = OrderedDict()
-        self._fresh = set()
-        self._work_done = self._work_total = self._work_begun = 0
-        self._error = None
+        self._sizes = {}
+        self._generation = 0
+        self._job = None
         self._thread = None
         self._stopping = False
         atexit.register(_close, weakref.ref(self))
 
+    def open(self):
+        """Return a handle of its own for a client.
+
+        Returns
+        -------
+        LevelHandle
+            To be closed; one that is lost closes itself.
+        """
+        client = _Client()
+        with self._changed:
+            self._clients.append(client)
+        handle = LevelHandle(self, client)
+        weakref.finalize(handle, self._abandoned.append, client).atexit = False
+        return handle
+
+    @property
+    def progress(self):
+        """Triangles of full detail that are done, and in all, of all handles together."""
+        with self._changed:
+            self._forget_abandoned()
+            pairs = [client.progress() for client in self._clients]
+        return sum(done for done, _ in pairs), sum(total for _, total in pairs)
+
+    @property
+    def busy(self):
+        """Whether levels are being made."""
+        with self._changed:
+            return self._thread is not None
+
+    @property
+    def memory_bytes(self):
+        """Bytes of all levels kept in memory."""
+        with self._changed:
+            return sum(self._sizes.values())
+
+    @property
+    def generation(self):
+        """How often everything was forgotten; levels of an earlier generation are out of date."""
+        with self._changed:
+            return self._generation
+
+    def rebuild(self):
+        """Forget every level, in memory and on disk, and make the requested ones again."""
+        self._maker.forget()
+        with self._changed:
+            # What is being made at this moment was begun with what is forgotten now.
+            self._generation += 1
+            self._made.clear()
+            self._sizes.clear()
+            for client in self._clients:
+                client.keys.clear()
+                client.errors.clear()
+                client.give_up()
+                self._enqueue(client)
+
+    def close(self):
+        """Stop making levels; returns when the thread has ended."""
+        with self._changed:
+            for client in self._clients:
+                client.give_up()
+            self._stopping = True
+            thread = self._thread
+        if thread is not None:
+            thread.join()
+        with self._changed:
+            self._stopping = False
+
+    def _remove(self, client):
+        with self._changed:
+            if client in self._clients:
+                self._clients.remove(client)
+                client.give_up()
+                client.wanted.clear()
+                client.keys.clear()
+                self._evict()
+                self._changed.notify_all()
+
+    def _forget_abandoned(self):
+        while self._abandoned:
+            self._remove(self._abandoned.popleft())
+
+    def _request(self, client, meshes, least_triangles):
+        with self._changed:
+            self._forget_abandoned()
+            if least_triangles != client.least_triangles:
+                client.least_triangles = least_triangles
+                client.keys.clear()
+                client.give_up()
+            client.wanted = {mesh.uid: mesh for mesh in meshes}
+            client.keys = {u: k for u, k in client.keys.items() if u in client.wanted}
+            client.errors = {u: e for u, e in client.errors.items() if u in client.wanted}
+            for uid in [uid for uid in client.queue if uid not in client.wanted]:
+                del client.queue[uid]
+                client.batch.pop(uid, None)
+            self._enqueue(client)
+            self._evict()
+
+    def _ready(self, client, uid):
+        with self._changed:
+            mesh = client.wanted.get(uid)
+            if mesh is not None and client.is_small(mesh):
+                return ()
+            return self._made.get(client.keys.get(uid))
+
+    def _is_made_for(self, client):
+        return self._job is not None and self._job.client is client
+
+    def _enqueue(self, client):
+        """Put what a client wants and lacks into its queue, the meshes with most triangles last."""
+        current = self._job.mesh.uid if self._is_made_for(client) else None
+        if current not in client.batch:
+            # Given up; it ends without levels.
+            current = None
+        missing = [
+            mesh
+            for uid, mesh in client.wanted.items()
+            if client.keys.get(uid) not in self._made
+            and uid not in client.queue
+            and uid not in client.errors
+            and uid != current
+            and not client.is_small(mesh)
+        ]
+        if missing and not client.queue and current is None:
+            client.batch.clear()
+            client.done.clear()
+        for mesh in sorted(missing, key=lambda mesh: len(mesh.triangles)):
+            client.queue[mesh.uid] = mesh
+            client.batch[mesh.uid] = len(mesh.triangles)
+            client.done.pop(mesh.uid, None)
+        if client.queue and self._thread is None and not self._stopping:
+            self._thread = threading.Thread(target=self._run, name="aplanat-levels", daemon=True)
+            self._thread.start()
+
+    def _take_job(self):
+        """Take the next mesh off a queue, of those who wait for it first; None if all is done."""
+        self._forget_abandoned()
+        busy = [client for client in self._clients if client.queue]
+        if not busy or self._stopping:
+            return None
+        client = next((client for client in busy if client.waits), busy[0])
+        _, mesh = client.queue.popitem(last=False)
+        return _Job(client, mesh, client.least_triangles, self._generation)
+
+    def _run(self):
+        while True:
+            with self._changed:
+                job = self._job = self._take_job()
+                if job is None:
+                    self._thread = None
+                    self._changed.notify_all()
+                    return
+            key = levels = error = None
+            work = LevelWork()
+            try:
+                key = content_key(job.mesh, job.least_triangles)
+                with self._changed:
+                    levels = self._made.get(key)
+                if levels is None:
+                    levels, work = self._maker.make(job.mesh, job.least_triangles, self._check)
+            except RenderCancelledError:
+                pass
+            # Whatever goes wrong belongs to the handle that asked, which raises it again.
+            except Exception as raised:
+                error = raised
+            with self._changed:
+                self._finish_job(job, key, levels, error, work)
+                self._changed.notify_all()
+
+    def _finish_job(self, job, key, levels, error, work):
+        client, uid = job.client, job.mesh.uid
+        self._job = None
+        self.work.add(work)
+        client.work.add(work)
+        client.begun = 0
+        if job.generation != self._generation:
+            # Forgotten while it was made: once more, if it is still wanted.
+            if client in self._clients:
+                self._enqueue(client)
+            return
+        wanted = uid in client.wanted and client.least_triangles == job.least_triangles
+        if error is not None and wanted:
+            client.errors[uid] = error
+        if levels is not None:
+            self._made[key] = levels
+            self._sizes[key] = size_of_levels(levels)
+            if wanted:
+                client.keys[uid] = key
+            self._evict()
+        if levels is not None or error is not None:
+            client.finish_mesh(uid)
+
+    def _check(self, done):
+        """Raise if nobody needs the mesh any more that is being made; called from within the work."""
+        with self._changed:
+            self._forget_abandoned()
+            job = self._job
+            client = job.client
+            dropped = client not in self._clients or job.mesh.uid not in client.batch
+            if self._stopping or dropped or job.generation != self._generation:
+                raise RenderCancelledError("levels of detail are not needed any more")
+            client.begun = done
+
+    def _evict(self):
+        used = {key for client in self._clients for key in client.keys.values()}
+        for key in used & self._made.keys():
+            self._made.move_to_end(key)
+        spare = sum(size for key, size in self._sizes.items() if key not in used)
+        for key in [key for key in self._made if key not in used]:
+            if spare <= self._memory_limit:
+                break
+            del self._made[key]
+            spare -= self._sizes.pop(key)
+
+
+class LevelHandle:
+    """What one client asks of a `LevelStore`; made by `LevelStore.open`.
+
+    A handle is used from one thread at a time; closing it is allowed from any.
+    """
+
+    def __init__(self, store, client):
+        self._store = store
+        self._client = client
+
+    def __enter__(self):
+        """Return the handle, which the end of the `with` block closes."""
+        return self
+
+    def __exit__(self, *exception):
+        """Close."""
+        self.close()
+
     def request(self, meshes, least_triangles):
-        """Ask for the levels of a scene's meshes, in place of those asked for before.
+        """Ask for the levels of meshes, in place of those asked for before by this handle.
 
         Returns at once; a thread makes what is not here yet, the meshes with most triangles last.
+        Work on a mesh that has begun goes on: the next one may be the same, deformed.
 
         Parameters
         ----------
@@ -94,17 +364,7 @@ class LevelStore:
         least_triangles : int
             No level has fewer.
         """
-        with self._changed:
-            if least_triangles != self._least_triangles:
-                self._least_triangles = least_triangles
-                self._keys.clear()
-                self._queue.clear()
-            self._wanted = {mesh.uid: mesh for mesh in meshes}
-            self._keys = {u: k for u, k in self._keys.items() if u in self._wanted}
-            for uid in [uid for uid in self._queue if uid not in self._wanted]:
-                self._work_total -= len(self._queue.pop(uid).triangles)
-            self._enqueue()
-            self._evict()
+        self._store._request(self._client, meshes, least_triangles)
 
     def ready(self, uid):
         """Return the levels of a requested mesh.
@@ -118,24 +378,29 @@ class LevelStore:
         tuple of MeshSnapshot or None
             From level 1 up, empty if it cannot be simplified; None while they are not made.
         """
-        with self._changed:
-            mesh = self._wanted.get(uid)
-            if mesh is not None and self._is_small(mesh):
-                return ()
-            made = self._made.get(self._keys.get(uid))
-            return None if made is None else made.levels
+        return self._store._ready(self._client, uid)
 
     @property
     def progress(self):
-        """Triangles of full detail that are done, and in all, since there was nothing to do."""
-        with self._changed:
-            return min(self._work_done + self._work_begun, self._work_total), self._work_total
+        """Triangles of full detail done, and in all, since this handle had nothing to wait for."""
+        with self._store._changed:
+            return self._client.progress()
 
     @property
-    def busy(self):
-        """Whether levels are being made."""
-        with self._changed:
-            return self._thread is not None
+    def work(self):
+        """What was done for this handle so far, as `LevelWork`."""
+        return self._client.work
+
+    @property
+    def generation(self):
+        """As `LevelStore.generation`."""
+        return self._store.generation
+
+    @property
+    def error(self):
+        """Why levels of a requested mesh could not be made, or None; `finish` raises it."""
+        with self._store._changed:
+            return next(iter(self._client.errors.values()), None)
 
     def finish(self, progress=None, cancelled=None):
         """Wait until every requested mesh has its levels.
@@ -150,172 +415,50 @@ class LevelStore:
         Raises
         ------
         RenderCancelledError
-            If `cancelled` says so; what was not begun is not made then.
+            If `cancelled` says so; what this handle asked for and nobody else does is not made
+            then, and nothing counts as left to do.
+        Exception
+            What went wrong with a mesh of this handle; the next call tries again.
         """
-        while self._pending():
-            if cancelled is not None and cancelled():
-                with self._changed:
-                    self._queue.clear()
-                raise RenderCancelledError("cancelled while levels of detail were made")
-            if progress is not None:
-                progress(*self.progress)
-            with self._changed:
-                if self._thread is not None:
-                    self._changed.wait(_POLL_SECONDS)
+        store, client = self._store, self._client
+        client.waits = True
+        try:
+            while self._is_pending():
+                if cancelled is not None and cancelled():
+                    with store._changed:
+                        client.give_up()
+                    raise RenderCancelledError("cancelled while levels of detail were made")
+                if progress is not None:
+                    progress(*self.progress)
+                with store._changed:
+                    if client.queue or store._is_made_for(client):
+                        store._changed.wait(_POLL_SECONDS)
+        finally:
+            client.waits = False
         if progress is not None:
             progress(*self.progress)
 
-    def _pending(self):
-        """Return whether a requested mesh lacks its levels; somebody is making them, then."""
-        with self._changed:
-            if self._thread is not None:
+    def _is_pending(self):
+        """Whether a requested mesh lacks its levels; somebody is making them, then."""
+        store, client = self._store, self._client
+        with store._changed:
+            store._enqueue(client)
+            if client.queue or store._is_made_for(client):
                 return True
-            if self._error is not None:
-                error, self._error = self._error, None
+            if client.errors:
+                error = next(iter(client.errors.values()))
+                client.errors.clear()
                 raise error
-            self._enqueue()
-            return self._thread is not None
-
-    @property
-    def memory_bytes(self):
-        """Bytes of all levels kept in memory."""
-        with self._changed:
-            return sum(made.bytes for made in self._made.values())
-
-    def rebuild(self):
-        """Forget every level, in memory and on disk, and make the requested ones again."""
-        with self._changed:
-            for shape in [key for key in self._known if isinstance(key, str)]:
-                self._files.forget(shape)
-            self._made.clear()
-            self._known.clear()
-            self._keys.clear()
-            self._queue.clear()
-            self._fresh = set(self._wanted)
-            self._enqueue()
+            return False
 
     def close(self):
-        """Stop making levels; returns when the thread has ended."""
-        with self._changed:
-            self._queue.clear()
-            self._stopping = True
-            thread = self._thread
-        if thread is not None:
-            thread.join()
-        with self._changed:
-            self._stopping = False
-
-    def _is_small(self, mesh):
-        return len(mesh.triangles) < 2 * self._least_triangles
-
-    def _enqueue(self):
-        missing = [
-            mesh
-            for uid, mesh in self._wanted.items()
-            if self._keys.get(uid) not in self._made
-            and uid not in self._queue
-            and not self._is_small(mesh)
-        ]
-        if missing and self._thread is None:
-            self._work_done = self._work_total = self._work_begun = 0
-        for mesh in sorted(missing, key=lambda mesh: len(mesh.triangles)):
-            self._queue[mesh.uid] = mesh
-            self._work_total += len(mesh.triangles)
-        if self._queue and self._thread is None and not self._stopping:
-            self._thread = threading.Thread(target=self._work, name="aplanat-levels", daemon=True)
-            self._thread.start()
-
-    def _work(self):
-        while True:
-            with self._changed:
-                if not self._queue or self._stopping:
-                    self._thread = None
-                    self._changed.notify_all()
-                    return
-                uid, mesh = self._queue.popitem(last=False)
-                least = self._least_triangles
-                fresh = uid in self._fresh
-                self._fresh.discard(uid)
-            try:
-                key = _content_hash(mesh, least)
-                with self._changed:
-                    made = self._made.get(key)
-                if made is None:
-                    made = self._make(mesh, key, least, fresh)
-            except RenderCancelledError:
-                continue
-            except Exception as error:
-                with self._changed:
-                    self._error = error
-                    self._queue.clear()
-                continue
-            with self._changed:
-                self._work_done += len(mesh.triangles)
-                self._work_begun = 0
-                if least == self._least_triangles and uid in self._wanted:
-                    self._keys[uid] = key
-                self._made[key] = made
-                self._evict()
-                self._changed.notify_all()
-
-    def _make(self, mesh, key, least, fresh):
-        shape = _shape_hash(mesh, least)
-        topology = _topology_hash(mesh, least)
-        made = self._replayed(mesh, shape, topology)
-        if made is not None:
-            self.replays += 1
-            return made
-        large = len(mesh.triangles) >= _LEAST_TRIANGLES_ON_DISK
-        halvings = self._files.read(shape) if large and not fresh else None
-        if halvings is not None:
-            levels = replay(mesh, halvings)
-            self.loads += 1
-        else:
-            levels, halvings = simplify(mesh, least, self._check)
-            self.decimations += 1
-            if large and halvings:
-                self._files.write(shape, halvings)
-        known = _Known(halvings, _shrinkage(mesh, levels))
-        with self._changed:
-            self._known[shape] = self._known[topology] = known
-        return _Made(levels, _size(levels))
-
-    def _replayed(self, mesh, shape, topology):
-        with self._changed:
-            same, deformed = self._known.get(shape), self._known.get(topology)
-        if same is not None:
-            levels = replay(mesh, same.halvings)
-            return _Made(levels, _size(levels))
-        if deformed is None:
-            return None
-        levels = replay(mesh, deformed.halvings)
-        ratio = _shrinkage(mesh, levels) / max(deformed.shrinkage, 1e-30)
-        if not 1.0 / _AREA_TOLERANCE <= ratio <= _AREA_TOLERANCE:
-            return None
-        return _Made(levels, _size(levels))
-
-    def _check(self, done):
-        with self._changed:
-            if self._stopping:
-                raise RenderCancelledError("levels of detail are not needed any more")
-            self._work_begun = done
-
-    def _evict(self):
-        used = {self._keys.get(uid) for uid in self._wanted}
-        for key in used & self._made.keys():
-            self._made.move_to_end(key)
-        spare = sum(made.bytes for key, made in self._made.items() if key not in used)
-        for key in [key for key in self._made if key not in used]:
-            if spare <= self._memory_limit:
-                break
-            spare -= self._made.pop(key).bytes
-        # Each is there by its shape and by its topology: counted twice, removed twice.
-        held = sum(_halvings_size(known.halvings) for known in self._known.values())
-        while held > self._memory_limit and len(self._known) > 2:
-            held -= _halvings_size(self._known.popitem(last=False)[1].halvings)
+        """Want nothing any more; what is being made for this handle alone is given up."""
+        self._store._remove(self._client)
 
 
-@cache
+_opening = threading.Lock()
+
+
 def level_store():
     """Return the store of this process, shared by final renders and viewports.
 
@@ -323,6 +466,13 @@ def level_store():
     -------
     LevelStore
     """
+    # Two threads may be the first at once.
+    with _opening:
+        return _process_store()
+
+
+@cache
+def _process_store():
     return LevelStore()
 
 
@@ -330,51 +480,3 @@ def _close(reference):
     store = reference()
     if store is not None:
         store.close()
-
-
-def _content_hash(mesh, least_triangles):
-    digest = hashlib.blake2b(digest_size=20)
-    digest.update(f"{least_triangles} {mesh.slots}".encode())
-    for name, array in (("", mesh.positions), ("", mesh.triangles), *mesh.attributes.items()):
-        digest.update(f"|{name} {array.dtype} {array.shape}|".encode())
-        digest.update(np.ascontiguousarray(array))
-    return digest.hexdigest()
-
-
-def _shape_hash(mesh, least_triangles):
-    """Hash what the collapses depend on."""
-    digest = hashlib.blake2b(f"{least_triangles}".encode(), digest_size=20)
-    digest.update(np.ascontiguousarray(mesh.positions))
-    digest.update(np.ascontiguousarray(mesh.triangles))
-    return digest.hexdigest()
-
-
-def _topology_hash(mesh, least_triangles):
-    digest = hashlib.blake2b(digest_size=20)
-    digest.update(f"{mesh.name}|{least_triangles} {len(mesh.positions)}".encode())
-    digest.update(np.ascontiguousarray(mesh.triangles))
-    return digest.digest()
-
-
-def _size(levels):
-    return sum(
-        array.nbytes
-        for level in levels
-        for array in (level.positions, level.triangles, level.merged, *level.attributes.values())
-    )
-
-
-def _halvings_size(halvings):
-    return sum(array.nbytes for halving in halvings for array in vars(halving).values())
-
-
-def _shrinkage(mesh, levels):
-    """Return the area of the coarsest level over that of the mesh."""
-    if not levels:
-        return 1.0
-    return _area(levels[-1]) / max(_area(mesh), 1e-30)
-
-
-def _area(mesh):
-    a, b, c = (mesh.positions[corner].astype(np.float64) for corner in mesh.triangles.T)
-    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2.0

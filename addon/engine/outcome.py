@@ -11,7 +11,9 @@ The engine fills `outcome.current()`, which belongs to nobody when nobody listen
 kept only for a listener that asked for them.
 """
 
+import threading
 import time
+from collections import OrderedDict
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
@@ -170,11 +172,18 @@ class RenderOutcome:
         self.report.extend(line for line in dict.fromkeys(lines) if line not in self.report)
 
 
-# What became of the highlights of the last picture of each scene, and what of them is not as the
-# camera asks, by its name.
-_highlights = {}
-_fates = {}
-_problems = {}
+@dataclass(frozen=True)
+class _HighlightNote:
+    counts: dict | None = None
+    problems: tuple = ()
+    fates: dict = field(default_factory=dict)
+
+
+# Of the last picture of each scene, by the scene's session number. The main thread (viewports,
+# panels) and the one that renders take turns at them.
+_notes = OrderedDict()
+_MOST_NOTES = 64
+_lock = threading.Lock()
 
 
 def note_highlights(scene, counts, problems=(), fates=None):
@@ -182,8 +191,7 @@ def note_highlights(scene, counts, problems=(), fates=None):
 
     Parameters
     ----------
-    scene : str
-        Its name.
+    scene : bpy.types.Scene
     counts : HighlightCounts or None
         None where none were searched.
     problems : tuple of str
@@ -191,24 +199,33 @@ def note_highlights(scene, counts, problems=(), fates=None):
     fates : dict of str to int or None
         As `FrameRenderer.fates` has them.
     """
-    _highlights[scene] = dict(vars(counts)) if counts else None
-    _fates[scene] = dict(fates or {})
-    _problems[scene] = problems
+    note = _HighlightNote(dict(vars(counts)) if counts else None, problems, dict(fates or {}))
+    number = scene.original.session_uid
+    with _lock:
+        _notes[number] = note
+        _notes.move_to_end(number)
+        while len(_notes) > _MOST_NOTES:
+            _notes.popitem(last=False)
 
 
 def last_highlights(scene):
     """Return what `note_highlights` was told last of a scene, as a dict, or None."""
-    return _highlights.get(scene)
+    return _note_of(scene).counts
 
 
 def last_fates(scene):
     """Return what became of how many sources, as `note_highlights` was told last of a scene."""
-    return _fates.get(scene, {})
+    return _note_of(scene).fates
 
 
 def last_problems(scene):
     """Return which problems `note_highlights` was told last of a scene."""
-    return _problems.get(scene, ())
+    return _note_of(scene).problems
+
+
+def _note_of(scene):
+    with _lock:
+        return _notes.get(scene.original.session_uid, _HighlightNote())
 
 
 _listeners = []
@@ -229,13 +246,17 @@ def listen(keep_pictures=False, progress=None):
     RenderOutcome
     """
     heard = RenderOutcome(keeps_pictures=keep_pictures, progress=progress)
-    _listeners.append(heard)
+    with _lock:
+        _listeners.append(heard)
     try:
         yield heard
     finally:
-        _listeners.remove(heard)
+        with _lock:
+            # By identity: two that heard the same so far are equal.
+            _listeners[:] = [listener for listener in _listeners if listener is not heard]
 
 
 def current():
     """Return the outcome that a render must fill: the listener's, else a fresh one."""
-    return _listeners[-1] if _listeners else RenderOutcome()
+    with _lock:
+        return _listeners[-1] if _listeners else RenderOutcome()

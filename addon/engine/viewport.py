@@ -47,8 +47,11 @@ class _ViewedScene:
     def __init__(self, space):
         self.buffers = SceneBuffers()
         self._extractor = SceneExtractor(space)
+        # Closes itself when no 3D view shows the scene any more.
+        self.levels = level_store().open()
         self._wanted = set()
         self._least_triangles = None
+        self._generation = self.levels.generation
 
     def note_updates(self, depsgraph):
         self._extractor.note_updates(depsgraph)
@@ -63,24 +66,45 @@ class _ViewedScene:
         """Have the levels of detail made that a frame draws."""
         self._wanted.update(meshes_with_levels(content, plan))
         self._wanted &= content.meshes.keys()
-        missing = self._wanted - self.buffers.levels.keys()
-        if missing or plan.least_triangles != self._least_triangles:
-            if plan.least_triangles != self._least_triangles:
-                self._least_triangles = plan.least_triangles
-                self.buffers.drop_levels()
-            level_store().request(
+        if plan.least_triangles != self._least_triangles:
+            self._least_triangles = plan.least_triangles
+            self.buffers.drop_levels()
+        if self._generation != self.levels.generation:
+            self._generation = self.levels.generation
+            self.buffers.drop_levels()
+        if self._missing():
+            self.levels.request(
                 [mesh for uid, mesh in content.meshes.items() if uid in self._wanted],
                 plan.least_triangles,
             )
-            self.take_levels()
+            for uid in sorted(self._missing()):
+                levels = self.levels.ready(uid)
+                # Until they are made, full detail is drawn.
+                if levels is not None:
+                    self.buffers.add_levels(uid, levels)
 
-    def take_levels(self):
-        """Upload the levels that have been made since; until then full detail is drawn."""
-        store = level_store()
-        for uid in sorted(self._wanted - self.buffers.levels.keys()):
-            levels = store.ready(uid)
-            if levels is not None:
-                self.buffers.add_levels(uid, levels)
+    def levels_changed(self, version):
+        """Whether a picture has to begin again for the sake of levels of detail.
+
+        Parameters
+        ----------
+        version : int
+            `SceneBuffers.levels_version` when it began.
+
+        Returns
+        -------
+        bool
+            All that were missing have been made since, or what was here is out of date.
+        """
+        if self._generation != self.levels.generation:
+            return True
+        missing = self._missing()
+        if not missing:
+            return version != self.buffers.levels_version
+        return all(self.levels.ready(uid) is not None for uid in missing)
+
+    def _missing(self):
+        return self._wanted - self.buffers.levels.keys()
 
 
 # Lives as long as a viewport shows it.
@@ -129,6 +153,7 @@ class Viewport:
         self._pacer = Pacer(DRAW_SECONDS)
         self._broken = False
         self._moved = 0.0
+        self._levels_version = 0
 
     def note_updates(self, depsgraph, space):
         """Take note of what changed; cheap, nothing is read yet.
@@ -191,7 +216,7 @@ class Viewport:
             if not renderer.finished():
                 self._refine(renderer)
                 note_highlights(
-                    depsgraph.scene.name, renderer.highlights, renderer.report, renderer.fates
+                    depsgraph.scene, renderer.highlights, renderer.report, renderer.fates
                 )
             x, y, width, height = view.rectangle
             with state.confined(x, y, width, height):
@@ -201,13 +226,16 @@ class Viewport:
             self.text += " | Draft of the bokeh"
         if shows_marks(renderer.plan):
             self.text += " | Debug view of the bokeh"
-        done, total = level_store().progress
+        done, total = self._scene.levels.progress
         if done < total:
             self.text += f" | Levels of detail {done / total:.0%}"
+        elif error := self._scene.levels.error:
+            self.text += f" | No levels of detail: {error}"
         warnings = in_short(frame_report(snapshot, renderer))
         if warnings:
             self.text += f" | {warnings}"
-        return not renderer.finished()
+        # What is drawn without its levels of detail begins again when they are made.
+        return not renderer.finished() or done < total
 
     def _refine(self, renderer):
         if renderer.samples_done < renderer.plan.samples:
@@ -227,12 +255,13 @@ class Viewport:
             plan, buffers = self._plan(snapshot), self._scene.buffers
             self._renderer = FrameRenderer(plan, snapshot, buffers, drafts=True)
             self._drawn_scene = self._scene
-        elif changed & Change.PICTURE:
+        elif changed & Change.PICTURE or self._scene.levels_changed(self._levels_version):
             self._renderer.restart(self._plan(snapshot), snapshot, drafts=True)
 
     def _plan(self, snapshot):
         plan = plan_frame(snapshot)
         self._scene.want_levels(snapshot.content, plan)
+        self._levels_version = self._scene.buffers.levels_version
         return plan
 
     def release(self):

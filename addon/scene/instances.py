@@ -37,12 +37,15 @@ class MeshSource:
         Blender leaves subdivision to the graphics device.
     owner : str
         Name of the first object that shows it.
+    base : bpy.types.Mesh or None
+        What that object's modifiers and shape keys begin with, in the same evaluated scene.
     """
 
     key: object
     mesh: object
     wrapped_by: object
     owner: str
+    base: object = None
 
     @contextmanager
     def opened(self, depsgraph):
@@ -276,7 +279,11 @@ class _Reader:
         if number not in out.sources:
             wrapped = obj.data.is_editmode or self._may_be_subdivided_later(original, obj.data)
             wrapped_by = original if wrapped else None
-            out.sources[number] = MeshSource(number, obj.data, wrapped_by, obj.name)
+            base = None
+            # In edit mode the mesh is in Blender's hands, not in the data-block.
+            if original.type == "MESH" and not obj.data.is_editmode:
+                base = original.data.evaluated_get(self._depsgraph)
+            out.sources[number] = MeshSource(number, obj.data, wrapped_by, obj.name, base)
             out.owners[number] = set()
         owners = out.owners[number]
         owners |= {original.session_uid, parent.original.session_uid}

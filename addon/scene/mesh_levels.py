@@ -11,7 +11,7 @@ Garland and Heckbert, *Surface simplification using quadric error metrics*, SIGG
 collapses are those of fast-simplification.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -100,7 +100,7 @@ def simplify(mesh, least_triangles, check=None):
     return tuple(levels), tuple(halvings)
 
 
-def replay(mesh, halvings):
+def replay(mesh, halvings, places=None):
     """Make the levels of a mesh of the same topology by the same collapses.
 
     Parameters
@@ -108,14 +108,21 @@ def replay(mesh, halvings):
     mesh : MeshSnapshot
         With the triangles of the mesh that was simplified; its positions may differ.
     halvings : sequence of Halving
+    places : ndarray of shape (V,), optional
+        Of its vertices, where they are split in another way than those of the mesh that was
+        simplified; both have the same triangles between the same places. Default: not split in
+        another way.
 
     Returns
     -------
     tuple of MeshLevel
     """
     levels = []
+    own = places is not None
     for halving in halvings:
-        mesh, _ = _merge(mesh, Surface(mesh, halving.places), halving)
+        if own:
+            halving = replace(halving, places=places)
+        mesh, places = _merge(mesh, Surface(mesh, halving.places), halving)
         levels.append(mesh)
     return tuple(levels)
 

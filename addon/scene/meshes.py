@@ -42,7 +42,7 @@ class MeshReading:
     notes: tuple[str, ...] = ()
 
 
-def read_mesh(mesh, keys, owner):
+def read_mesh(mesh, keys, owner, base=None):
     """Copy an evaluated mesh with the attributes that its surfaces read.
 
     Parameters
@@ -52,6 +52,8 @@ def read_mesh(mesh, keys, owner):
         As in `MeshSnapshot.attributes`. Those that the mesh lacks are left out.
     owner : str
         Name of an object that shows the mesh, for messages.
+    base : bpy.types.Mesh or None
+        What the mesh was made from by modifiers and shape keys, if that is known.
 
     Returns
     -------
@@ -90,6 +92,7 @@ def read_mesh(mesh, keys, owner):
         split = split_vertices(corner_vertices, len(positions), list(corner_values.values()))
     attributes = {key: split.of_vertices(values) for key, values in vertex_values.items()}
     attributes |= {key: split.of_corners(values) for key, values in corner_values.items()}
+    rest = _read_rest(mesh, base, positions, corner_vertices)
     snapshot = MeshSnapshot(
         uid=next_uid(),
         name=mesh.name,
@@ -97,6 +100,7 @@ def read_mesh(mesh, keys, owner):
         triangles=np.take(split.index, triangle_corners),
         slots=slots,
         attributes=attributes,
+        rest=None if rest is None else split.of_vertices(rest),
     )
     return MeshReading(snapshot, split, tuple(notes))
 
@@ -157,12 +161,15 @@ def same_content(a, b):
         or a.name != b.name
         or a.attributes.keys() != b.attributes.keys()
         or (a.motion is None) != (b.motion is None)
+        or (a.rest is None) != (b.rest is None)
     ):
         return False
     pairs = [(a.positions, b.positions), (a.triangles, b.triangles)]
     pairs += [(values, b.attributes[key]) for key, values in a.attributes.items()]
     if a.motion is not None:
         pairs += zip(a.motion, b.motion, strict=True)
+    if a.rest is not None:
+        pairs.append((a.rest, b.rest))
     return all(np.array_equal(x, y) for x, y in pairs)
 
 
@@ -177,6 +184,34 @@ def _read_positions(mesh, owner):
             " finite; remove the vertex, or the modifier that made it"
         )
     return positions
+
+
+def _read_rest(mesh, base, positions, corner_vertices):
+    """Return where the vertices of a mesh are before anything deforms it, or None.
+
+    That is where they are in the mesh that it was made from, if it has the same faces. Otherwise
+    Blender may have carried the coordinates through the modifiers, as it does for renders, for
+    generated texture coordinates; else it answers with the positions themselves.
+    """
+    if base is not None and _has_faces(base, len(positions), corner_vertices):
+        rest = np.empty_like(positions)
+        if len(rest):
+            base.attributes["position"].data.foreach_get("vector", rest.reshape(-1))
+    else:
+        rest = np.empty_like(positions)
+        if len(rest):
+            mesh.vertices.foreach_get("undeformed_co", rest.reshape(-1))
+    if not np.isfinite(rest).all() or np.array_equal(rest, positions):
+        return None
+    return rest
+
+
+def _has_faces(mesh, vertex_count, corner_vertices):
+    return (
+        len(mesh.vertices) == vertex_count
+        and len(mesh.loops) == len(corner_vertices)
+        and np.array_equal(_read_corner_vertices(mesh), corner_vertices)
+    )
 
 
 def _read_corner_vertices(mesh):

@@ -47,6 +47,10 @@ class MeshSnapshot:
         linear). An empty NAME is the active one.
     motion : tuple of two ndarray of shape (V, 3) or None
         Positions in the previous and the next frame, where the mesh deforms.
+    rest : ndarray of shape (V, 3) or None
+        Positions before anything deforms the mesh, the same in every frame, as far as Blender tells
+        them; None where they are not known or nothing deforms it. Which levels of detail a mesh has
+        follows from them.
     """
 
     uid: int
@@ -56,6 +60,7 @@ class MeshSnapshot:
     slots: tuple[tuple[int, int, int], ...]
     attributes: dict[str, np.ndarray] = field(default_factory=dict)
     motion: tuple[np.ndarray, np.ndarray] | None = None
+    rest: np.ndarray | None = None
 
     @cached_property
     def color_contrast(self):

@@ -72,7 +72,7 @@ class APLANAT_CAMERA_PT_bokeh(_BokehPanel, bpy.types.Panel):
 
 
 def _draw_counts(column, scene, letters):
-    counts = outcome.last_highlights(scene.name)
+    counts = outcome.last_highlights(scene)
     if counts is None:
         return
     for i, line in enumerate(counts_as_lines(counts)):
@@ -125,7 +125,7 @@ def _draw_notes(column, context, letters):
     lens, _ = read_real_lens(camera)
     _, problems = describe_bokeh(camera, lens, corner_tangent(camera, context.scene))
     # What only drawing tells is that of the last picture.
-    for problem in (*problems, *outcome.last_problems(context.scene.name)):
+    for problem in (*problems, *outcome.last_problems(context.scene)):
         draw_alert(column, f"{problem[0].upper()}{problem[1:]}.", letters)
 
 
@@ -279,7 +279,7 @@ class APLANAT_CAMERA_PT_bokeh_debug(_BokehPanel, bpy.types.Panel):
         column.prop(settings, "debug_view")
         if settings.debug_view != "VISIBILITY":
             return
-        numbers = outcome.last_fates(context.scene.name)
+        numbers = outcome.last_fates(context.scene)
         legend = column.column(align=True)
         for fate, (text, icon) in LEGEND.items():
             row = legend.split(factor=0.75)

@@ -127,7 +127,7 @@ def test_drawing_the_panel_again_draws_no_discs(panel):
 
 def test_counts_and_presets_and_odd_cameras_are_drawn_without_an_error(panel):
     for change in (
-        "outcome.note_highlights(bpy.context.scene.name, "
+        "outcome.note_highlights(bpy.context.scene, "
         "module('engine.bokeh_stage').HighlightCounts(found=900, clustered=400, splatted=300))",
         "bokeh().model = 'CLUSTERED'",
         "bokeh().iris_image = bpy.data.images.new('black', 8, 8)",

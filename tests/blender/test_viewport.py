@@ -114,7 +114,7 @@ def test_viewport_at_rest_has_the_bokeh_of_the_final_render(stage, tmp_path):
         "bpy.ops.render.render(write_still=True)",
         timeout=200,
     )
-    name = "bpy.context.scene.name"
+    name = "bpy.context.scene"
     assert stage.run(f"result = module('engine.outcome').last_highlights({name})['splatted']") > 0
     stage.run("bpy.context.scene.aplanat.use_reference_bokeh = False")
     assert similarity(shown, iio.imread(final)[..., :3]) >= 0.99

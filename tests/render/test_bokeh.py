@@ -93,8 +93,8 @@ def test_a_lens_that_cannot_focus_so_near_leaves_the_discs_to_a_thin_lens(bpy_of
     camera.aplanat.lens = "double-gauss-50mm-f2"
     drawn, _ = render(bpy_of, "ADAPTIVE", 4)
     assert np.array_equal(drawn["Combined"], thin["Combined"])
-    (problem,) = outcome.last_problems(scene.name)
+    (problem,) = outcome.last_problems(scene)
     assert "double" in problem.lower() and "focus farther away" in problem
     camera.dof.focus_distance = 6.0
     render(bpy_of, "ADAPTIVE", 4)
-    assert outcome.last_problems(scene.name) == ()
+    assert outcome.last_problems(scene) == ()
