@@ -312,7 +312,7 @@ class LevelStore:
             client.finish_mesh(uid)
 
     def _check(self, done):
-        """Raise if nobody needs the mesh any more that is being made; called from within the work."""
+        """Raise if nobody needs any more what is being made; called from within the work."""
         with self._changed:
             self._forget_abandoned()
             job = self._job

@@ -281,6 +281,12 @@ def build_glow_draws(content, buffers, target=COLOR):
 def _list_draws(content, buffers, target, glow, wanted=None):
     draws = []
     shaders = {}
+    # Where two surfaces lie at one depth, the first one drawn is seen: the order must be that of
+    # the content, whenever its parts were read.
+    materials, meshes = (
+        {uid: place for place, uid in enumerate(part)}
+        for part in (content.materials, content.meshes)
+    )
     for number, level, group, buffer in _levels_of_groups(content, buffers):
         mesh = content.meshes[group.mesh]
         for slot, (batch, count) in buffer.batches.items():
@@ -322,7 +328,8 @@ def _list_draws(content, buffers, target, glow, wanted=None):
                 level=level,
                 slot=slot,
             )
-            draws.append(((order, material.uid, group.mesh, slot, level), draw))
+            place = (order, materials[material.uid], meshes[group.mesh], slot, level)
+            draws.append((place, draw))
     draws.sort(key=lambda item: item[0])
     return [draw for _, draw in draws]
 

@@ -1,6 +1,7 @@
 """The bokeh of a Blender camera to `BokehSettings`."""
 
 import math
+import threading
 from functools import lru_cache
 
 import numpy as np
@@ -31,6 +32,8 @@ _WIDEST_FIELD = 2.0
 _STRONGEST = (-0.5, 0.25)
 # Along a side of an iris' picture, in texels: finer than the largest disc's table.
 _LARGEST_IRIS = 1024
+
+_iris_lock = threading.Lock()
 
 
 def read_bokeh(camera, real_lens, corner):
@@ -181,12 +184,14 @@ def _read_iris(settings, dof):
 
 
 def _picture_iris(image, rotation):
-    reader = _image_reader(image.session_uid)
-    reader.begin()
-    use = reader.read(image)
-    if use is None:
-        raise InputError("it cannot be read; choose another file")
-    return _iris_of_pixels(_Pixels(use.uid, reader.images[use.uid]), rotation)
+    # The readers are shared by viewports, panels and the thread that renders.
+    with _iris_lock:
+        reader = _image_reader(image.session_uid)
+        reader.begin()
+        use = reader.read(image)
+        if use is None:
+            raise InputError("it cannot be read; choose another file")
+        return _iris_of_pixels(_Pixels(use.uid, reader.images[use.uid]), rotation)
 
 
 @lru_cache(maxsize=16)
