@@ -5,11 +5,24 @@ pixel filter (see `sampling.pixel_filter`).
 """
 
 from ..device import shader_source, state
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
 from . import chromatic
 
+# Name, fragment shader, output and sampler of each kind of sum.
+_PICTURE = ("aplanat_accumulate", "passes/accumulate_frag.glsl", ("VEC4", "out_color"), "sample_tx")
+_FOCUS = ("aplanat_accumulate_focus", "passes/focus_frag.glsl", ("FLOAT", "out_share"), "mattes_tx")
 
-def _info(name, fragment, output, sampler, subpixels, tinted=False):
+
+@variants(
+    # Sharpness has no colour.
+    allowed=lambda kind, subpixels, tinted: kind is _PICTURE or not tinted,
+    kind=(_PICTURE, _FOCUS),
+    subpixels=(1, 2, 3, 4),
+    tinted=(False, True),
+)
+def _info(kind, subpixels, tinted=False):
+    name, fragment, output, sampler = kind
     return ShaderInfo(
         name=name,
         vertex=shader_source.load("passes/fullscreen_vert.glsl"),
@@ -40,9 +53,7 @@ def accumulate(fullscreen, sample, weights, tint=None):
     tint : tuple of 4 float, optional
         Of the channels; without it all have weight 1.
     """
-    output = ("VEC4", "out_color")
-    info = ("aplanat_accumulate", "passes/accumulate_frag.glsl", output, "sample_tx")
-    _add(fullscreen, info, sample, weights, tint)
+    _add(fullscreen, _PICTURE, sample, weights, tint)
 
 
 def accumulate_focus(fullscreen, mattes, weights):
@@ -55,16 +66,14 @@ def accumulate_focus(fullscreen, mattes, weights):
         Second target of `surface.COLOR_AND_MATTES`, as large as the sample.
     weights : ndarray of shape (2, k)
     """
-    output = ("FLOAT", "out_share")
-    info = ("aplanat_accumulate_focus", "passes/focus_frag.glsl", output, "mattes_tx")
-    _add(fullscreen, info, mattes, weights)
+    _add(fullscreen, _FOCUS, mattes, weights)
 
 
-def _add(fullscreen, info, texture, weights, tint=None):
+def _add(fullscreen, kind, texture, weights, tint=None):
     state.additive()
-    shader = compile_shader(_info(*info, len(weights[0]), tint is not None))
+    shader = compile_shader(_info(kind, len(weights[0]), tint is not None))
     shader.bind()
-    shader.uniform_sampler(info[-1], texture)
+    shader.uniform_sampler(kind[-1], texture)
     shader.uniform_float("columns", padded(weights[0]))
     shader.uniform_float("rows", padded(weights[1]))
     if tint is not None:

@@ -1,6 +1,7 @@
 """What surrounds the scene, behind it: the world at infinity, seen through the lens (methods 1)."""
 
 from ..device import shader_source, state
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
 from ..device.uniforms import bind_resource
 from . import chromatic
@@ -9,6 +10,12 @@ from .highlights import APPEND_CONSTANTS, APPEND_DEFINES, APPEND_IMAGES
 from .surface import HIGHLIGHT_PARAMS, VIEW_PARAMS
 
 
+@variants(
+    # Highlights are listed for no wavelength of their own.
+    allowed=lambda define, in_wavelengths: define != "EXCESS" or not in_wavelengths,
+    define=(None, "HIGHLIGHTS", "EXCESS"),
+    in_wavelengths=(False, True),
+)
 def _info(define, in_wavelengths=False):
     split = define is not None
     lists = define == "EXCESS"

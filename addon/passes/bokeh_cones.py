@@ -12,6 +12,7 @@ Jeong et al., TVCG 2020, section 4.3.3.
 from dataclasses import dataclass
 
 from ..device import shader_source
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from .bokeh_culling import COUNT_GROUPS, COUNT_PAIRS, VISIBILITY_PARAMS
 from .prefix_sums import COLUMNS
@@ -76,6 +77,7 @@ class ConeScene:
     culls: bool = True
 
 
+@variants(group=(False, True), work=("COUNT", "FILL", "EDGES"))
 def _info(group, work):
     """Return a variant: ``COUNT``, ``FILL`` or ``EDGES``."""
     samplers = [("FLOAT_2D", "sources_tx"), ("FLOAT_2D", "instances_tx")]

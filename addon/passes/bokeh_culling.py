@@ -15,6 +15,7 @@ Jeong et al., TVCG 2020, section 4.3; Decoret, *N-buffers for efficient depth ma
 from dataclasses import dataclass
 
 from ..device import shader_source
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from ..device.uniform_block import UniformStruct
 from . import prefix_sums
@@ -53,6 +54,7 @@ _BOUNDS = ShaderInfo(
 )
 
 
+@variants(layered=(False, True))
 def _cull_info(layered):
     samplers = [("FLOAT_2D", "sources_tx")]
     if layered:

@@ -7,6 +7,7 @@ one over the other in the order of the list, with edges a pixel wide.
 from dataclasses import dataclass
 
 from ..device import shader_source, state
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
 from ..device.uniform_block import UniformStruct
 from .bokeh_culling import VISIBILITY_PARAMS
@@ -43,6 +44,13 @@ class Marks:
         return tuple(name for name in (self.shape, self.color) if name not in {"DOT", "OWN"})
 
 
+@variants(
+    marks=(
+        Marks(shape, color)
+        for shape in ("DOT", "OUTLINE", "RING")
+        for color in ("OWN", "FATES", "SHARP")
+    )
+)
 def _info(marks):
     samplers = [("FLOAT_2D", "sources_a_tx")]
     if marks.color == "OWN":
@@ -105,6 +113,7 @@ def draw_marks(square, marks, count, textures, view_buffer, parameters, stride=1
     shader.draw_instanced(square, number * pieces)
 
 
+@variants()
 def _picture_info():
     return ShaderInfo(
         name="aplanat_marked_picture",

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..device import shader_source
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from ..device.targets import Targets, TargetSpec
 from ..device.uniform_block import UniformStruct
@@ -117,6 +118,7 @@ _WRITE_OUT = _info(
 _SIDE = 8
 
 
+@variants(layered=(False, True))
 def _soften_info(layered):
     names = ("sources", "tiles", "states", "masks", *("layers",) * layered)
     shared = f"shared vec2 blurs[{_SIDE * _SIDE}];\n" * layered

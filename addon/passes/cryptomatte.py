@@ -12,6 +12,7 @@ SIGGRAPH 2015.
 """
 
 from ..device import shader_source
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from .accumulate import padded
 
@@ -33,6 +34,7 @@ def slot_pairs(kinds):
     return max(kinds.values()) + _SPARE_PAIRS
 
 
+@variants(pairs=(2, 4), subpixels=(1, 4))
 def _count_info(pairs, subpixels):
     return ShaderInfo(
         name="aplanat_cryptomatte_count",
@@ -50,6 +52,7 @@ def _count_info(pairs, subpixels):
     )
 
 
+@variants(pairs=(2, 4))
 def _rank_info(pairs):
     return ShaderInfo(
         name="aplanat_cryptomatte_rank",

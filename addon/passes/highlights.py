@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..device import shader_source
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from ..device.targets import Targets, TargetSpec
 from ..device.textures import texture_2d
@@ -59,6 +60,7 @@ _FINISH = ShaderInfo(
 )
 
 
+@variants(world=(False, True), in_wavelengths=(False, True))
 def _order_info(world, in_wavelengths):
     samplers = [("UINT_2D", "nodes_tx")] + [("FLOAT_2D", "scene_tx")] * (not world)
     constants = [("INT", "number")] + [("INT", "layers")] * (not world)
@@ -81,6 +83,7 @@ def _order_info(world, in_wavelengths):
     return chromatic.over_field(info) if in_wavelengths else info
 
 
+@variants(emits=(False, True))
 def _gather_info(emits):
     samplers = [("FLOAT_2D", "listed_tx"), ("FLOAT_2D", "light_tx")]
     samplers += [("UINT_2D", "heads_tx"), ("UINT_2D", "order_tx")]

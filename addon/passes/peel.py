@@ -20,10 +20,12 @@ OCCLUDERS = surface.SurfaceTarget(
     defines=("OCCLUDERS",),
     shades=False,
 )
-OPAQUE = replace(OCCLUDERS, outputs=(), samplers=(), defines=("OPAQUE_ONLY",))
+OPAQUE = replace(OCCLUDERS, outputs=(), samplers=(), defines=())
 HIGHLIGHTS = surface.SurfaceTarget(
     "passes/peel_frag.glsl",
     (),
+    # Without it, for a surface whose light is never splatted, only its depth is left.
+    defines=(surface.SPLIT,),
     images=highlights.APPEND_IMAGES,
     push_constants=highlights.APPEND_CONSTANTS,
     values=highlights.APPEND_DEFINES,

@@ -4,6 +4,7 @@ A table is a list in rows of `COLUMNS` columns, as textures are not long enough 
 """
 
 from ..device import shader_source
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
 
 COLUMNS = 1024
@@ -11,6 +12,7 @@ COLUMNS = 1024
 _THREADS = 256
 
 
+@variants(totals=(False, True))
 def _info(totals):
     images = [("R32UI", "UINT_2D", "totals_img", ("READ", "WRITE"))]
     images += [("R32UI", "UINT_2D", "keys_img", ("READ", "WRITE"))] * (not totals)

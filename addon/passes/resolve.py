@@ -3,9 +3,11 @@
 import numpy as np
 
 from ..device import shader_source
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
 
 
+@variants(with_bokeh=(False, True), by_channel=(False, True), distorted=(False, True))
 def _info(with_bokeh, by_channel, distorted):
     return ShaderInfo(
         name="aplanat_resolve",

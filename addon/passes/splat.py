@@ -5,6 +5,7 @@ profile of a lens), RIMS (analytic vignetting), TILES (patterns of a real lens o
 """
 
 from ..device import shader_source, state
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
 from ..device.uniform_block import UniformStruct
 from ..device.uniforms import bind_resource
@@ -43,6 +44,11 @@ _LOOK_VARYINGS = {
 }
 
 
+@variants(
+    casts=(False, True),
+    variants=((), ("PROFILE",), ("RIMS",), ("PROFILE", "RIMS"), ("TILES",)),
+    in_wavelengths=(False, True),
+)
 def _info(casts, variants, in_wavelengths=False):
     names = _TEXTURES + _RAYS * casts
     samplers = tuple(("FLOAT_2D", name) for name in names) + (("FLOAT_2D_ARRAY", "opening_tx"),)

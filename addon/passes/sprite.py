@@ -1,9 +1,11 @@
 """Drawings of one object that several lens samples share: kept as sprites, copied (methods 4)."""
 
 from ..device import shader_source, state
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
 
 
+@variants(stores=(False, True), mattes=(False, True))
 def _info(stores, mattes):
     outputs = [("VEC4", "out_color")]
     outputs += [("VEC4", "out_mattes")] * mattes

@@ -95,19 +95,20 @@ COLOR_AND_MATTES = SurfaceTarget(
 )
 
 
-_SPLIT = "HIGHLIGHTS"
+# The define of a target that divides light.
+SPLIT = "HIGHLIGHTS"
 
 
 def without_highlights(target):
     """Return a target of the colour picture from which the splatted light is left out."""
-    return replace(target, splits=True, defines=(*target.defines, _SPLIT))
+    return replace(target, splits=True, defines=(*target.defines, SPLIT))
 
 
 def _whole(target):
     """Return the target for a material whose light is never splatted."""
     if not target.splits:
         return target
-    defines = tuple(name for name in target.defines if name != _SPLIT)
+    defines = tuple(name for name in target.defines if name != SPLIT)
     return replace(target, splits=False, defines=defines)
 
 
@@ -166,8 +167,8 @@ class Draw:
     slot: int = 0
 
 
-def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, glow=False):
-    """Return the compiled shader of a surface on a mesh.
+def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, glow=False):
+    """Return what the shader of a surface on a mesh is made of.
 
     Parameters
     ----------
@@ -182,7 +183,7 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
 
     Returns
     -------
-    GPUShader
+    ShaderInfo
     """
     if holdout:
         # A hole has no light to split.
@@ -236,21 +237,19 @@ def surface_shader(target, code, mesh_attributes, holdout=False, deforms=False, 
     if target.names_material and not holdout:
         push_constants.append(("FLOAT", "material_id"))
     fragment = shader_source.join((*_LIBRARIES, shader_source.Text(generated), target.fragment))
-    return compile_shader(
-        ShaderInfo(
-            name="aplanat_surface",
-            vertex=vertex,
-            fragment=fragment,
-            typedefs=structs,
-            attributes=tuple(attributes),
-            varyings=tuple(varyings),
-            outputs=target.outputs,
-            samplers=tuple(samplers),
-            images=target.images,
-            uniforms=tuple(uniforms),
-            push_constants=tuple(push_constants),
-            defines=tuple(defines.items()),
-        )
+    return ShaderInfo(
+        name="aplanat_surface",
+        vertex=vertex,
+        fragment=fragment,
+        typedefs=structs,
+        attributes=tuple(attributes),
+        varyings=tuple(varyings),
+        outputs=target.outputs,
+        samplers=tuple(samplers),
+        images=target.images,
+        uniforms=tuple(uniforms),
+        push_constants=tuple(push_constants),
+        defines=tuple(defines.items()),
     )
 
 
@@ -298,7 +297,9 @@ def _list_draws(content, buffers, target, glow, wanted=None):
                 continue
             deforms = mesh.motion is not None
             drawn = target if material.highlights else _whole(target)
-            shader = surface_shader(drawn, code, mesh.attributes, group.holdout, deforms, glow)
+            shader = compile_shader(
+                surface_info(drawn, code, mesh.attributes, group.holdout, deforms, glow)
+            )
             order = shaders.setdefault(id(shader), len(shaders))
             constants, textures = None, ()
             transparent = code.transparent and not group.holdout

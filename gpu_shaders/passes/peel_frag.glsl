@@ -1,8 +1,8 @@
 // What a pinhole on the lens sees, beyond the nearest surface.
 // OCCLUDERS: one layer of all surfaces, the nearest behind the layer before, as their opacity.
-// OPAQUE_ONLY: the depth of the nearest opaque surface.
-// Otherwise: all that is brighter than the threshold, in lists for each texel, so that no surface in
+// HIGHLIGHTS: all that is brighter than the threshold, in lists for each texel, so that no surface in
 // front makes it miss any, and the depth of what is opaque.
+// Otherwise: the depth of the nearest opaque surface.
 // Inputs: varyings of surface_vert; view_buf; OCCLUDERS: front_tx (depth of the layer before);
 // highlights: highlight_buf, and what highlights_append needs; what the generated surface_closure()
 // reads.
@@ -15,7 +15,7 @@
 // Less is seen through.
 #define OPAQUE_FROM 0.999
 
-#if defined(OCCLUDERS) || defined(OPAQUE_ONLY)
+#ifndef HIGHLIGHTS
 void main()
 {
 #ifdef OCCLUDERS
@@ -26,7 +26,7 @@ void main()
   float opacity = 1.0;
 #if defined(TRANSPARENT) && !defined(HOLDOUT)
   opacity = 1.0 - closure_through(surface_closure());
-#ifdef OPAQUE_ONLY
+#ifndef OCCLUDERS
   if (opacity < OPAQUE_FROM) {
     discard;
   }
