@@ -59,6 +59,24 @@ class OutputError(InputError):
     """A picture that cannot be written where it was asked for."""
 
 
+class StrictError(InputError):
+    """There are warnings, and whoever renders takes them for errors.
+
+    Parameters
+    ----------
+    warnings : sequence of str
+    """
+
+    def __init__(self, warnings):
+        self.warnings = tuple(warnings)
+        count = len(self.warnings)
+        counted = "a warning" if count == 1 else f"{count} warnings, the first of them"
+        super().__init__(
+            f"--strict: nothing is written because of {counted}: {self.warnings[0]}; mend it, or"
+            " render without --strict"
+        )
+
+
 class DeviceUnavailableError(AplanatError):
     """There is no GPU context to draw with."""
 

@@ -102,6 +102,8 @@ def _check_render(arguments):
         raise _not_yet("--layers", "--layers")
     if arguments.subsamples is not None and arguments.method == "reference":
         raise InputError("--subsamples belongs to --method adaptive; the reference method has none")
+    if arguments.frame_step is not None and arguments.frames is None:
+        raise InputError("--frame-step belongs to --frames; give the first and the last frame, too")
     several = arguments.frames is not None and arguments.frames[0] != arguments.frames[1]
     for path in arguments.output:
         if several and "#" not in path.name:
@@ -185,6 +187,12 @@ def _add_render(commands):
     frames = parser.add_mutually_exclusive_group()
     frames.add_argument("--frame", metavar="N", type=_frame, help="default: the file's current one")
     frames.add_argument("--frames", metavar="A..B", type=_frame_range, help="first and last frame")
+    add(
+        "--frame-step",
+        metavar="N",
+        type=whole_number(1, MAX_FRAME),
+        help="of --frames: render every Nth only; default: the scene's frame step",
+    )
     add("--camera", metavar="NAME", help="camera object to render from")
     add("--resolution", metavar="WxH", type=_resolution, help="in pixels, at 100 %%")
     add("--method", choices=("reference", "adaptive", "layered"), help="default: the scene's")
@@ -227,6 +235,11 @@ def _add_render(commands):
         metavar="DISTANCE|OBJECT",
         type=_focus,
         help="distance in m or object to focus on; turns depth of field on",
+    )
+    add(
+        "--strict",
+        action="store_true",
+        help="take warnings for errors: exit code 2, and no file is written",
     )
     add("--stats", metavar="FILE", type=Path, help="write statistics as JSON")
     _add_output_options(parser)

@@ -146,4 +146,4 @@ def _errors(error, command):
     # A lens' findings have a path, so that a caller reads both alike.
     path = {"path": ""} if command == "lens" else {}
     told = {"code": code, **path, "message": " ".join(str(error).split())}
-    return {"errors": [told], "warnings": []}
+    return {"errors": [told], "warnings": [*getattr(error, "warnings", ())]}

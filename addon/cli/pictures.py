@@ -1,143 +1,91 @@
-"""Picture files of a finished render: multilayer EXR and PNG.
+"""What Blender is told about the picture files that it writes.
 
-The EXR is laid out as Blender's own: a part each pass, channels ``Layer.Pass.Letter``, float, so
-that Blender and compositing programs read it as a multilayer picture. Rows go from top to bottom.
+All picture files are Blender's own: multilayer EXR with every pass, float, or PNG as displayed. So
+they hold what Blender holds (its compositor, stereoscopic views, borders, grease pencil), laid out
+as programs expect of Blender.
 """
 
-import tempfile
 from pathlib import Path
 
 import bpy
-import numpy as np
 
 from ..errors import OutputError
-from ..files.whole_file import whole_file
-from .version import version
 
 RENDER_RESULT = "Render Result"
 
-# Passes whose values are colours of the scene; all others are data.
-_COLOR_LETTERS = "RGBA"
 
-
-def save_exr(path, layers, scene):
-    """Write the layers of a render as a multilayer EXR.
+def set_exr(scene, views_format):
+    """Have Blender write multilayer EXR: float, scene linear, all passes, a part each.
 
     Parameters
     ----------
-    path : Path
-    layers : list of LayerPicture
     scene : bpy.types.Scene
-        Where they were rendered; its composite is added if its compositor is in use.
+    views_format : {'INDIVIDUAL', 'STEREO_3D', 'MULTIVIEW'}
+        As the scene has it, of Blender's image settings.
     """
-    import OpenEXR
-
-    metadata = {}
-    parts = []
-    for layer in layers:
-        metadata |= layer.metadata
-    if uses_compositor(scene):
-        parts.append(("Composite.Combined", _COLOR_LETTERS, composite_pixels(scene)))
-    for layer in layers:
-        for name, picture in layer.passes.items():
-            pixels = on_canvas(picture.pixels, layer, scene.render.use_crop_to_border)
-            parts.append((f"{layer.layer}.{name}", picture.channels, pixels[::-1]))
-    file_parts = []
-    for index, (name, letters, pixels) in enumerate(parts):
-        header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
-        is_color = letters == _COLOR_LETTERS
-        header["colorInteropID"] = _working_space() if is_color else "data"
-        if index == 0:
-            header |= _file_metadata(scene) | metadata
-        channels = {
-            f"{name}.{letter}": np.ascontiguousarray(pixels[..., i], np.float32)
-            for i, letter in enumerate(letters)
-        }
-        file_parts.append(OpenEXR.Part(header, channels, name))
-    with whole_file(path) as place:
-        try:
-            OpenEXR.File(file_parts).write(place)
-        except RuntimeError as error:
-            raise OutputError(f"cannot write '{path}': {error}") from error
+    settings = scene.render.image_settings
+    settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format = "OPEN_EXR_MULTILAYER"
+    settings.color_mode = "RGBA"
+    settings.color_depth = "32"
+    settings.exr_codec = "ZIP"
+    settings.use_exr_interleave = False
+    settings.use_preview = False
+    settings.color_management = "FOLLOW_SCENE"
+    # Blender writes no multilayer file that shows both eyes in one picture: both go into one file.
+    settings.views_format = "INDIVIDUAL" if views_format == "INDIVIDUAL" else "MULTIVIEW"
+    _leave_out_times(scene)
 
 
-def save_png(path, scene):
-    """Write the render result as displayed: view transform applied, 8 bits a channel."""
+def set_png(scene, views_format):
+    """Have Blender write PNG: as displayed, 8 bits a channel, alpha if the film is transparent.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+    views_format : str
+        As `set_exr` takes it.
+    """
     settings = scene.render.image_settings
     settings.media_type = "IMAGE"
     settings.file_format = "PNG"
     settings.color_depth = "8"
     settings.color_mode = "RGBA" if scene.render.film_transparent else "RGB"
     settings.color_management = "FOLLOW_SCENE"
-    save_as_set(path, scene)
+    # A PNG holds one picture: one of each view, or both eyes side by side or in colours.
+    settings.views_format = "STEREO_3D" if views_format == "STEREO_3D" else "INDIVIDUAL"
+    _leave_out_times(scene)
 
 
-def save_as_set(path, scene):
-    """Write the render result in the format of the scene's output settings."""
-    with whole_file(path) as place:
-        try:
-            bpy.data.images[RENDER_RESULT].save_render(place, scene=scene)
-        except RuntimeError as error:
-            raise OutputError(f"cannot write '{path}': {error}") from error
-        if Path(place).stat().st_size == 0:
-            raise OutputError(f"cannot write '{path}': Blender wrote nothing; is the disk full?")
+def _leave_out_times(scene):
+    """Leave out of a file when it was made, so that the same picture makes the same file."""
+    render = scene.render
+    # Unless they are to be seen in the picture.
+    if not render.use_stamp:
+        render.use_stamp_date = render.use_stamp_render_time = render.use_stamp_memory = False
+
+
+def save_render_result(path, scene):
+    """Write the render result once more, in the format of the scene's output settings.
+
+    Parameters
+    ----------
+    path : Path
+    scene : bpy.types.Scene
+
+    Raises
+    ------
+    OutputError
+        If Blender does not write it.
+    """
+    try:
+        bpy.data.images[RENDER_RESULT].save_render(str(path), scene=scene)
+    except RuntimeError as error:
+        raise OutputError(f"cannot write '{path}': {error}") from error
+    if not Path(path).is_file() or Path(path).stat().st_size == 0:
+        raise OutputError(f"cannot write '{path}': Blender wrote nothing; is the disk full?")
 
 
 def uses_compositor(scene):
     """Whether Blender puts the render result through the scene's compositing nodes."""
     return scene.render.use_compositing and scene.compositing_node_group is not None
-
-
-def composite_pixels(scene):
-    """Return the render result, scene linear, shape (height, width, 4), top row first."""
-    import OpenEXR
-
-    settings = scene.render.image_settings
-    settings.media_type = "IMAGE"
-    settings.file_format = "OPEN_EXR"
-    settings.color_depth = "32"
-    settings.color_mode = "RGBA"
-    settings.color_management = "FOLLOW_SCENE"
-    with tempfile.TemporaryDirectory(prefix="aplanat-") as folder:
-        path = Path(folder) / "composite.exr"
-        bpy.data.images[RENDER_RESULT].save_render(str(path), scene=scene)
-        with OpenEXR.File(str(path)) as file:
-            return np.array(file.channels()["RGBA"].pixels, np.float32)
-
-
-def on_canvas(pixels, layer, cropped):
-    """Place a pass in the whole picture, as Blender does unless the render is cropped.
-
-    Parameters
-    ----------
-    pixels : ndarray of shape (height, width, channels)
-        Bottom row first.
-    layer : LayerPicture
-    cropped : bool
-
-    Returns
-    -------
-    ndarray
-        Zero outside the layer's region.
-    """
-    x, y, width, height = layer.region
-    if cropped or (width, height) == tuple(layer.size):
-        return pixels
-    canvas = np.zeros((layer.size[1], layer.size[0], pixels.shape[2]), np.float32)
-    canvas[y : y + height, x : x + width] = pixels
-    return canvas
-
-
-def _file_metadata(scene):
-    return {
-        # Tells Blender that the channels are its layers and passes.
-        "BlenderMultiChannel": f"Blender V{bpy.app.version_string}",
-        "Software": f"Aplanat {version()}, Blender {bpy.app.version_string}",
-        "Scene": scene.name,
-        "Camera": scene.camera.name,
-        "Frame": f"{scene.frame_current:03d}",
-    }
-
-
-def _working_space():
-    return bpy.data.colorspace.working_space_interop_id

@@ -4,18 +4,22 @@ The render goes through Blender's own render operator, because only a render eng
 scene as it renders (subdivision for rendering, objects hidden in renders, simplify).
 """
 
-import re
 import time
-from importlib.util import find_spec
-from pathlib import Path
 
 import bpy
 
 from ..device.context import ensure_context, max_texture_size
 from ..engine import outcome
-from ..errors import AplanatError, DeviceLimitError, InputError, RenderCancelledError
+from ..errors import (
+    AplanatError,
+    DeviceLimitError,
+    InputError,
+    RenderCancelledError,
+    StrictError,
+)
 from ..files.whole_file import check_writable, removed_on_signals
-from . import pictures, statistics
+from . import statistics
+from .frame_files import FrameFiles, frame_path
 from .json_file import write_json
 from .scene_setup import apply_frame, apply_options, load_scene
 
@@ -48,50 +52,72 @@ def render(arguments, console):
         apply_options(scene, arguments)
         ensure_context()
         _check_device(scene)
-        warnings = _leave_out(scene, console)
-        if not arguments.output:
-            _check_scene_output(scene)
+        warnings = Warnings(console, arguments.strict)
+        _leave_out(scene, warnings)
         frames = []
-        for frame in _frame_numbers(scene, arguments):
-            if not arguments.output and _is_kept(scene, frame):
-                console.say(f"frame {frame}: left as it is; the scene's Overwrite is off")
-                continue
-            frames.append(_render_frame(scene, frame, arguments, console, warnings))
-        summary = _summary(arguments, frames, warnings)
+        with FrameFiles(scene, arguments.output, keeps_back=arguments.strict) as files:
+            for frame in _frame_numbers(scene, arguments):
+                apply_frame(scene, frame, arguments)
+                if not files.begin(frame):
+                    console.say(f"frame {frame}: left as it is; the scene's Overwrite is off")
+                    continue
+                frames.append(_render_frame(scene, frame, arguments, console, warnings, files))
+            files.publish_all()
+        if arguments.strict:
+            _tell_files(frames, console)
+        summary = _summary(arguments, frames, warnings.lines)
         if arguments.stats:
             write_json(arguments.stats, summary)
     return summary
 
 
-def frame_path(path, frame):
-    """Put a frame number into the last run of # of a file name.
+class Warnings:
+    """The warnings of a command: each told once, or an error if it is strict.
 
     Parameters
     ----------
-    path : Path
-    frame : int
+    console : Console
+    strict : bool
 
-    Returns
-    -------
-    Path
-        The same path if its name has no #.
+    Attributes
+    ----------
+    lines : list of str
     """
-    runs = list(re.finditer("#+", path.name))
-    if not runs:
-        return path
-    first, last = runs[-1].span()
-    digits = f"{'-' if frame < 0 else ''}{abs(frame):0{last - first}d}"
-    return path.with_name(path.name[:first] + digits + path.name[last:])
+
+    def __init__(self, console, strict=False):
+        self.lines = []
+        self.strict = strict
+        self._console = console
+
+    def add(self, lines):
+        """Tell those of the lines that are new.
+
+        Raises
+        ------
+        StrictError
+            If there are any and the command is strict.
+        """
+        for line in lines:
+            if line not in self.lines:
+                self.lines.append(line)
+                self._console.say(f"warning: {line}")
+        if self.strict and self.lines:
+            raise StrictError(self.lines)
 
 
-def heard_render(keep_pictures=False, progress=None):
-    """Render the current frame of the current scene and return what became of it.
+def heard_render(keep_pictures=False, progress=None, strict=False, frame=None):
+    """Render a frame of the current scene and return what became of it.
 
     Parameters
     ----------
     keep_pictures : bool
     progress : callable, optional
+    strict : bool
         See `outcome.listen`.
+    frame : int, optional
+        Rendered as an animation of one: Blender writes the scene's output, and File Output nodes
+        number their files, as with ``blender -b -a`` and ``-f``. By default the current frame, as a
+        still.
 
     Returns
     -------
@@ -102,9 +128,10 @@ def heard_render(keep_pictures=False, progress=None):
     AplanatError
         If there is no picture.
     """
-    with outcome.listen(keep_pictures, progress) as heard:
+    how = {} if frame is None else {"animation": True, "frame_start": frame, "frame_end": frame}
+    with outcome.listen(keep_pictures, progress, strict) as heard:
         try:
-            bpy.ops.render.render()
+            bpy.ops.render.render(**how)
         except RuntimeError as error:
             if heard.error is None:
                 reason = str(error).strip().splitlines()[0].removeprefix("Error: ")
@@ -122,10 +149,6 @@ def _check_outputs(arguments):
     frame = arguments.frames[0] if arguments.frames else arguments.frame or 0
     for path in arguments.output:
         check_writable(frame_path(path, frame))
-        if path.suffix.lower() == ".exr" and find_spec("OpenEXR") is None:
-            raise InputError(
-                f"-o {path}: the OpenEXR package is missing; install Aplanat from its extension zip"
-            )
     if arguments.stats:
         check_writable(arguments.stats)
 
@@ -142,97 +165,60 @@ def _check_device(scene):
         )
 
 
-def _check_scene_output(scene):
-    if scene.render.is_movie_format:
-        raise InputError(
-            f"scene '{scene.name}' is set to write a movie; name picture files with -o, such as"
-            " -o frame_####.png"
-        )
-    folder = _scene_path(scene, scene.frame_current).parent
-    try:
-        # As Blender does for the scene's own output path.
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"output folder '{folder}' of scene '{scene.name}' cannot be made"
-            f" ({error.strerror}); name a file with -o"
-        ) from error
-    check_writable(folder / "frame")
-
-
-def _leave_out(scene, console):
-    left_out = []
+def _leave_out(scene, warnings):
     editor, render = scene.sequence_editor, scene.render
     if render.use_sequencer and editor and editor.strips:
         render.use_sequencer = False
-        left_out.append("the video sequencer is left out; the 3D scene is rendered")
-    if render.use_multiview:
-        render.use_multiview = False
-        left_out.append("stereoscopy is left out; one picture is rendered")
-    lines = [f"scene '{scene.name}': {line}" for line in left_out]
-    for line in lines:
-        console.say(f"warning: {line}")
-    return lines
+        what = "the video sequencer is left out; the 3D scene is rendered"
+        warnings.add([f"scene '{scene.name}': {what}"])
 
 
 def _frame_numbers(scene, arguments):
     if arguments.frames:
         first, last = arguments.frames
-        return range(first, last + 1)
+        return range(first, last + 1, arguments.frame_step or scene.frame_step)
     frame = scene.frame_current if arguments.frame is None else arguments.frame
     return range(frame, frame + 1)
 
 
-def _render_frame(scene, frame, arguments, console, warnings):
+def _render_frame(scene, frame, arguments, console, warnings, files):
     start = time.perf_counter()
-    apply_frame(scene, frame, arguments)
     settings = statistics.settings_in_force(scene, arguments)
-    needs_layers = any(path.suffix.lower() == ".exr" for path in arguments.output)
-    heard = heard_render(
-        needs_layers, lambda _share, text: console.progress(f"frame {frame}: {text}")
-    )
-    for line in heard.report:
-        if line not in warnings:
-            warnings.append(line)
-            console.say(f"warning: {line}")
-    with heard.statistics.timed("write"):
-        files = _write(scene, frame, arguments, heard)
-    work = statistics.work(heard.statistics)
+
+    def run():
+        try:
+            heard = heard_render(
+                progress=lambda _share, text: console.progress(f"frame {frame}: {text}"),
+                strict=arguments.strict,
+                frame=frame,
+            )
+        except StrictError as error:
+            warnings.add(error.warnings)
+            raise
+        warnings.add(heard.report)
+        return heard
+
+    renders = files.render(frame, run)
+    with renders[-1].statistics.timed("write"):
+        written, problems = files.end()
+    warnings.add(problems)
+    work = statistics.total_work([statistics.work(heard.statistics) for heard in renders])
     work["seconds"]["total"] = round(time.perf_counter() - start, 6)
-    for path in files:
-        console.say(f"frame {frame}: {path} ({work['seconds']['total']:.1f} s)")
-    return {
+    done = {
         "frame": frame,
-        "files": [str(path) for path in files],
+        "files": [str(path) for path in written],
         **work,
         "settings": settings,
     }
+    if not arguments.strict:
+        _tell_files([done], console)
+    return done
 
 
-def _scene_path(scene, frame):
-    return Path(bpy.path.abspath(scene.render.frame_path(frame=frame)))
-
-
-def _is_kept(scene, frame):
-    return not scene.render.use_overwrite and _scene_path(scene, frame).exists()
-
-
-def _write(scene, frame, arguments, heard):
-    if not arguments.output:
-        path = _scene_path(scene, frame)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        pictures.save_as_set(path, scene)
-        return [path]
-    files = []
-    layers = [layer for layer in heard.layers if layer.scene == scene.name]
-    for pattern in arguments.output:
-        path = frame_path(pattern, frame)
-        if path.suffix.lower() == ".exr":
-            pictures.save_exr(path, layers, scene)
-        else:
-            pictures.save_png(path, scene)
-        files.append(path)
-    return files
+def _tell_files(frames, console):
+    for done in frames:
+        for path in done["files"]:
+            console.say(f"frame {done['frame']}: {path} ({done['seconds']['total']:.1f} s)")
 
 
 def _summary(arguments, frames, warnings):
@@ -241,7 +227,8 @@ def _summary(arguments, frames, warnings):
     return {
         "command": "render",
         "scene": str(arguments.scene),
-        "files": [path for frame in frames for path in frame["files"]],
+        # Several frames may write the same file.
+        "files": list(dict.fromkeys(path for frame in frames for path in frame["files"])),
         "warnings": warnings,
         **statistics.machine(),
         **statistics.total_work(work),

@@ -67,6 +67,7 @@ def _render_view(engine, depsgraph, heard, extractor, view):
     with statistics.timed("extract"):
         snapshot = extractor.extract(depsgraph, engine.frame_set, view)
     _show_report(engine, heard, frame_report(snapshot))
+    heard.check_strict()
     with statistics.timed("plan"):
         plan = plan_frame(snapshot)
     levels = _make_levels(engine, plan, snapshot, heard)

@@ -19,6 +19,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..errors import StrictError
+
 
 @dataclass
 class RenderStatistics:
@@ -157,6 +159,8 @@ class RenderOutcome:
     keeps_pictures : bool
     progress : callable or None
         Called with the finished share of the view layer, 0 to 1, and a line of text.
+    strict : bool
+        A warning ends the render as soon as it is found.
     """
 
     error: Exception | None = None
@@ -166,10 +170,21 @@ class RenderOutcome:
     report: list[str] = field(default_factory=list)
     keeps_pictures: bool = False
     progress: object = None
+    strict: bool = False
 
     def note(self, lines):
         """Add lines to the report that are not there yet."""
         self.report.extend(line for line in dict.fromkeys(lines) if line not in self.report)
+
+    def check_strict(self):
+        """Refuse to go on with warnings, if the listener is strict.
+
+        Raises
+        ------
+        StrictError
+        """
+        if self.strict and self.report:
+            raise StrictError(self.report)
 
 
 @dataclass(frozen=True)
@@ -232,20 +247,21 @@ _listeners = []
 
 
 @contextmanager
-def listen(keep_pictures=False, progress=None):
+def listen(keep_pictures=False, progress=None, strict=False):
     """Hear of the renders that run inside a `with` block.
 
     Parameters
     ----------
     keep_pictures : bool
     progress : callable, optional
+    strict : bool
         See `RenderOutcome`.
 
     Yields
     ------
     RenderOutcome
     """
-    heard = RenderOutcome(keeps_pictures=keep_pictures, progress=progress)
+    heard = RenderOutcome(keeps_pictures=keep_pictures, progress=progress, strict=strict)
     with _lock:
         _listeners.append(heard)
     try:

@@ -15,13 +15,17 @@ class View:
 
     Parameters
     ----------
-    engine : bpy.types.RenderEngine
-    name : str
-        Of Blender's view; empty where there is only one.
+    engine : bpy.types.RenderEngine or None
+    blender : bpy.types.SceneRenderView
     """
 
     engine: object
-    name: str
+    blender: object
+
+    @property
+    def name(self):
+        """The name of the view."""
+        return self.blender.name
 
     def activate(self):
         """Have Blender's answers be about this view."""
@@ -45,7 +49,8 @@ def views_of(engine, scene):
 
     Parameters
     ----------
-    engine : bpy.types.RenderEngine
+    engine : bpy.types.RenderEngine or None
+        None where only the names are asked for.
     scene : bpy.types.Scene
 
     Returns
@@ -57,6 +62,6 @@ def views_of(engine, scene):
     if not render.use_multiview:
         return [None]
     found = render.stereo_views if render.views_format == "STEREO_3D" else render.views
-    views = [View(engine, view.name) for view in found if view.use]
+    views = [View(engine, view) for view in found if view.use]
     # Without any, Blender renders as if there were no stereoscopy.
     return views or [None]

@@ -2,19 +2,23 @@
 
 The bytes go to a file without a name in the destination's folder, which vanishes with the process
 however it ends, and get their name when all of them are on the disk. Where the system has no such
-files, a temporary name is used, and removed on SIGINT and SIGTERM.
+files, a temporary name is used, and removed on SIGINT and SIGTERM. Either way the file has the
+permissions that the user's umask leaves, as if it had been opened for writing.
 """
 
 import contextlib
 import os
+import secrets
+import shutil
 import signal
-import tempfile
 import threading
 from pathlib import Path
 
 from ..errors import OutputError
 
+# What a signal removes: files, and folders with all that is in them.
 _unfinished = set()
+_unfinished_folders = set()
 
 
 @contextlib.contextmanager
@@ -116,11 +120,11 @@ class _NamelessFile:
 class _NamedFile:
     def __init__(self, destination):
         self._destination = destination
-        handle, self.path = tempfile.mkstemp(
-            prefix=f".{destination.name}.", suffix=".part", dir=destination.parent
-        )
-        os.close(handle)
-        _unfinished.add(self.path)
+        # Not by tempfile, which keeps its files from everybody else.
+        name = f".{destination.name}.{secrets.token_hex(8)}.part"
+        self.path = str(destination.parent / name)
+        os.close(os.open(self.path, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o666))
+        remember_file(self.path)
 
     def publish(self):
         with open(self.path, "rb+") as file:
@@ -130,12 +134,32 @@ class _NamedFile:
     def close(self):
         with contextlib.suppress(FileNotFoundError):
             os.unlink(self.path)
-        _unfinished.discard(self.path)
+        forget_file(self.path)
+
+
+def remember_file(path):
+    """Have SIGINT and SIGTERM remove a file, if it is empty or has the ending ``.part``."""
+    _unfinished.add(str(path))
+
+
+def forget_file(path):
+    """Undo `remember_file`."""
+    _unfinished.discard(str(path))
+
+
+def remember_folder(path):
+    """Have SIGINT and SIGTERM remove a folder with all that is in it."""
+    _unfinished_folders.add(str(path))
+
+
+def forget_folder(path):
+    """Undo `remember_folder`."""
+    _unfinished_folders.discard(str(path))
 
 
 @contextlib.contextmanager
 def removed_on_signals():
-    """In the `with` block, SIGINT and SIGTERM remove unfinished files and end the process."""
+    """In the `with` block, SIGINT and SIGTERM remove what is unfinished and end the process."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -152,7 +176,10 @@ def removed_on_signals():
 def _remove_and_end(number, _frame):
     for path in tuple(_unfinished):
         with contextlib.suppress(OSError):
-            os.unlink(path)
+            if path.endswith(".part") or os.stat(path).st_size == 0:
+                os.unlink(path)
+    for path in tuple(_unfinished_folders):
+        shutil.rmtree(path, ignore_errors=True)
     # As if there had been no handler, so that the caller sees what ended the process.
     signal.signal(number, signal.SIG_DFL)
     os.kill(os.getpid(), number)

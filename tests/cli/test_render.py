@@ -9,7 +9,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from addon.cli.render import frame_path
+from addon.cli.frame_files import frame_path
 from tests.lens_io.importers.foreign_texts import ZEMAX
 
 
@@ -196,17 +196,6 @@ def test_sequencer_is_left_out_and_told(aplanat, make_blend, tmp_path):
     assert done.code == 0, done
     assert any("sequencer" in line for line in done.answer["warnings"])
     np.testing.assert_allclose(combined(path)[16, 24, :3], (0.9, 0.4, 0.1), atol=1e-6)
-
-
-def test_stereoscopy_is_left_out_and_told(aplanat, make_blend, tmp_path):
-    def see_with_two_eyes(_bpy, scene):
-        scene.render.use_multiview = True
-
-    path = tmp_path / "a.png"
-    done = aplanat("render", make_blend(see_with_two_eyes), "-o", path, "--json")
-    assert done.code == 0, done
-    assert any("stereoscopy" in line for line in done.answer["warnings"])
-    assert iio.imread(path).shape == (32, 48, 3)
 
 
 def test_markers_choose_the_camera_and_the_option_overrules_them(aplanat, make_blend, tmp_path):

@@ -1,0 +1,102 @@
+"""Files that wait in a folder of their own until it is known that they are wanted.
+
+What other software writes in place, in several steps, is written there instead: its output folder
+is told to be a stand-in for the real one. The files are then published, each whole or not at all,
+or forgotten with the folder.
+"""
+
+import shutil
+import tempfile
+from pathlib import Path
+
+from .whole_file import forget_folder, remember_folder, whole_file
+
+
+class HeldFiles:
+    """A folder for held files; it vanishes at the end of a `with` block, and on signals.
+
+    It lies where the system keeps temporary files (``TMPDIR``).
+    """
+
+    def __enter__(self):
+        """Make the folder."""
+        self._folder = Path(tempfile.mkdtemp(prefix="aplanat-"))
+        remember_folder(self._folder)
+        return self
+
+    def __exit__(self, *_):
+        """Remove the folder with what is still in it."""
+        shutil.rmtree(self._folder, ignore_errors=True)
+        forget_folder(self._folder)
+
+    def room(self, name):
+        """Return the folder of one writer, which is made if need be.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        Path
+        """
+        folder = self._folder / name
+        folder.mkdir(exist_ok=True)
+        return folder
+
+    def stand_in(self, name, path):
+        """Return where a writer writes instead of to an absolute path.
+
+        Parameters
+        ----------
+        name : str
+            Of the writer's room.
+        path : str
+            Absolute; its end may hold patterns that only the writer understands.
+
+        Returns
+        -------
+        str
+        """
+        anchor = Path(path).anchor
+        drive = Path(path).drive.replace(":", "").strip("\\/").replace("\\", "+")
+        room = self.room(name) / f"root{'+' if drive else ''}{drive}"
+        room.mkdir(exist_ok=True)
+        (self.room(name) / f"{room.name}.anchor").write_text(anchor, encoding="utf-8")
+        return f"{room.as_posix()}/{path[len(anchor) :]}"
+
+    def found(self, name):
+        """Return what a writer has written under its stand-ins.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        list of (Path, Path)
+            Where each file is held, and where it belongs.
+        """
+        pairs = []
+        for anchor in sorted(self.room(name).glob("*.anchor")):
+            root = anchor.with_suffix("")
+            real = Path(anchor.read_text(encoding="utf-8"))
+            held = sorted(path for path in root.rglob("*") if path.is_file())
+            pairs += [(path, real / path.relative_to(root)) for path in held]
+        return pairs
+
+
+def publish(held, real):
+    """Give a held file its place, with the permissions of the user's umask.
+
+    Parameters
+    ----------
+    held, real : Path
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written there.
+    """
+    with whole_file(real) as place:
+        shutil.copyfile(held, place)
