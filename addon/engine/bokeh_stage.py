@@ -69,7 +69,7 @@ def highlight_buffer(bokeh):
     settings = bokeh.settings
     return uniform_buffer(
         surface.HIGHLIGHT_PARAMS.pack(
-            split=(settings.threshold, bokeh.least_coc, settings.gain, settings.amplification),
+            split=(settings.threshold, bokeh.least_coc, settings.gain, 0.0),
             world=(bokeh.world_depth, float(bokeh.world), bokeh.world_share, 0.0),
         )
     )

@@ -116,10 +116,11 @@ class SceneBuffers:
             self._lights = content.lights
             self.uploads["light_tables"] += 1
         world = content.world
-        if self._world is None or self._world.image != world.image:
+        known = self._world and (self._world.image, self._world.amplification)
+        if known != (world.image, world.amplification):
             self._levels = self.environment_image = None
             if world.image:
-                self._compute_environment(content.images[world.image])
+                self._compute_environment(content.images[world.image], world)
                 yield
         if self._world != world:
             self.environment_buffer = environment.environment_buffer(world)
@@ -133,10 +134,10 @@ class SceneBuffers:
             ("ggx_tx", table_of_ggx),
         )
 
-    def _compute_environment(self, image):
-        pixels = environment.linear_pixels(image)
+    def _compute_environment(self, image, world):
+        pixels = environment.world_pixels(image, world)
         self._levels = environment.prefilter(pixels)
-        if image.srgb or image.pixels.dtype == np.uint8:
+        if image.srgb or image.pixels.dtype == np.uint8 or world.amplification:
             opaque = np.ones((*pixels.shape[:2], 1), np.float32)
             self.environment_image = texture_2d(np.concatenate([pixels, opaque], axis=2))
         else:

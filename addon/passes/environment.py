@@ -21,6 +21,8 @@ from ..device.textures import texture_2d
 from ..device.uniform_block import UniformStruct
 from ..device.uniforms import uniform_buffer
 from ..sampling.halton import halton
+from ..sampling.highlights import amplify
+from ..scene.surface_graph import LARGEST_RADIANCE
 
 ENVIRONMENT_PARAMS = UniformStruct("shared/environment_params.glsl", "EnvironmentParams")
 
@@ -44,15 +46,24 @@ _PREFILTER = ShaderInfo(
 )
 
 
-def linear_pixels(image):
-    """Return an image's pixels scene linear, shape (height, width, 3), float32."""
-    if image.pixels.dtype != np.uint8:
-        return np.ascontiguousarray(image.pixels[..., :3], np.float32)
-    encoded = np.arange(256, dtype=np.float64) / 255.0
-    if image.srgb:
-        high = ((encoded + 0.055) / 1.055) ** 2.4
-        encoded = np.where(encoded < 0.04045, encoded / 12.92, high)
-    return np.take(encoded.astype(np.float32), image.pixels[..., :3])
+def world_pixels(image, world):
+    """Return what a world shows of an image, without its colour factor.
+
+    Parameters
+    ----------
+    image : ImageSnapshot
+    world : World
+
+    Returns
+    -------
+    ndarray of shape (height, width, 3)
+        Scene linear, float32, finite.
+    """
+    pixels = image.linear_colors()
+    if not world.amplification:
+        return pixels
+    amplified = amplify(pixels, np.float32(world.amplification), world.luminance)
+    return np.clip(amplified, -LARGEST_RADIANCE, LARGEST_RADIANCE).astype(np.float32)
 
 
 def shrink(pixels, largest):
@@ -169,7 +180,7 @@ def prefilter(pixels):
     for i in range(_PYRAMID):
         textures[f"level_{i}_tx"] = _opaque_texture(level)
         level = _halve(level)
-    targets = Targets(TILE * (LEVELS + 1), TILE, [TargetSpec("levels", "RGBA16F")])
+    targets = Targets(TILE * (LEVELS + 1), TILE, [TargetSpec("levels", "RGBA32F")])
     with targets.framebuffer("levels").bind():
         state.overwrite()
         shader = compile_shader(_PREFILTER)

@@ -55,6 +55,8 @@ class Writer:
     ----------
     available : frozenset of str
         Attributes that the mesh has.
+    luminance : tuple of 3 float
+        Weights with which a colour becomes a value.
     transmitting, dark : set of str
         Closures that may let light through, and those that add no light of their own.
     glows : bool
@@ -62,6 +64,7 @@ class Writer:
 
     available: frozenset[str]
     used: frozenset[tuple[int, str]]
+    luminance: tuple[float, float, float]
     lines: list[str] = field(default_factory=list)
     constants: list[tuple[float, ...]] = field(default_factory=list)
     attributes: list[str] = field(default_factory=list)
@@ -79,13 +82,13 @@ class Writer:
             return self._constant(source.value, wanted)
         if isinstance(source, Link):
             kind, expression = self.outputs[source.node][source.output]
-            return convert(kind, expression, wanted)
+            return convert(kind, expression, wanted, self.luminance)
         raise TypeError(f"not an input: {source!r}")
 
     def _constant(self, value, wanted):
         index = len(self.constants)
         if wanted == "float" and len(value) > 1:
-            value = (float(np.dot(value[:3], LUMINANCE)),)
+            value = (float(np.dot(value[:3], self.luminance)),)
         padded = tuple(np.resize(value, 3)) if len(value) == 1 else tuple(value[:3])
         self.constants.append((*map(float, padded), 0.0))
         expression = f"material_buf.constants[{index}]"
@@ -127,18 +130,14 @@ class Writer:
         return {output: ("closure", self.let("Closure", expression))}
 
 
-# Rec. 709, as Blender's default scene-linear space.
-LUMINANCE = (0.2126, 0.7152, 0.0722)
-
-
-def convert(kind, expression, wanted):
+def convert(kind, expression, wanted, luminance):
     """Convert between socket types as Blender's nodes do."""
     if kind == wanted:
         return expression
     if wanted == "vec3" and kind == "float":
         return f"vec3({expression})"
     if wanted == "float" and kind == "color":
-        weights = ", ".join(map(str, LUMINANCE))
+        weights = ", ".join(map(str, luminance))
         return f"dot({expression}, vec3({weights}))"
     if wanted == "float" and kind == "vec3":
         return f"dot({expression}, vec3(1.0 / 3.0))"
@@ -161,7 +160,8 @@ def generate(graph, available):
     SurfaceCode
     """
     links = [value for node in graph.nodes for _, value in node.inputs if isinstance(value, Link)]
-    writer = Writer(frozenset(available), frozenset((link.node, link.output) for link in links))
+    used = frozenset((link.node, link.output) for link in links)
+    writer = Writer(frozenset(available), used, graph.luminance)
     for node in graph.nodes:
         writer.outputs.append(GENERATORS[node.kind](node, writer))
     surface = "closure_none()"

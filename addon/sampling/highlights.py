@@ -102,8 +102,8 @@ def highlight_base(radiance, share, threshold):
     return radiance * ((1.0 - share) + share * _kept(radiance, threshold))
 
 
-def amplify(radiance, amplification):
-    """Return what an encoded picture may have shown before its whites were cut off.
+def amplify(radiance, amplification, luminance):
+    """Return what a picture may have shown before its whites were cut off.
 
     Parameters
     ----------
@@ -111,19 +111,23 @@ def amplify(radiance, amplification):
         Scene linear, 1 where the picture is white.
     amplification : float
         Of white; 0 changes nothing.
+    luminance : sequence of 3 float
+        Weights of the channels.
 
     Returns
     -------
     ndarray of shape (..., 3)
-        ``radiance (1 + amplification L^10)`` with the luminance L.
+        ``radiance (1 + amplification L^10)`` with the luminance L, as that of white where it is
+        greater: what is brighter than white was not cut off, and grows by the same factor, so that
+        no picture, however bright, grows beyond all bounds.
 
     References
     ----------
     Jeong et al., TVCG 2020, section 4.1.
     """
     radiance = np.asarray(radiance)
-    luminance = np.maximum(radiance @ np.array([0.2126, 0.7152, 0.0722]), 0.0)
-    return radiance * (1.0 + amplification * luminance[..., None] ** 10)
+    white = np.clip(radiance @ np.asarray(luminance, radiance.dtype), 0.0, 1.0)
+    return radiance * (1.0 + amplification * white[..., None] ** 10)
 
 
 def _below(radiance, threshold):

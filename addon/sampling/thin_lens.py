@@ -37,7 +37,7 @@ class ThinLens:
         if not np.isfinite(self.focus_distance) or self.focus_distance <= 0.0:
             raise FocusError(
                 f"focus distance is {self.focus_distance:g} m; it must be greater than 0"
-                " (move the focus object in front of the camera or set a distance)"
+                " (set a Focus Distance, or move the focus object out of the camera's plane)"
             )
         if not np.isfinite(self.aperture_radius) or self.aperture_radius < 0.0:
             raise FocusError(

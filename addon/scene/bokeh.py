@@ -79,7 +79,6 @@ def describe_bokeh(camera, real_lens, corner):
         layers=settings.layers,
         overscan=settings.overscan,
         lens_views=settings.lens_views,
-        amplification=settings.amplification,
         world=settings.use_world,
         appearance=appearance,
         distortion=distortion,
@@ -152,7 +151,8 @@ def _read_appearance(camera, real_lens, corner):
         onion=onion,
         rims=rims,
         diffraction=ringing,
-        anamorphic_ratio=dof.aperture_ratio,
+        # Where it is no ratio, the camera has no lens and says so.
+        anamorphic_ratio=dof.aperture_ratio if 0.0 < dof.aperture_ratio < math.inf else 1.0,
         # A traced lens has its own spherical aberration.
         edge=settings.hardness if real_lens is None else 0.0,
     )
@@ -217,14 +217,7 @@ class _Pixels:
 # Irises of pictures are compared by identity, so that a picture is not compared in every frame.
 @lru_cache(maxsize=16)
 def _iris_of_pixels(pixels, rotation):
-    image = pixels.image
-    picture = image.pixels[..., :3].astype(np.float64)
-    if image.pixels.dtype == np.uint8:
-        picture /= 255.0
-        if image.srgb:
-            picture = np.where(
-                picture <= 0.04045, picture / 12.92, ((picture + 0.055) / 1.055) ** 2.4
-            )
+    picture = pixels.image.linear_colors().astype(np.float64)
     return PictureIris(_reduced(picture.mean(axis=-1)), rotation)
 
 

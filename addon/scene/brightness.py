@@ -10,6 +10,8 @@ from .surface_graph import Constant
 
 # Of a white surface at most: tables of what lobes reflect are not exact.
 _REFLECTANCE = 1.1
+# What a glossy surface brighter than white gains by light that it scatters again, at most.
+_REPEATED = 2.0
 
 
 def brightest(content):
@@ -121,11 +123,15 @@ def _graph_bound(graph, mesh, images, reflected):
             color, strength = of(inputs["Color"]), of(inputs["Strength"])
             bound = _product(color, strength)
         elif node.kind in {"diffuse", "glossy"}:
-            bound = _product(of(inputs["Color"]), reflected)
+            color = of(inputs["Color"])
+            bound = _product(color, reflected)
+            if node.kind == "glossy" and color > 1.0:
+                bound *= _REPEATED
         elif node.kind == "principled":
-            # Colours above white count as white.
+            # A metal, or the coat of the diffuse part, is never brighter than white.
             color, strength = of(inputs["Emission Color"]), of(inputs["Emission Strength"])
-            bound = reflected + _product(color, strength)
+            reflectance = max(of(inputs["Base Color"]), 1.0)
+            bound = _product(reflectance, reflected) + _product(color, strength)
         elif node.kind == "mix_shader":
             bound = max(of(inputs["Shader"]), of(inputs["Shader_001"]))
         elif node.kind == "add_shader":

@@ -32,8 +32,6 @@ def read_camera(depsgraph, camera, film, view=None):
     ------
     CameraError
         If there is no camera or it is panoramic or custom.
-    FocusError
-        If its focus distance or iris cannot form a picture.
     """
     if camera is None:
         raise CameraError("the scene has no camera; add one or set Scene > Camera")
@@ -56,7 +54,7 @@ def read_camera(depsgraph, camera, film, view=None):
         world = view.place(camera).normalized()
         _shift(projection, data, render, film, view.shift_x(camera) - data.shift_x)
     real_lens, problems = read_real_lens(data)
-    lens = read_lens(depsgraph, camera, real_lens, world) if data.dof.use_dof else None
+    lens, focus_problems = read_lens(depsgraph, camera, real_lens, world)
     focus = lens.focus_distance if lens else None
     chromatic, chromatic_problems = read_chromatic(data, real_lens, focus)
     corner = corner_tangent(data, depsgraph.scene)
@@ -67,7 +65,7 @@ def read_camera(depsgraph, camera, film, view=None):
         lens=lens,
         orthographic=data.type == "ORTHO",
         real_lens=real_lens,
-        report=camera_report(camera, problems, chromatic_problems, bokeh_problems),
+        report=camera_report(camera, problems, focus_problems, chromatic_problems, bokeh_problems),
         chromatic=chromatic,
         bokeh=bokeh,
     )
@@ -127,18 +125,44 @@ def read_lens(depsgraph, camera, real_lens=None, world=None):
     The aperture follows Cycles: focal length over f-number, and 1 m over it where an orthographic
     camera has no focal length. A real lens opens no wider than it can. `world` is as
     `focus_distance` takes it.
+
+    Returns
+    -------
+    lens : ThinLens or None
+        None without depth of field, and where focus or iris cannot form a picture.
+    problems : tuple of str
+        What is not as the camera asks, without its name.
     """
     data = camera.data
     dof = data.dof
+    if not dof.use_dof:
+        return None, ()
     focal_length = 1.0 if data.type == "ORTHO" else data.lens / 1000.0
     f_number = real_lens.f_number if real_lens else dof.aperture_fstop
     iris = Iris(dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio)
     distance = focus_distance(depsgraph, camera, world)
-    return ThinLens(aperture_radius(focal_length, f_number), distance, iris)
+    try:
+        lens = ThinLens(aperture_radius(focal_length, f_number), distance, iris)
+    except FocusError as error:
+        return None, (f"{error}; everything is drawn sharp",)
+    problems = ()
+    if dof.focus_object is not None and _focus_depth(depsgraph, camera, world) < 0.0:
+        problems += (
+            f"focus object '{dof.focus_object.name}' is behind the camera; its distance counts, as"
+            " in Cycles",
+        )
+    if data.type == "PERSP" and distance < focal_length:
+        problems += (
+            f"focuses at {distance:.3g} m, nearer than its focal length of {focal_length:.3g} m, as"
+            " no lens can; what is farther is blurred beyond recognition (see Focus Distance)",
+        )
+    return lens, problems
 
 
 def focus_distance(depsgraph, camera, world=None):
     """Return the distance of the focus plane along the optical axis, in m.
+
+    As in Cycles and EEVEE, a focus object behind the camera counts as if it were in front.
 
     Parameters
     ----------
@@ -152,26 +176,22 @@ def focus_distance(depsgraph, camera, world=None):
     Returns
     -------
     float
-
-    Raises
-    ------
-    FocusError
-        If the focus object lies behind the camera.
+        Not finite, or 0, where nothing can be in focus.
     """
+    if camera.data.dof.focus_object is None:
+        return camera.data.dof.focus_distance
+    return abs(_focus_depth(depsgraph, camera, world))
+
+
+def _focus_depth(depsgraph, camera, world):
+    """Return how far in front of a camera its focus object is, in m; negative behind it."""
     dof = camera.data.dof
-    if dof.focus_object is None:
-        return dof.focus_distance
     target = dof.focus_object.evaluated_get(depsgraph)
     matrix = target.matrix_world
     if dof.focus_subtarget and target.pose and dof.focus_subtarget in target.pose.bones:
         matrix = matrix @ target.pose.bones[dof.focus_subtarget].matrix
     world = camera.matrix_world.normalized() if world is None else world
     place = world.inverted() @ matrix.translation
-    if place.z >= 0.0 or not math.isfinite(place.z):
-        raise FocusError(
-            f"focus object '{target.name}' is not in front of camera '{camera.name}';"
-            " move it or choose another one"
-        )
     return -place.z
 
 

@@ -43,11 +43,13 @@ class SceneExtractor:
     ----------
     space : bpy.types.SpaceView3D or None
         The 3D view whose local view and collections apply.
+    largest_image : int or None
+        Texels along a side that the device can hold.
     """
 
-    def __init__(self, space=None):
+    def __init__(self, space=None, largest_image=None):
         self._space = space
-        self._materials = MaterialReader()
+        self._materials = MaterialReader(largest_image)
         self._known = {}
         # Read before, but the source may have changed: compared with what is read next.
         self._doubtful = []
@@ -69,6 +71,8 @@ class SceneExtractor:
             if _is_camera(block) or is_curve_group(block):
                 continue
             self._stale = True
+            if type(block).__name__ == "Image":
+                self._materials.image_reader.note_change(block.session_uid)
             if update.is_updated_geometry:
                 changed.add(block.session_uid)
         for key in [key for key, known in self._known.items() if known.owners & changed]:

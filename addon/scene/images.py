@@ -1,8 +1,4 @@
-"""Blender's images to `ImageSnapshot`.
-
-Pixels are kept as Cycles keeps them, so that interpolation gives the same values: 8-bit pixels stay
-8-bit and in their own encoding, and colour is multiplied by alpha in that encoding.
-"""
+"""Blender's images to `ImageSnapshot`, each read once for as long as it does not change."""
 
 import os
 import threading
@@ -11,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import color_spaces
+from .image_pixels import encode, load_file, read_pixels, reduced
 from .snapshot import ImageSnapshot, next_uid
 
 # Frames of these are chosen by the node that uses them.
@@ -41,10 +38,19 @@ class _Entry:
     signature: tuple
     use: ImageUse
     snapshot: ImageSnapshot
+    notes: tuple
 
 
 class ImageReader:
-    """Reads images, each once for as long as it does not change.
+    """Reads images.
+
+    Parameters
+    ----------
+    largest : int or None
+        Texels along a side that the device can hold; larger images are averaged down.
+    is_told : bool
+        `note_change` is called when an image is painted on. Otherwise one that is not saved is read
+        and compared in every round, as nothing else tells.
 
     Attributes
     ----------
@@ -53,11 +59,14 @@ class ImageReader:
     report : list of str
     """
 
-    def __init__(self):
+    def __init__(self, largest=None, is_told=False):
         self.images = {}
         self.report = []
+        self._largest = largest
+        self._is_told = is_told
         self._entries = {}
         self._seen = {}
+        self._repaints = {}
 
     def begin(self):
         """Start a new round; what the last one did not use is forgotten."""
@@ -65,6 +74,15 @@ class ImageReader:
         self._seen = {}
         self.images = {}
         self.report = []
+
+    def note_change(self, session_uid):
+        """Take note that an image's pixels changed, as Blender tells of painted ones.
+
+        Parameters
+        ----------
+        session_uid : int
+        """
+        self._repaints[session_uid] = self._repaints.get(session_uid, 0) + 1
 
     def read(self, image, image_user=None):
         """Return how to use an image, or None where it has no pixels.
@@ -89,21 +107,27 @@ class ImageReader:
             where = f" ({image.filepath})" if image.filepath else ""
             self.report.append(f"image '{image.name}'{where} cannot be read; drawn in magenta")
         else:
-            self.images[use.uid] = self._entries[key].snapshot
+            entry = self._entries[key]
+            self.images[use.uid] = entry.snapshot
+            self.report += [f"image '{image.name}': {note}" for note in entry.notes]
         return use
 
     def _read(self, key, image, image_user, frame):
-        signature = _signature(image, frame)
+        repaints = self._repaints.get(image.session_uid, 0)
+        signature = (repaints, *_signature(image, image_user, frame))
         entry = self._entries.get(key)
-        if entry and entry.signature == signature and not image.is_dirty:
-            self._report_source(image)
+        unchanged = entry and entry.signature == signature
+        if unchanged and (self._is_told or not image.is_dirty):
             return entry.use
-        pixels = self._pixels(image, image_user, frame)
+        pixels, as_stored, notes = self._pixels(image, image_user, frame)
         if pixels is None:
             self._entries.pop(key, None)
             return None
-        self._report_source(image)
-        pixels, srgb, associated = self._encode(image, pixels)
+        if image.source == "TILED" and len(image.tiles) > 1:
+            notes.append(f"of its {len(image.tiles)} UDIM tiles only the first is drawn")
+        pixels, srgb, associated, more = encode(pixels, image, as_stored)
+        notes += more
+        pixels = self._fitting(pixels, notes)
         if (
             entry
             and entry.use.srgb == srgb
@@ -111,83 +135,48 @@ class ImageReader:
             and entry.snapshot.pixels.dtype == pixels.dtype
             and np.array_equal(entry.snapshot.pixels, pixels)
         ):
-            entry.signature = signature
+            entry.signature, entry.notes = signature, tuple(notes)
             return entry.use
         snapshot = ImageSnapshot(next_uid(), image.name, pixels, srgb)
-        self._entries[key] = _Entry(signature, ImageUse(snapshot.uid, srgb, associated), snapshot)
-        return self._entries[key].use
-
-    def _report_source(self, image):
-        if image.source == "TILED" and len(image.tiles) > 1:
-            self.report.append(
-                f"image '{image.name}' has {len(image.tiles)} UDIM tiles; only the first is drawn"
-            )
+        use = ImageUse(snapshot.uid, srgb, associated)
+        self._entries[key] = _Entry(signature, use, snapshot, tuple(notes))
+        return use
 
     def _pixels(self, image, image_user, frame):
+        """Return pixels, whether they are as the file stores them, and notes."""
         if image.source == "SEQUENCE" and not image.packed_file and image_user is not None:
-            return _load_file(image.filepath_from_user(image_user=image_user))
+            return load_file(image.filepath_from_user(image_user=image_user)), True, []
+        notes = []
         if image.source in _ANIMATED:
             if threading.current_thread() is threading.main_thread():
                 # The only way to choose the frame; it needs the thread that may draw.
                 image.gl_load(frame=frame)
             else:
-                self.report.append(
-                    f"image '{image.name}': the frame of a movie cannot be chosen while the user"
-                    " interface renders; the frame shown last is used (render in the background)"
+                notes.append(
+                    "the frame of a movie cannot be chosen while the user interface renders; the"
+                    " frame shown last is used (render in the background)"
                 )
-        width, height = image.size
-        if width == 0 or height == 0 or image.channels == 0:
-            return None
-        pixels = np.empty(width * height * image.channels, np.float32)
-        if len(image.pixels) != pixels.size:
-            return None
-        image.pixels.foreach_get(pixels)
-        pixels = _with_four_channels(pixels.reshape(height, width, image.channels))
-        if not image.is_float:
-            # Exact: these are bytes over 255.
-            return np.rint(pixels * 255.0).astype(np.uint8)
-        return pixels
+        return read_pixels(image), False, notes
 
-    def _encode(self, image, pixels):
-        space = image.colorspace_settings.name
-        working = color_spaces.working_space()
-        is_byte = pixels.dtype == np.uint8
-        data = space in color_spaces.DATA_SPACES
-        # Cycles reads files itself; what is packed, painted or generated it takes from Blender,
-        # which keeps 8-bit pixels straight and float pixels multiplied, and trusts the mode.
-        from_file = image.source != "GENERATED" and not image.packed_file and not image.is_dirty
-        straight = image.alpha_mode == "STRAIGHT"
-        if from_file:
-            straight = is_byte
-        if image.alpha_mode == "NONE":
-            pixels = pixels.copy()
-            pixels[..., 3] = 255 if is_byte else 1.0
-        srgb = False
-        # Blender converts float images when it loads them.
-        if is_byte and not data and space != working:
-            srgb = space == color_spaces.SRGB and working == color_spaces.REC709
-            if not srgb:
-                converted = color_spaces.convert(pixels.astype(np.float32) / 255.0, space, working)
-                if converted is None:
-                    self.report.append(
-                        f"image '{image.name}': colour space '{space}' is not known;"
-                        " it is read as sRGB"
-                    )
-                    srgb = True
-                else:
-                    pixels = converted
-        opaque = bool((pixels[..., 3] == (255 if pixels.dtype == np.uint8 else 1.0)).all())
-        associated = not (opaque or data or image.alpha_mode in {"NONE", "CHANNEL_PACKED"})
-        if associated and straight:
-            pixels = _associate(pixels)
-        return pixels, srgb, associated
+    def _fitting(self, pixels, notes):
+        """Return pixels that the device can hold."""
+        height, width = pixels.shape[:2]
+        if self._largest is None or max(height, width) <= self._largest:
+            return pixels
+        small = reduced(pixels, self._largest)
+        notes.append(
+            f"its {width} x {height} pixels are more than the graphics device holds"
+            f" ({self._largest} a side); it is drawn in {small.shape[1]} x {small.shape[0]}"
+        )
+        return small
 
 
-def _signature(image, frame):
+def _signature(image, image_user, frame):
     stat = ()
     if image.source in {"FILE", "SEQUENCE", "TILED", "MOVIE"} and not image.packed_file:
         try:
-            status = os.stat(image.filepath_from_user())
+            path = image.filepath_from_user(image_user=image_user)
+            status = os.stat(path)
             stat = (status.st_mtime_ns, status.st_size)
         except (OSError, ValueError):
             stat = ("absent",)
@@ -207,38 +196,3 @@ def _signature(image, frame):
         generated,
         stat,
     )
-
-
-def _load_file(path):
-    import imbuf
-
-    try:
-        buffer = imbuf.load(path)
-        with buffer.with_buffer() as view:
-            pixels = np.array(view)
-        buffer.free()
-    except (OSError, ValueError, RuntimeError):
-        return None
-    return _with_four_channels(pixels)
-
-
-def _with_four_channels(pixels):
-    channels = pixels.shape[2]
-    if channels == 4:
-        return pixels
-    out = np.full((*pixels.shape[:2], 4), 255 if pixels.dtype == np.uint8 else 1.0, pixels.dtype)
-    out[..., :3] = pixels[..., :3] if channels >= 3 else pixels[..., :1]
-    if channels == 2:
-        out[..., 3] = pixels[..., 1]
-    return out
-
-
-def _associate(pixels):
-    alpha = pixels[..., 3:]
-    out = pixels.copy()
-    if pixels.dtype == np.uint8:
-        # Rounded down, as Cycles does.
-        out[..., :3] = (pixels[..., :3].astype(np.uint16) * alpha) // 255
-    else:
-        out[..., :3] *= alpha
-    return out

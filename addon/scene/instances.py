@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..errors import SnapshotError
 from .lights import MAX_LIGHTS, read_light
 
 # Object types with a surface or substance of their own that the engine cannot draw: in words,
@@ -128,10 +127,9 @@ def read_instances(depsgraph, space=None, with_places=False):
     -------
     InstanceList
 
-    Raises
-    ------
-    SnapshotError
-        If an object's transform is not finite.
+    Notes
+    -----
+    What has a transform that is not finite is left out, as in Cycles.
     """
     reader = _Reader(depsgraph, space)
     out = reader.out
@@ -150,11 +148,13 @@ def read_instances(depsgraph, space=None, with_places=False):
     out.world = np.array(matrices, np.float32).reshape(-1, 4, 4)
     finite = np.isfinite(out.world).all(axis=(1, 2))
     if not finite.all():
-        name = out.names[int(np.flatnonzero(~finite)[0])]
-        raise SnapshotError(
-            f"object '{name}': its transform has numbers that are not finite; clear its location,"
-            " rotation and scale, or remove the constraint or driver that made them"
-        )
+        for i in np.flatnonzero(~finite):
+            reader.note(out.names[i], "its transform has numbers that are not finite; left out")
+        chosen = np.flatnonzero(finite).tolist()
+        out.world = out.world[finite]
+        out.looks, out.names = ([column[i] for i in chosen] for column in (out.looks, out.names))
+        if with_places:
+            out.places = [out.places[i] for i in chosen]
     out.report = reader.report()
     return out
 
@@ -209,8 +209,8 @@ class _Reader:
         if key not in self._kinds:
             self._kinds[key] = self._read_kind(obj, parent, number, *shown)
         drawn, notes = self._kinds[key]
-        for note in notes:
-            self._counts[note] = self._counts.get(note, 0) + 1
+        for name, what in notes:
+            self.note(name, what)
         return drawn
 
     def _read_kind(self, obj, parent, number, show_self, show_particles):
@@ -248,7 +248,7 @@ class _Reader:
 
     def _read_light(self, obj, parent, matrix):
         if len(self.out.lights) == MAX_LIGHTS:
-            self._note(obj.name, f"more than {MAX_LIGHTS} lights; this one does not shine")
+            self.note(obj.name, f"more than {MAX_LIGHTS} lights; this one does not shine")
             return
         light, notes = read_light(obj.data, matrix)
         if light is not None:
@@ -260,7 +260,7 @@ class _Reader:
             self.out.lights.append(light)
             notes += _light_object_notes(obj, parent)
         for note in notes:
-            self._counts[obj.name, note] = self._counts.get((obj.name, note), 0) + 1
+            self.note(obj.name, note)
 
     def _flags_of_place(self, parent):
         number = parent.original.session_uid
@@ -309,6 +309,10 @@ class _Reader:
         if number == len(self.out.slots):
             self.out.slots.append(materials)
         return number
+
+    def note(self, name, what):
+        """Take note, for the report, of what is not drawn of an object as it is set."""
+        self._counts[name, what] = self._counts.get((name, what), 0) + 1
 
     def report(self):
         """Return one line for each object and reason, however many copies there are."""

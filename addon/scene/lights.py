@@ -8,12 +8,14 @@ import math
 
 import numpy as np
 
-from .material_nodes import constant
+from .material_nodes import constant, constant_number, numbers_of
 from .node_tree import source_of
 from .snapshot import Light
 
 # A row each of the light table: textures of this height exist on every device.
 MAX_LIGHTS = 8192
+# In single precision, in which the device computes.
+_LARGEST_NUMBER = float(np.finfo(np.float32).max)
 # Of a spot whose edge is sharp, in cosines: far below a pixel.
 _SHARPEST_EDGE = 1e-6
 
@@ -45,11 +47,19 @@ def read_light(light, matrix):
         power *= light.temperature_color[:]
     if light.node_tree and light.use_nodes:
         power *= _emission(light.node_tree, notes)
-    if not power.any() or not np.isfinite(power).all() or not np.isfinite(matrix).all():
+    if not power.any():
         return None, notes
+    if light.type == "SUN":
+        # It shines from everywhere: only its direction counts.
+        matrix[:3, 3] = 0.0
     axes = _unit_axes(matrix)
     read = {"SUN": _sun, "POINT": _point, "SPOT": _spot, "AREA": _area}[light.type]
     values = read(light, matrix, axes, power, notes)
+    numbers = (*values["radiance"], values.get("radius", 0.0), *values.get("half_size", ()))
+    # As Cycles does.
+    if not (np.abs(numbers) <= _LARGEST_NUMBER).all() or not np.isfinite(matrix).all():
+        notes.append("its power, size or place is not finite; it does not shine")
+        return None, notes
     return (
         Light(
             kind=light.type,
@@ -73,15 +83,19 @@ def _emission(tree, notes):
         return np.zeros(3)
     node = socket.node
     if node.type == "EMISSION":
-        color, strength = (source_of(node.inputs[name], ())[0] for name in ("Color", "Strength"))
-        if not color.is_output and not strength.is_output:
-            return np.array(constant(color).value) * constant(strength).value[0]
+        sources = [source_of(node.inputs[name], ())[0] for name in ("Color", "Strength")]
+        if all(not s.is_output or s.node.type in {"RGB", "VALUE"} for s in sources):
+            if any(np.isnan(numbers_of(source)).any() for source in sources):
+                notes.append("a number of its nodes is not a number; 0 is used")
+            return np.array(constant(sources[0]).value) * constant_number(sources[1])
     notes.append("the nodes of a light are not read; its colour and power are used")
     return np.ones(3)
 
 
 def _sun(light, matrix, axes, power, notes):
-    sine = math.sin(min(light.angle, math.pi) / 2)
+    # Not a number counts as no size.
+    angle = 0.0 if math.isnan(light.angle) else min(light.angle, math.pi)
+    sine = math.sin(angle / 2)
     if not light.normalize and sine > 0.0:
         power = power * (math.pi * sine**2)
     return {"radiance": _floats(power), "radius": sine}

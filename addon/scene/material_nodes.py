@@ -4,10 +4,20 @@ A reader takes a `TreeReader`, a node and the groups around it. It adds a `Shade
 its index, or returns a constant for each output, or None where it cannot read the node.
 """
 
+import math
+
 import numpy as np
 
+from . import color_spaces
 from .node_tree import source_of
-from .surface_graph import MISSING_IMAGE_COLOR, Constant, Link, ShaderNode, SurfaceGraph
+from .surface_graph import (
+    LARGEST_RADIANCE,
+    MISSING_IMAGE_COLOR,
+    Constant,
+    Link,
+    ShaderNode,
+    SurfaceGraph,
+)
 
 # Samplers beside the lights', the world's and the instance table's, of the 32 that a shader has.
 MAX_IMAGES = 24
@@ -47,7 +57,7 @@ class TreeReader:
     def surface(self, output):
         """Return the graph of an output node's Surface socket."""
         link = self.closure(output, "Surface", ())
-        return SurfaceGraph(tuple(self.nodes), link)
+        return SurfaceGraph(tuple(self.nodes), link, color_spaces.luminance_weights())
 
     def note(self, text):
         """Add a line to the report, once."""
@@ -65,12 +75,22 @@ class TreeReader:
         socket = _input(node, identifier)
         source, inner = source_of(socket, groups)
         if not source.is_output:
-            return constant(source)
+            return self.constant(source)
         result = self._result(source, inner)
         if result is None:
             self.note(f"node '{source.node.bl_label}' is not read; its socket's value is used")
-            return constant(socket)
+            return self.constant(socket)
         return result
+
+    def constant(self, socket):
+        """Return a socket's own value; 0 in place of what is not a number."""
+        numbers = np.abs(numbers_of(socket))
+        if not (numbers <= LARGEST_RADIANCE).all():
+            fault = "is not a number; 0 is used"
+            if not np.isnan(numbers).any():
+                fault = f"is {numbers.max():.3g}; light so strong is left out"
+            self.note(f"'{socket.name}' of node '{socket.node.bl_label}' {fault}")
+        return constant(socket)
 
     def linked(self, node, identifier, groups):
         """Whether anything feeds an input."""
@@ -126,15 +146,30 @@ class TreeReader:
         return None if result is None else Link(result, output.identifier)
 
 
-def constant(socket):
-    """Return an input's own value."""
+def numbers_of(socket):
+    """Return the numbers of a socket's own value: 1, or the 3 of a vector or colour."""
     value = getattr(socket, "default_value", 0.0)
     if isinstance(value, bool | int | float):
-        return Constant((float(value),))
+        return (float(value),)
     try:
-        return Constant(tuple(float(v) for v in value)[:3])
+        return tuple(float(v) for v in value)[:3]
     except (TypeError, ValueError):
-        return Constant((0.0,))
+        return (0.0,)
+
+
+def constant(socket):
+    """Return a socket's own value; 0 in place of what is not a number, as Cycles draws it."""
+    return Constant(tuple(0.0 if math.isnan(v) else v for v in numbers_of(socket)))
+
+
+def constant_number(socket):
+    """Return a socket's own value as a number: a colour's luminance, a vector's mean."""
+    values = constant(socket).value
+    if len(values) == 1:
+        return values[0]
+    if socket.type == "RGBA":
+        return float(np.dot(values, color_spaces.luminance_weights()))
+    return float(np.mean(values))
 
 
 def is_constant(value, *numbers):
@@ -250,6 +285,10 @@ def _transparent(reader, node, groups):
     color = reader.value(node, "Color", groups)
     if not (isinstance(color, Constant) and len(set(color.value)) == 1):
         reader.note("light that passes a transparent surface keeps its colour, dimmed by the mean")
+    if isinstance(color, Constant) and not 0.0 <= np.mean(color.value) <= 1.0:
+        reader.note(
+            "a transparent surface whose colour is not between 0 and 1 is drawn as if it were"
+        )
     return reader.add("transparent", [("Color", color)])
 
 
@@ -286,7 +325,7 @@ def _two_closures(reader, node, groups):
 
 @reads("RGB", "VALUE")
 def _stated(reader, node, groups):
-    return {node.outputs[0].identifier: constant(node.outputs[0])}
+    return {node.outputs[0].identifier: reader.constant(node.outputs[0])}
 
 
 @reads("TEX_IMAGE")

@@ -4,11 +4,7 @@ from .cryptomatte import cryptomatte_id
 from .images import ImageReader
 from .material_nodes import TreeReader
 from .snapshot import MaterialSnapshot, next_uid
-from .surface_graph import DEFAULT_BASE_COLOR, Constant, Link, ShaderNode, SurfaceGraph
-
-DEFAULT_GRAPH = SurfaceGraph(
-    (ShaderNode("diffuse", (("Color", Constant(DEFAULT_BASE_COLOR)),)),), Link(0, "BSDF")
-)
+from .surface_graph import DEFAULT_GRAPH, Constant, Link, ShaderNode, SurfaceGraph
 
 _INVISIBLE_GRAPH = SurfaceGraph(
     (ShaderNode("transparent", (("Color", Constant((1.0, 1.0, 1.0))),)),), Link(0, "BSDF")
@@ -21,6 +17,11 @@ class MaterialReader:
     Keep one for the life of an extractor: a material or image that did not change keeps its uid
     from one round to the next.
 
+    Parameters
+    ----------
+    largest_image : int or None
+        Texels along a side that the device can hold.
+
     Attributes
     ----------
     materials : dict of int to MaterialSnapshot
@@ -30,8 +31,8 @@ class MaterialReader:
         What is not drawn, and what is drawn instead, one line each.
     """
 
-    def __init__(self):
-        self.image_reader = ImageReader()
+    def __init__(self, largest_image=None):
+        self.image_reader = ImageReader(largest_image, is_told=True)
         self._known = {}
         self.begin()
 

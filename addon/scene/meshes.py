@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import SnapshotError
 from .snapshot import MeshSnapshot, next_uid
 from .vertex_split import VertexSplit, split_all, split_vertices
 
@@ -59,15 +58,23 @@ def read_mesh(mesh, keys, owner, base=None):
     -------
     MeshReading
 
-    Raises
-    ------
-    SnapshotError
-        If a coordinate is not finite.
+    Notes
+    -----
+    Triangles with a corner that is not finite are left out, as in Cycles.
     """
-    positions = _read_positions(mesh, owner)
+    positions = _read_positions(mesh)
     corner_vertices = _read_corner_vertices(mesh)
     slots, triangle_corners = _sorted_by_slot(mesh, _triangle_corners(mesh))
     vertex_values, corner_values, notes = {}, {}, []
+    lost = ~np.isfinite(positions).all(axis=1)
+    if lost.any():
+        positions[lost] = 0.0
+        whole = ~lost[np.take(corner_vertices, triangle_corners)].any(axis=1)
+        slots, triangle_corners = _chosen_triangles(slots, triangle_corners, whole)
+        notes.append(
+            f"object '{owner}': {lost.sum()} vertices of mesh '{mesh.name}' have coordinates that"
+            f" are not finite; the {(~whole).sum()} triangles there are left out, as in Cycles"
+        )
     flat = False
     for key in sorted(keys):
         kind, _, name = key.partition(":")
@@ -122,7 +129,7 @@ def used_slots(mesh):
     return tuple(np.flatnonzero(np.bincount(indices)).tolist())
 
 
-def read_moved_positions(mesh, reading, owner):
+def read_moved_positions(mesh, reading):
     """Read where the vertices of a mesh are in another frame.
 
     Parameters
@@ -131,12 +138,11 @@ def read_moved_positions(mesh, reading, owner):
         The mesh in the other frame.
     reading : MeshReading
         The mesh as it was read in the frame that is rendered.
-    owner : str
 
     Returns
     -------
     ndarray of shape (V, 3) or None
-        None if the mesh has another topology there.
+        None if the mesh has another topology there, or coordinates that are not finite.
     """
     split = reading.split
     if len(mesh.loops) != len(split.index):
@@ -146,7 +152,9 @@ def read_moved_positions(mesh, reading, owner):
         np.take(split.vertices, split.index), corner_vertices
     ):
         return None
-    positions = _read_positions(mesh, owner)
+    positions = _read_positions(mesh)
+    if not np.isfinite(positions).all():
+        return None
     if split.unsplit:
         return positions if len(positions) == len(split.vertices) else None
     if len(split.vertices) and split.vertices.max() >= len(positions):
@@ -173,16 +181,10 @@ def same_content(a, b):
     return all(np.array_equal(x, y) for x, y in pairs)
 
 
-def _read_positions(mesh, owner):
+def _read_positions(mesh):
     positions = np.empty((len(mesh.vertices), 3), np.float32)
     if len(positions):
         mesh.attributes["position"].data.foreach_get("vector", positions.reshape(-1))
-    if not np.isfinite(positions).all():
-        bad = int(np.flatnonzero(~np.isfinite(positions).all(axis=1))[0])
-        raise SnapshotError(
-            f"object '{owner}': vertex {bad} of mesh '{mesh.name}' has coordinates that are not"
-            " finite; remove the vertex, or the modifier that made it"
-        )
     return positions
 
 
@@ -212,6 +214,17 @@ def _has_faces(mesh, vertex_count, corner_vertices):
         and len(mesh.loops) == len(corner_vertices)
         and np.array_equal(_read_corner_vertices(mesh), corner_vertices)
     )
+
+
+def _chosen_triangles(slots, triangles, chosen):
+    """Return slots and triangles with those triangles only that are chosen."""
+    kept, first = [], 0
+    for slot, start, count in slots:
+        left = int(chosen[start : start + count].sum())
+        if left:
+            kept.append((slot, first, left))
+        first += left
+    return tuple(kept), triangles[chosen]
 
 
 def _read_corner_vertices(mesh):

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import SnapshotError
 from .camera import read_camera
 from .instances import place
 from .meshes import read_moved_positions
@@ -56,18 +55,22 @@ def add_motion(snapshot, sources, depsgraph, frame_set, view=None):
     -------
     SceneSnapshot
 
-    Raises
-    ------
-    SnapshotError
-        If a coordinate or transform of a neighbouring frame is not finite.
+    Notes
+    -----
+    What has a coordinate or transform in a neighbouring frame that is not finite stands still.
     """
     scene = depsgraph.scene
     camera, frame, subframe = scene.camera, scene.frame_current, scene.frame_subframe
-    poses = []
+    poses, notes = [], []
     try:
         for step in (-1, 1):
             frame_set(frame + step, subframe)
-            world, moved = _read_pose(depsgraph, snapshot.content.instances.world, sources)
+            world, moved, lost = _read_pose(depsgraph, snapshot.content.instances.world, sources)
+            notes += [
+                f"object '{name}': its transform in frame {frame + step} has numbers that are not"
+                " finite; it stands still in the Vector pass"
+                for name in lost
+            ]
             seen_from = read_camera(depsgraph, camera, snapshot.film, view)
             poses.append((world, moved, (seen_from.view, seen_from.projection)))
     finally:
@@ -77,15 +80,16 @@ def add_motion(snapshot, sources, depsgraph, frame_set, view=None):
     table = replace(content.instances, previous_world=world_before, next_world=world_after)
     return replace(
         snapshot,
-        content=replace(content, instances=table),
+        content=replace(content, instances=table, report=(*content.report, *notes)),
         camera=replace(snapshot.camera, previous=camera_before, next=camera_after),
     )
 
 
-def _read_pose(depsgraph, world, sources):
+def _read_pose(depsgraph, here, sources):
+    """Return transforms and moved meshes, and the names of objects without a finite transform."""
     rows = {name: row for row, name in enumerate(sources.places)}
-    world = world.copy()
-    moved = {}
+    world = here.copy()
+    moved, lost = {}, {}
     for instance in depsgraph.object_instances:
         if instance.object.type != "MESH":
             continue
@@ -93,19 +97,17 @@ def _read_pose(depsgraph, world, sources):
         if row is None:
             continue
         world[row] = instance.matrix_world
+        if not np.isfinite(world[row]).all():
+            world[row] = here[row]
+            lost[instance.object.name] = True
         uid = sources.meshes[row]
         if uid in moved:
             continue
-        name, mesh = instance.object.name, instance.object.data
+        mesh = instance.object.data
         moved[uid] = None
         if mesh.session_uid != sources.keys[uid]:
-            moved[uid] = read_moved_positions(mesh, sources.readings[uid], name)
-        if not np.isfinite(world[row]).all():
-            raise SnapshotError(
-                f"object '{name}': its transform in frame {depsgraph.scene.frame_current} has"
-                " numbers that are not finite; switch the Vector pass off or repair the animation"
-            )
-    return world, moved
+            moved[uid] = read_moved_positions(mesh, sources.readings[uid])
+    return world, moved, tuple(lost)
 
 
 def _with_moved_meshes(content, moved_before, moved_after):

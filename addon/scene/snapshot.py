@@ -17,7 +17,7 @@ from ..bokeh.appearance import Appearance
 from ..optics.prescription import Prescription
 from ..sampling.chromatic import ChromaticAberration
 from ..sampling.thin_lens import ThinLens
-from .surface_graph import SurfaceGraph
+from .surface_graph import REC709_LUMINANCE, SurfaceGraph
 
 _uids = itertools.count(1)
 
@@ -92,6 +92,12 @@ class MeshSnapshot:
         return np.stack([shown.min(axis=0), shown.max(axis=0)])
 
 
+def decode_srgb(encoded):
+    """Return the scene-linear values of sRGB encoded ones (IEC 61966-2-1), also beyond 0 to 1."""
+    high = ((np.maximum(encoded, 0.0) + 0.055) / 1.055) ** 2.4
+    return np.where(encoded < 0.04045, encoded / 12.92, high)
+
+
 @dataclass(frozen=True, eq=False)
 class ImageSnapshot:
     """Pixels of an image, as Blender stores them.
@@ -101,9 +107,10 @@ class ImageSnapshot:
     uid : int
     name : str
     pixels : ndarray of shape (height, width, 4)
-        uint8 in the image's own encoding, or float32 scene linear.
+        uint8 in the image's own encoding, or float32, finite.
     srgb : bool
-        The uint8 pixels are sRGB encoded; they are decoded after interpolation, as Cycles does.
+        They are sRGB encoded, and decoded after interpolation, as Cycles does; else float pixels
+        are scene linear.
     """
 
     uid: int
@@ -116,7 +123,18 @@ class ImageSnapshot:
         """Largest value of any colour channel; at least white."""
         if self.pixels.dtype == np.uint8:
             return 1.0
-        return max(float(np.abs(self.pixels[..., :3]).max(initial=0.0)), 1.0)
+        peak = np.abs(self.pixels[..., :3]).max(initial=0.0)
+        return max(float(decode_srgb(peak) if self.srgb else peak), 1.0)
+
+    def linear_colors(self):
+        """Return its colours scene linear, shape (height, width, 3), float32."""
+        if self.pixels.dtype != np.uint8:
+            colors = np.ascontiguousarray(self.pixels[..., :3], np.float32)
+            return decode_srgb(colors).astype(np.float32) if self.srgb else colors
+        levels = np.arange(256, dtype=np.float64) / 255.0
+        if self.srgb:
+            levels = decode_srgb(levels)
+        return np.take(levels.astype(np.float32), self.pixels[..., :3])
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,11 +262,17 @@ class World:
         `ImageSnapshot.uid`, 0 for none.
     rotation : tuple of 3 tuples of 3 float
         Rows of the matrix that turns a world direction into the image's.
+    amplification : float
+        How much brighter white is taken to be in an image that holds nothing brighter.
+    luminance : tuple of 3 float
+        Weights that tell how white a texel is.
     """
 
     color: tuple[float, float, float] = (0.0, 0.0, 0.0)
     image: int = 0
     rotation: tuple[tuple[float, float, float], ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+    amplification: float = 0.0
+    luminance: tuple[float, float, float] = REC709_LUMINANCE
 
 
 @dataclass(frozen=True)
@@ -301,8 +325,6 @@ class BokehSettings:
         Places on the lens that mirroring surfaces are looked at from; more than one keeps apart
         what they show to different parts of the lens. What looks the same from anywhere is looked
         at once.
-    amplification : float
-        How much brighter white is taken to be in worlds whose pictures hold nothing brighter.
     world : bool
         Highlights of the world's image are found, too.
     appearance : Appearance
@@ -329,7 +351,6 @@ class BokehSettings:
     layers: int = 4
     overscan: float = 0.25
     lens_views: int = 4
-    amplification: float = 0.0
     world: bool = True
     appearance: Appearance = field(default_factory=Appearance)
     distortion: float = 0.0

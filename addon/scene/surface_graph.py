@@ -6,6 +6,9 @@ are kept apart from the shape, so that dragging a slider never compiles a shader
 
 from dataclasses import dataclass
 
+# ITU-R BT.709, the working space that Blender starts with.
+REC709_LUMINANCE = (0.212639, 0.715169, 0.072192)
+
 
 @dataclass(frozen=True)
 class Constant:
@@ -62,10 +65,13 @@ class SurfaceGraph:
         A node's links point to earlier nodes only.
     surface : Link or None
         The closure; None is a surface that emits and reflects nothing.
+    luminance : tuple of 3 float
+        Weights with which a colour becomes a value: of the file's working space.
     """
 
     nodes: tuple[ShaderNode, ...] = ()
     surface: Link | None = None
+    luminance: tuple[float, float, float] = REC709_LUMINANCE
 
 
 def emission_graph(color, strength=1.0):
@@ -111,7 +117,26 @@ def attributes_read(graph):
     return frozenset(keys)
 
 
-# What Blender draws where a surface has no material: a grey diffuse surface.
-DEFAULT_BASE_COLOR = (0.8, 0.8, 0.8)
+# What Blender 5.2 draws where a surface has no material: the Principled BSDF as it is added.
+DEFAULT_GRAPH = SurfaceGraph(
+    (
+        ShaderNode(
+            "principled",
+            (
+                ("Base Color", Constant((0.8, 0.8, 0.8))),
+                ("Metallic", Constant((0.0,))),
+                ("Roughness", Constant((0.5,))),
+                ("IOR", Constant((1.5,))),
+                ("Specular IOR Level", Constant((0.5,))),
+                ("Specular Tint", Constant((1.0, 1.0, 1.0))),
+                ("Emission Color", Constant((1.0, 1.0, 1.0))),
+                ("Emission Strength", Constant((0.0,))),
+            ),
+        ),
+    ),
+    Link(0, "BSDF"),
+)
+# Light that is stronger is dropped, and texels as well; the same as in lib/finite_lib.glsl.
+LARGEST_RADIANCE = 1e30
 # What a missing image looks like in Blender.
 MISSING_IMAGE_COLOR = (1.0, 0.0, 1.0)

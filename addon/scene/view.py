@@ -56,8 +56,6 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
     ------
     CameraError
         If the view's camera is panoramic or custom.
-    FocusError
-        If its focus distance or iris cannot form a picture.
     """
     scene = depsgraph.scene
     window = np.array(region_3d.window_matrix, np.float64)
@@ -75,12 +73,11 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
         frame = _camera_frame(camera, scene, window @ view)
         field_radius = _field_radius(camera, scene)
         real_lens, of_lens = read_real_lens(camera.data)
-        if camera.data.dof.use_dof:
-            lens = read_lens(depsgraph, camera, real_lens)
+        lens, of_focus = read_lens(depsgraph, camera, real_lens)
         corner = corner_tangent(camera.data, scene)
         bokeh, of_bokeh = read_bokeh(camera.data, real_lens, corner)
         chromatic, of_chromatic = read_chromatic(camera.data, real_lens)
-        report = camera_report(camera, of_lens, of_chromatic, of_bokeh)
+        report = camera_report(camera, of_lens, of_focus, of_chromatic, of_bokeh)
     if through_camera:
         border = _border_in_frame(scene.render, frame)
     else:

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from .material_nodes import constant, euler_matrix, mapping_matrix
+from . import color_spaces
+from .material_nodes import constant, constant_number, euler_matrix, mapping_matrix, numbers_of
 from .node_tree import source_of
 from .snapshot import World
-from .surface_graph import MISSING_IMAGE_COLOR
+from .surface_graph import LARGEST_RADIANCE, MISSING_IMAGE_COLOR
 
 # How far a Mapping may be from a rotation.
 _ROTATION_TOLERANCE = 1e-4
@@ -36,7 +37,7 @@ def read_world(world, images):
     volume = next((s for s in output.inputs if s.identifier == "Volume"), None)
     if volume is not None and source_of(volume, ())[0].is_output:
         reader.note("volume is not drawn")
-    return reader.read(output), notes
+    return reader.read(output, world.aplanat.amplification), notes
 
 
 class _WorldReader:
@@ -48,7 +49,7 @@ class _WorldReader:
     def note(self, text):
         self._notes.append(f"world '{self._name}': {text}")
 
-    def read(self, output):
+    def read(self, output, amplification):
         surface = next(s for s in output.inputs if s.identifier == "Surface")
         socket, groups = source_of(surface, ())
         if not socket.is_output:
@@ -61,26 +62,47 @@ class _WorldReader:
                 return World()
         color, image, rotation = self._color(node, groups)
         strength = self._number(node.inputs["Strength"], groups)
-        return World(tuple(c * strength for c in color), image, rotation)
+        light = tuple(c * strength for c in color)
+        # Cycles drops such channels, too.
+        if not all(abs(c) <= LARGEST_RADIANCE for c in light):
+            self.note("its light is stronger than a picture can hold; it is left out")
+            light = tuple(c if abs(c) <= LARGEST_RADIANCE else 0.0 for c in light)
+        # White is the image's, however strongly it shines.
+        amplification = amplification if image else 0.0
+        luminance = color_spaces.luminance_weights()
+        return World(light, image, rotation, amplification, luminance)
 
     def _number(self, socket, groups):
         source, _ = source_of(socket, groups)
         if source.is_output:
-            if source.node.type == "VALUE":
-                return constant(source).value[0]
+            if source.node.type in {"VALUE", "RGB"}:
+                return self._constant_number(source)
             self.note(f"node '{source.node.bl_label}' is not read; its socket's value is used")
             source = socket
-        return constant(source).value[0]
+        return self._constant_number(source)
+
+    def _constant_number(self, socket):
+        self._note_nan(socket)
+        return constant_number(socket)
+
+    def _note_nan(self, socket):
+        if np.isnan(numbers_of(socket)).any():
+            self.note(
+                f"'{socket.name}' of node '{socket.node.bl_label}' is not a number; 0 is used"
+            )
 
     def _color(self, node, groups):
         socket = node.inputs["Color"]
         source, inner = source_of(socket, groups)
         nothing = World()
         if not source.is_output:
+            self._note_nan(source)
             return constant(source).value, 0, nothing.rotation
         kind = source.node.type
-        if kind == "RGB":
-            return constant(source).value, 0, nothing.rotation
+        if kind in {"RGB", "VALUE"}:
+            self._note_nan(source)
+            values = constant(source).value
+            return values * 3 if len(values) == 1 else values, 0, nothing.rotation
         if kind == "TEX_ENVIRONMENT":
             return self._environment(source.node, inner)
         self.note(f"node '{source.node.bl_label}' is not read; its socket's value is used")

@@ -146,9 +146,6 @@ class APLANAT_CAMERA_PT_bokeh_search(_BokehPanel, bpy.types.Panel):
         column.prop(settings, "overscan", slider=True)
         world = column.column(heading="Highlights of the")
         world.prop(settings, "use_world")
-        amplification = column.column()
-        amplification.active = settings.use_world
-        amplification.prop(settings, "amplification")
 
 
 class APLANAT_CAMERA_PT_bokeh_appearance(_BokehPanel, bpy.types.Panel):

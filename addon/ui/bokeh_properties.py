@@ -147,19 +147,6 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
         max=16,
         **_SHARED,
     )
-    amplification: FloatProperty(
-        name="Amplify Whites",
-        description="How much brighter white is taken to be in a world image that holds nothing"
-        " brighter (8 bits a channel): 100 to 200 makes lamps out of its white spots, 0 changes"
-        " nothing",
-        default=0.0,
-        min=0.0,
-        max=10000.0,
-        soft_max=200.0,
-        step=100,
-        precision=1,
-        **_SHARED,
-    )
     use_world: BoolProperty(
         name="World",
         description="Find highlights in the world's image, too",

@@ -252,6 +252,23 @@ class APLANAT_LIGHT_PT_bokeh(EnginePanel, bpy.types.Panel):
         self.column().prop(context.light.aplanat, "highlights")
 
 
+class APLANAT_WORLD_PT_whites(EnginePanel, bpy.types.Panel):
+    """How bright the whites of the world's image are."""
+
+    bl_label = "Whites"
+    bl_context = "world"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Whether there is a world."""
+        return super().poll(context) and context.world is not None
+
+    def draw(self, context):
+        """Draw the setting."""
+        self.column().prop(context.world.aplanat, "amplification")
+
+
 CLASSES = (
     APLANAT_RENDER_PT_sampling,
     APLANAT_RENDER_PT_level_of_detail,
@@ -263,6 +280,7 @@ CLASSES = (
     APLANAT_OBJECT_PT_ray_visibility,
     APLANAT_MATERIAL_PT_settings,
     APLANAT_LIGHT_PT_bokeh,
+    APLANAT_WORLD_PT_whites,
 )
 
 register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -252,11 +252,32 @@ class AplanatLightSettings(bpy.types.PropertyGroup):
     )
 
 
+class AplanatWorldSettings(bpy.types.PropertyGroup):
+    """What only Aplanat knows of a world."""
+
+    amplification: FloatProperty(
+        name="Amplify Whites",
+        description="How much brighter white is taken to be in a world image that holds nothing"
+        " brighter (8 bits a channel), as background and as light: 100 to 200 makes lamps out of"
+        " its white spots, 0 changes nothing. What is brighter than white grows by as much as white"
+        " does",
+        default=0.0,
+        min=0.0,
+        max=10000.0,
+        soft_max=200.0,
+        step=100,
+        precision=1,
+        override={"LIBRARY_OVERRIDABLE"},
+        update=_data_changed,
+    )
+
+
 CLASSES = (
     AplanatSceneSettings,
     AplanatViewLayerSettings,
     AplanatMaterialSettings,
     AplanatLightSettings,
+    AplanatWorldSettings,
     AplanatBokehSettings,
     AplanatSpectrumBar,
     AplanatChromaticSettings,
@@ -277,6 +298,9 @@ def register():
     bpy.types.Light.aplanat = PointerProperty(
         type=AplanatLightSettings, override={"LIBRARY_OVERRIDABLE"}
     )
+    bpy.types.World.aplanat = PointerProperty(
+        type=AplanatWorldSettings, override={"LIBRARY_OVERRIDABLE"}
+    )
     bpy.types.Camera.aplanat = PointerProperty(
         type=AplanatCameraSettings, override={"LIBRARY_OVERRIDABLE"}
     )
@@ -285,6 +309,7 @@ def register():
 def unregister():
     """Undo `register`."""
     del bpy.types.Camera.aplanat
+    del bpy.types.World.aplanat
     del bpy.types.Light.aplanat
     del bpy.types.Material.aplanat
     del bpy.types.ViewLayer.aplanat

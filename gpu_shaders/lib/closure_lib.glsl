@@ -1,6 +1,7 @@
 // A closure that has met its light: what it sends to the eye, and what it lets through.
 #ifndef CLOSURE_LIB_GLSL
 #define CLOSURE_LIB_GLSL
+#include "lib/finite_lib.glsl"
 
 struct Closure {
   vec3 radiance;       // scene linear, towards the eye
@@ -16,12 +17,13 @@ Closure closure_none()
 
 Closure closure_emission(vec3 color, float strength)
 {
-  return Closure(color * strength, vec3(0.0), 0.0, vec3(0.0));
+  // Negative light stays negative, as in Cycles.
+  return Closure(finite_light(color * strength), vec3(0.0), 0.0, vec3(0.0));
 }
 
 Closure closure_transparent(vec3 color)
 {
-  return Closure(vec3(0.0), max(color, vec3(0.0)), 0.0, vec3(0.0));
+  return Closure(vec3(0.0), max(finite_light(color), vec3(0.0)), 0.0, vec3(0.0));
 }
 
 Closure closure_holdout()
@@ -31,7 +33,7 @@ Closure closure_holdout()
 
 Closure closure_mix(Closure a, Closure b, float factor)
 {
-  float t = clamp(factor, 0.0, 1.0);
+  float t = clamp(number_or_zero(factor), 0.0, 1.0);
   return Closure(mix(a.radiance, b.radiance, t),
                  mix(a.transmittance, b.transmittance, t),
                  mix(a.holdout, b.holdout, t),
@@ -49,7 +51,7 @@ Closure closure_add(Closure a, Closure b)
 // A surface of which only the share `alpha` is there.
 Closure closure_cover(Closure a, float alpha)
 {
-  float t = clamp(alpha, 0.0, 1.0);
+  float t = clamp(number_or_zero(alpha), 0.0, 1.0);
   return Closure(
       a.radiance * t, mix(vec3(1.0), a.transmittance, t), a.holdout * t, a.unsplit * t);
 }

@@ -52,11 +52,4 @@ vec3 highlight_base(vec3 radiance, vec3 unsplit, float share, float threshold)
   return unsplit + highlight_base(radiance - unsplit, share, threshold);
 }
 
-// What an encoded picture may have shown before its whites were cut off.
-vec3 highlight_amplify(vec3 radiance, float amplification)
-{
-  float luminance = max(dot(radiance, vec3(0.2126, 0.7152, 0.0722)), 0.0);
-  return radiance * (1.0 + amplification * pow(luminance, 10.0));
-}
-
 #endif

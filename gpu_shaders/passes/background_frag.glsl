@@ -58,9 +58,6 @@ void main()
                     dot(environment_buf.rotation_z.xyz, direction));
   vec3 radiance = image_linear(environment_tx, direction_to_equirect(local), EXTENSION_REPEAT).rgb;
   radiance *= environment_buf.color.rgb;
-#if defined(HIGHLIGHTS) || defined(EXCESS)
-  radiance = highlight_amplify(radiance, highlight_buf.split.w);
-#endif
 #ifdef HIGHLIGHTS
 #ifdef CHROMATIC
   float coc = chromatic_coc_px(field_tx, place, highlight_buf.world.x, view_buf.lens, chromatic_buf);

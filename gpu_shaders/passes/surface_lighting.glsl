@@ -224,24 +224,31 @@ Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
   return Reflected(sum, unsplit);
 }
 
+Closure reflecting(Reflected reflected)
+{
+  return Closure(finite_light(reflected.light), vec3(0.0), 0.0, finite_light(reflected.unsplit));
+}
+
 Closure closure_diffuse(vec3 color)
 {
   Reflected reflected = diffuse_light(surface_shading());
-  return Closure(color * reflected.light, vec3(0.0), 0.0, color * reflected.unsplit);
+  // A surface takes no light away, as in Cycles; negative lamps do.
+  vec3 c = max(number_or_zero(color), vec3(0.0));
+  return reflecting(Reflected(c * reflected.light, c * reflected.unsplit));
 }
 
 Closure closure_glossy(vec3 color, float roughness, bool repeats)
 {
   Shading s = surface_shading();
-  float r = clamp(roughness, 0.0, 1.0);
+  float r = clamp(number_or_zero(roughness), 0.0, 1.0);
   vec3 albedo = ggx_albedo(ggx_tx, s.cos_view, r);
-  vec3 c = max(color, vec3(0.0));
+  vec3 c = max(number_or_zero(color), vec3(0.0));
   // The same reflectance in every direction: a lobe of f0 = 1, with the colour as its weight.
-  vec3 repeat_color = repeats ? ggx_multiple_scattering(albedo, clamp(c, 0.0, 1.0)) : vec3(1.0);
+  // Above 1 light grows with every scattering; from about 8 on its sum has no limit.
+  vec3 repeat_color = repeats ? ggx_multiple_scattering(albedo, min(c, vec3(5.0))) : vec3(1.0);
   Lobe lobe = Lobe(c * repeat_color, vec3(1.0), 0.0, false);
   Lobe none = Lobe(vec3(0.0), vec3(0.0), 0.0, false);
-  Reflected reflected = glossy_light(s, r, lobe, none);
-  return Closure(reflected.light, vec3(0.0), 0.0, reflected.unsplit);
+  return reflecting(glossy_light(s, r, lobe, none));
 }
 
 Closure closure_principled(vec3 base_color,
@@ -254,12 +261,15 @@ Closure closure_principled(vec3 base_color,
                            float emission_strength)
 {
   Shading s = surface_shading();
-  vec3 base = clamp(base_color, 0.0, 1.0);
-  float metal = clamp(metallic, 0.0, 1.0);
-  float r = clamp(roughness, 0.0, 1.0);
-  vec3 tint = max(specular_tint, vec3(0.0));
-  float eta = max(ior, 1e-5);
+  // As in Cycles, a base brighter than white is one only where it is diffuse.
+  vec3 base = max(number_or_zero(base_color), vec3(0.0));
+  float metal = clamp(number_or_zero(metallic), 0.0, 1.0);
+  float r = clamp(number_or_zero(roughness), 0.0, 1.0);
+  vec3 tint = max(number_or_zero(specular_tint), vec3(0.0));
+  // Beyond, all is reflected already.
+  float eta = clamp(number_or_zero(ior), 1e-5, 1e5);
   float f0 = f0_from_ior(eta);
+  specular_level = number_or_zero(specular_level);
   if (specular_level != 0.5) {
     f0 *= 2.0 * max(specular_level, 0.0);
     float raised = ior_from_f0(f0);
@@ -267,7 +277,7 @@ Closure closure_principled(vec3 base_color,
     f0 = f0_from_ior(eta);
   }
   vec3 albedo = ggx_albedo(ggx_tx, s.cos_view, r);
-  Lobe metal_lobe = Lobe(vec3(metal), base, 0.0, true);
+  Lobe metal_lobe = Lobe(vec3(metal), min(base, vec3(1.0)), 0.0, true);
   Lobe dielectric = Lobe(vec3(1.0 - metal), clamp(f0 * tint, 0.0, 1.0), eta, true);
   Reflected reflected = glossy_light(s, r, metal_lobe, dielectric);
   if (metal < 1.0) {
@@ -278,10 +288,9 @@ Closure closure_principled(vec3 base_color,
     reflected.light += base * left * diffuse.light;
     reflected.unsplit += base * left * diffuse.unsplit;
   }
-  return Closure(reflected.light + emission_color * emission_strength,
-                 vec3(0.0),
-                 0.0,
-                 reflected.unsplit);
+  Closure closure = reflecting(reflected);
+  closure.radiance += finite_light(emission_color * emission_strength);
+  return closure;
 }
 
 #else

@@ -95,15 +95,15 @@ def test_same_picture_from_job_and_from_script(stage, tmp_path):
 
 def test_error_is_told_and_the_next_render_works(stage):
     stage.run(
-        "bpy.context.scene.camera.data.dof.focus_distance = 0\n"
+        "bpy.context.scene.camera.data.type = 'PANO'\n"
         "listening = outcome.listen(); heard = listening.__enter__()\n"
         # The job may report before the operator returns, which then raises.
         "try:\n    long_render(8)\nexcept RuntimeError as error:\n    print(error)"
     )
     stage.wait_for("'render_complete' in events or 'render_cancel' in events")
     error = stage.run("listening.__exit__(None, None, None); result = str(heard.error)")
-    assert "focus distance" in error and "\n" not in error
-    stage.run("bpy.context.scene.camera.data.dof.focus_distance = 10; long_render(8)")
+    assert "is pano" in error and "\n" not in error
+    stage.run("bpy.context.scene.camera.data.type = 'PERSP'; long_render(8)")
     stage.wait_for("'render_complete' in events")
 
 

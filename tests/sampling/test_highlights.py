@@ -85,6 +85,15 @@ def test_more_samples_leave_larger_discs_to_the_samples():
 
 
 def test_amplification_leaves_darkness_and_multiplies_white():
-    assert amplify(np.array([0.5, 0.5, 0.5]), 100.0) == pytest.approx(0.5 * (1 + 100 * 0.5**10))
-    assert amplify(np.ones(3), 100.0) == pytest.approx(101.0)
-    assert (amplify(np.array([0.2, 0.7, 0.1]), 0.0) == [0.2, 0.7, 0.1]).all()
+    even = np.ones(3) / 3
+    grey = amplify(np.array([0.5, 0.5, 0.5]), 100.0, even)
+    assert grey == pytest.approx(0.5 * (1 + 100 * 0.5**10))
+    assert amplify(np.ones(3), 100.0, even) == pytest.approx(101.0)
+    assert (amplify(np.array([0.2, 0.7, 0.1]), 0.0, even) == [0.2, 0.7, 0.1]).all()
+    assert amplify(np.array([0.0, 1.0, 0.0]), 9.0, (0.2, 0.5, 0.3))[1] == 1 + 9 * 0.5**10
+
+
+def test_amplification_multiplies_what_is_brighter_than_white_as_white():
+    sun = amplify(np.full(3, 5e4, np.float32), np.float32(1e4), (0.3, 0.4, 0.3))
+    assert np.isfinite(sun).all()
+    assert sun == pytest.approx(5e4 * (1 + 1e4))

@@ -65,7 +65,6 @@ def test_all_numbers_and_choices_arrive(bokeh, aplanat_bpy):
         "layers": 2,
         "overscan": 0.5,
         "lens_views": 9,
-        "amplification": 150.0,
         "profile_strength": 0.5,
     }
     for name, value in wanted.items():

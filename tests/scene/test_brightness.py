@@ -101,8 +101,9 @@ def test_holdouts_and_empty_surfaces_are_dark():
     assert bound(SurfaceGraph()) == 0.0
 
 
-def principled(metallic, specular, strength=0.0):
+def principled(metallic, specular, strength=0.0, base=(0.8, 0.8, 0.8)):
     inputs = (
+        ("Base Color", Constant(base)),
         ("Metallic", Constant((metallic,))),
         ("Specular IOR Level", specular),
         ("Emission Color", Constant((1.0, 1.0, 1.0))),
@@ -117,10 +118,13 @@ def test_lamps_that_give_no_highlights_do_not_count():
     graph = SurfaceGraph((gloss,), Link(0, "BSDF"))
     assert bound(graph, lights=(dark,)) == 0.0
     assert bound(graph, lights=(dark, SUN)) == np.inf
-    # A world of one colour is reflected, no brighter than the surface is white.
-    assert 0.6 <= bound(graph, lights=(dark,), world=World((0.1, 0.3, 0.2))) < 0.7
+    # A world of one colour is reflected, brighter than the surface by what it scatters again.
+    assert 1.2 <= bound(graph, lights=(dark,), world=World((0.1, 0.3, 0.2))) < 1.4
     world = World((0.5, 0.5, 0.5))
     assert 3.5 <= bound(principled(0.0, Constant((0.5,)), 3.0), world=world) < 3.6
+    # A base above white makes the diffuse part brighter.
+    over = principled(0.0, Constant((0.5,)), base=(3.0, 0.2, 0.2))
+    assert 1.5 <= bound(over, world=world) < 1.7
 
 
 def test_only_gloss_looks_different_from_elsewhere():

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from addon.errors import CameraError, FocusError
+from addon.errors import CameraError
 from addon.scene.camera import read_camera
 from addon.scene.snapshot import Film
 
@@ -57,20 +57,54 @@ def test_a_camera_without_depth_of_field_is_a_pinhole(camera, aplanat_bpy):
     assert read(aplanat_bpy).lens is None
 
 
-def test_focus_distance_zero_is_refused(camera, aplanat_bpy):
-    camera.data.dof.focus_distance = 0.0
-    with pytest.raises(FocusError, match="focus distance is 0 m"):
-        read(aplanat_bpy)
+@pytest.mark.parametrize(
+    "setting, value, told",
+    [
+        ("focus_distance", 0.0, "focus distance is 0 m"),
+        ("focus_distance", float("nan"), "focus distance is nan m"),
+        ("aperture_fstop", 0.0, "f-stop is 0"),
+        ("aperture_ratio", float("nan"), "aperture ratio is nan"),
+    ],
+)
+def test_what_cannot_form_a_picture_is_drawn_sharp_and_told(
+    camera, aplanat_bpy, setting, value, told
+):
+    setattr(camera.data.dof, setting, value)
+    found = read(aplanat_bpy)
+    assert found.lens is None
+    (line,) = found.report
+    assert line.startswith("camera 'Camera': ") and told in line and "sharp" in line
 
 
-@pytest.mark.parametrize("place", [(0, 0, 3.0), (5, 0, 0)], ids=["behind", "beside"])
-def test_a_focus_object_not_in_front_of_the_camera_is_refused_by_name(camera, aplanat_bpy, place):
-    target = aplanat_bpy.data.objects.new("target", None)
+def test_a_focus_nearer_than_the_focal_length_is_drawn_and_told(camera, aplanat_bpy):
+    camera.data.lens, camera.data.dof.focus_distance = 50.0, 0.049
+    found = read(aplanat_bpy)
+    assert found.lens.focus_distance == pytest.approx(0.049)
+    assert "nearer than its focal length of 0.05 m" in found.report[0]
+    camera.data.dof.focus_distance = 0.051
+    assert read(aplanat_bpy).report == ()
+
+
+def focus_on_object(bpy, camera, place):
+    target = bpy.data.objects.new("target", None)
     target.location = place
-    aplanat_bpy.context.collection.objects.link(target)
+    bpy.context.collection.objects.link(target)
     camera.data.dof.focus_object = target
-    with pytest.raises(FocusError, match="focus object 'target' is not in front of camera"):
-        read(aplanat_bpy)
+
+
+def test_a_focus_object_behind_the_camera_counts_as_one_in_front_and_is_told(camera, aplanat_bpy):
+    focus_on_object(aplanat_bpy, camera, (1.0, 0.0, 3.0))
+    found = read(aplanat_bpy)
+    assert found.lens.focus_distance == pytest.approx(3.0)
+    (line,) = found.report
+    assert "focus object 'target' is behind the camera" in line
+
+
+def test_a_focus_object_in_the_cameras_plane_leaves_everything_sharp(camera, aplanat_bpy):
+    focus_on_object(aplanat_bpy, camera, (5.0, 0.0, 0.0))
+    found = read(aplanat_bpy)
+    assert found.lens is None
+    assert "focus distance is 0 m" in found.report[0]
 
 
 def test_the_view_is_rigid_whatever_the_scale_of_the_camera(camera, aplanat_bpy):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from addon.errors import SnapshotError
 from addon.scene.cryptomatte import cryptomatte_id
 from addon.scene.extract import SceneExtractor
 from tests import scene_builders as scenes
@@ -117,19 +116,34 @@ def test_hidden_things_that_cannot_be_drawn_are_not_listed(bpy):
     assert extract(bpy).report == ()
 
 
-def test_a_transform_that_is_not_finite_names_the_object(bpy):
+def test_an_object_whose_transform_is_not_finite_is_left_out_and_named(bpy):
     scenes.add(bpy, "fine", scenes.cube(bpy))
     scenes.add(bpy, "lost", scenes.triangle(bpy)).location.x = float("nan")
-    with pytest.raises(SnapshotError, match="object 'lost'.*transform"):
-        extract(bpy)
+    content = extract(bpy)
+    assert len(content.instances.world) == len(content.groups) == 1
+    assert content.meshes[content.groups[0].mesh].name == "cube"
+    (line,) = content.report
+    assert line.startswith("object 'lost': its transform")
 
 
 def test_a_mesh_that_is_not_finite_names_object_and_mesh(bpy):
     data = scenes.cube(bpy, "torn")
     scenes.set_coordinate(data, 3, float("inf"))
     scenes.add(bpy, "thing", data)
-    with pytest.raises(SnapshotError, match="object 'thing': vertex 3 of mesh 'torn'"):
-        extract(bpy)
+    (line,) = extract(bpy).report
+    assert line.startswith("object 'thing': 1 vertices of mesh 'torn'")
+
+
+def test_lights_beyond_what_the_device_holds_are_told(bpy, monkeypatch):
+    monkeypatch.setattr("addon.scene.instances.MAX_LIGHTS", 1)
+    for name in ("first", "second"):
+        lamp = bpy.data.lights.new(name, "POINT")
+        lamp.energy = 1.0
+        scenes.add(bpy, name, lamp)
+    content = extract(bpy)
+    assert len(content.lights) == 1
+    (line,) = content.report
+    assert "'second'" in line and "does not shine" in line
 
 
 def test_an_object_in_edit_mode_is_drawn_with_its_edits(bpy):
