@@ -3,6 +3,7 @@
 import time
 from pathlib import Path
 
+import imageio.v3 as iio
 import pytest
 
 STAGE = Path(__file__).with_name("stage.py").read_text()
@@ -130,6 +131,25 @@ def test_animation_with_two_view_layers_leaves_nothing(stage, tmp_path):
 def test_render_while_the_viewport_is_rendered(stage):
     stage.run("viewports.clear(); view(); long_render(60)")
     stage.wait_for("'render_complete' in events and converged()", timeout=100)
+
+
+def test_both_eyes_of_a_stereoscopic_render_show_the_scene(stage, tmp_path):
+    stage.run(
+        "render = bpy.context.scene.render\n"
+        "render.use_multiview, render.views_format = True, 'STEREO_3D'\n"
+        "render.image_settings.views_format = 'INDIVIDUAL'\n"
+        "bpy.context.scene.frame_start = bpy.context.scene.frame_end = 1\n"
+        f"render.filepath = {str(tmp_path / 'eye_')!r}\n"
+        "bpy.context.scene.aplanat.render_samples = 4\n"
+        "start_render(animation=True)"
+    )
+    try:
+        stage.wait_for("'render_complete' in events", timeout=120)
+        pictures = [iio.imread(tmp_path / f"eye_0001_{eye}.png") for eye in "LR"]
+        assert all(picture[..., :3].max() > 50 for picture in pictures)
+        assert (pictures[0] != pictures[1]).any()
+    finally:
+        stage.run("render.use_multiview = False")
 
 
 def test_quitting_during_a_render_ends_blender(stage):
