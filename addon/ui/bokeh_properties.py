@@ -9,16 +9,10 @@ from bpy.props import (
     PointerProperty,
 )
 
-_OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
-
-
-def _changed(settings, _context):
-    # Without this Blender evaluates the camera again only if the change came from its windows.
-    settings.id_data.update_tag()
-
+from .overrides import OVERRIDABLE, setting_changed
 
 # What every property here has in common.
-_SHARED = {"override": _OVERRIDABLE, "update": _changed}
+_SHARED = {"override": OVERRIDABLE, "update": setting_changed}
 
 
 class AplanatBokehSettings(bpy.types.PropertyGroup):

@@ -8,6 +8,7 @@ from . import lens_thumbnails
 from .bokeh_properties import APPEARANCE_NAMES, AplanatBokehSettings
 from .chromatic_properties import AplanatChromaticSettings, values_as_dict, values_from_dict
 from .lens_memory import remember, set_values, values_of
+from .overrides import OVERRIDABLE, setting_changed
 
 _LONGEST_TEXT = 255
 _THIN = "thin"
@@ -100,7 +101,7 @@ def _choose_zoom(camera, number):
     camera.zoom_label = next((key for key, value in _numbers.items() if value == number), "")
 
 
-def _lens_changed(camera, _context):
+def _lens_changed(camera, context):
     labels = _labels(camera)
     if camera.zoom_label and labels and camera.zoom_label not in labels:
         camera.zoom_label = ""
@@ -111,12 +112,7 @@ def _lens_changed(camera, _context):
         lambda group, values: set_values(group, APPEARANCE_NAMES, values),
     )
     remember(camera, "chromatic", values_as_dict, values_from_dict)
-    camera.id_data.update_tag()
-
-
-def _zoom_changed(camera, _context):
-    # Without this Blender evaluates the camera again only if the change came from its windows.
-    camera.id_data.update_tag()
+    setting_changed(camera, context)
 
 
 class AplanatCameraSettings(bpy.types.PropertyGroup):
@@ -128,7 +124,7 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
         " f-number. It never changes the focal length by itself",
         maxlen=_LONGEST_TEXT,
         options=set(),
-        override={"LIBRARY_OVERRIDABLE"},
+        override=OVERRIDABLE,
         search=_found_lenses,
         update=_lens_changed,
     )
@@ -137,8 +133,8 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
         description="Name of the position of a zoom lens; empty for its first one",
         maxlen=_LONGEST_TEXT,
         options=set(),
-        override={"LIBRARY_OVERRIDABLE"},
-        update=_zoom_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
     lens_choice: EnumProperty(
         name="Lens",
@@ -160,35 +156,35 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
         type=AplanatBokehSettings,
         name="Bokeh",
         description="How the camera's highlights are drawn",
-        override={"LIBRARY_OVERRIDABLE"},
+        override=OVERRIDABLE,
     )
     bokeh_lens: StringProperty(
         name="Lens of the Bokeh",
         description="Lens for which the appearance of the bokeh was set",
         options={"HIDDEN"},
-        override={"LIBRARY_OVERRIDABLE"},
+        override=OVERRIDABLE,
     )
     bokeh_memory: StringProperty(
         name="Bokeh of Other Lenses",
         description="What was set for lenses that were used before, as JSON",
         options={"HIDDEN"},
-        override={"LIBRARY_OVERRIDABLE"},
+        override=OVERRIDABLE,
     )
     chromatic: PointerProperty(
         type=AplanatChromaticSettings,
         name="Chromatic Aberration",
         description="How colours part in the camera",
-        override={"LIBRARY_OVERRIDABLE"},
+        override=OVERRIDABLE,
     )
     chromatic_lens: StringProperty(
         name="Lens of the Chromatic Settings",
         description="Lens for which the chromatic settings were made",
         options={"HIDDEN"},
-        override={"LIBRARY_OVERRIDABLE"},
+        override=OVERRIDABLE,
     )
     chromatic_memory: StringProperty(
         name="Chromatic Settings of Other Lenses",
         description="What was set for lenses that were used before, as JSON",
         options={"HIDDEN"},
-        override={"LIBRARY_OVERRIDABLE"},
+        override=OVERRIDABLE,
     )

@@ -13,10 +13,10 @@ from ..lens_io.dispersion import DEFAULT_GLASS
 from ..lens_io.glass_catalog import catalog_names
 from ..sampling.field_maps import ATOMS
 from .chromatic_curves import curves_as_text, curves_from_text, make_group
+from .overrides import OVERRIDABLE, setting_changed
 from .spectrum_bar import AplanatSpectrumBar
 
 _LONGEST_TEXT = 255
-_OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
 # What each atom does, for the menu.
 _DESCRIPTIONS = {
@@ -40,15 +40,10 @@ def _curve_wanted(settings, name):
         make_group(settings)
 
 
-def _changed(settings, _context):
-    # Without this Blender evaluates the camera again only if the change came from its windows.
-    settings.id_data.update_tag()
-
-
 def _atom_changed(name):
     def update(settings, context):
         _curve_wanted(settings, name)
-        _changed(settings, context)
+        setting_changed(settings, context)
 
     return update
 
@@ -56,7 +51,7 @@ def _atom_changed(name):
 def _equalizer_changed(settings, context):
     if settings.use_equalizer and settings.id_data.is_editable:
         make_group(settings)
-    _changed(settings, context)
+    setting_changed(settings, context)
 
 
 def _found_glasses(settings, _context, typed):
@@ -74,7 +69,7 @@ def _atom_property(which, stage):
         " corners. Theta is the angle around the middle, 0 on the right",
         items=_ATOM_ITEMS,
         default="IDENTITY",
-        override=_OVERRIDABLE,
+        override=OVERRIDABLE,
         update=_atom_changed(name),
     )
 
@@ -86,8 +81,8 @@ class AplanatChromaticSettings(bpy.types.PropertyGroup):
         name="Chromatic Aberration",
         description="Have the lens bend each color differently, as glass does",
         default=False,
-        override=_OVERRIDABLE,
-        update=_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
     mode: EnumProperty(
         name="Mode",
@@ -97,8 +92,8 @@ class AplanatChromaticSettings(bpy.types.PropertyGroup):
             ("SPECTRAL", "Spectral", "All wavelengths, a different one for each lens sample"),
         ),
         default="SPECTRAL",
-        override=_OVERRIDABLE,
-        update=_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
     axial: FloatProperty(
         name="Axial",
@@ -110,8 +105,8 @@ class AplanatChromaticSettings(bpy.types.PropertyGroup):
         soft_min=-10.0,
         soft_max=10.0,
         step=10,
-        override=_OVERRIDABLE,
-        update=_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
     lateral: FloatProperty(
         name="Lateral",
@@ -123,8 +118,8 @@ class AplanatChromaticSettings(bpy.types.PropertyGroup):
         soft_min=-10.0,
         soft_max=10.0,
         step=10,
-        override=_OVERRIDABLE,
-        update=_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
     dispersion: EnumProperty(
         name="Dispersion",
@@ -134,8 +129,8 @@ class AplanatChromaticSettings(bpy.types.PropertyGroup):
             ("LENS", "Real Lens", "The focal shift of the camera's real lens over wavelength"),
         ),
         default="GLASS",
-        override=_OVERRIDABLE,
-        update=_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
     glass: StringProperty(
         name="Glass",
@@ -144,9 +139,9 @@ class AplanatChromaticSettings(bpy.types.PropertyGroup):
         default=DEFAULT_GLASS,
         maxlen=_LONGEST_TEXT,
         options=set(),
-        override=_OVERRIDABLE,
+        override=OVERRIDABLE,
         search=_found_glasses,
-        update=_changed,
+        update=setting_changed,
     )
     wavelength_min: FloatProperty(
         name="Wavelengths",
@@ -158,8 +153,8 @@ class AplanatChromaticSettings(bpy.types.PropertyGroup):
         soft_max=780.0,
         precision=0,
         step=100,
-        override=_OVERRIDABLE,
-        update=_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
     wavelength_max: FloatProperty(
         name="To",
@@ -171,8 +166,8 @@ class AplanatChromaticSettings(bpy.types.PropertyGroup):
         soft_max=780.0,
         precision=0,
         step=100,
-        override=_OVERRIDABLE,
-        update=_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
     axial_first: _atom_property("axial", 0)
     axial_then: _atom_property("axial", 1)
@@ -182,7 +177,7 @@ class AplanatChromaticSettings(bpy.types.PropertyGroup):
         name="Spectral Equalizer",
         description="Weigh the wavelengths by a curve. What is in focus keeps its color",
         default=False,
-        override=_OVERRIDABLE,
+        override=OVERRIDABLE,
         update=_equalizer_changed,
     )
     curves: PointerProperty(
@@ -190,8 +185,8 @@ class AplanatChromaticSettings(bpy.types.PropertyGroup):
         description="Holds the curves that are drawn in the panel",
         type=bpy.types.NodeTree,
         options={"HIDDEN"},
-        override=_OVERRIDABLE,
-        update=_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
     spectrum: PointerProperty(
         name="Spectrum",

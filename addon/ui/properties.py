@@ -12,6 +12,7 @@ from bpy.props import (
 from .bokeh_properties import AplanatBokehSettings
 from .camera_properties import AplanatCameraSettings
 from .chromatic_properties import AplanatChromaticSettings
+from .overrides import OVERRIDABLE, setting_changed
 from .spectrum_bar import AplanatSpectrumBar
 
 # Also what the command line accepts.
@@ -214,10 +215,6 @@ class AplanatViewLayerSettings(bpy.types.PropertyGroup):
     )
 
 
-def _data_changed(settings, _context):
-    settings.id_data.update_tag()
-
-
 _HIGHLIGHTS = (
     ("AUTOMATIC", "Automatic", "Where it is bright and blurred enough"),
     ("NEVER", "Never", "It is sampled as everything else, however bright it is"),
@@ -233,8 +230,8 @@ class AplanatMaterialSettings(bpy.types.PropertyGroup):
         " brighter than the camera's threshold",
         items=_HIGHLIGHTS,
         default="AUTOMATIC",
-        override={"LIBRARY_OVERRIDABLE"},
-        update=_data_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
 
 
@@ -247,8 +244,8 @@ class AplanatLightSettings(bpy.types.PropertyGroup):
         " brighter than the camera's threshold",
         items=_HIGHLIGHTS,
         default="AUTOMATIC",
-        override={"LIBRARY_OVERRIDABLE"},
-        update=_data_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
 
 
@@ -267,8 +264,8 @@ class AplanatWorldSettings(bpy.types.PropertyGroup):
         soft_max=200.0,
         step=100,
         precision=1,
-        override={"LIBRARY_OVERRIDABLE"},
-        update=_data_changed,
+        override=OVERRIDABLE,
+        update=setting_changed,
     )
 
 
@@ -292,18 +289,10 @@ def register():
     _register()
     bpy.types.Scene.aplanat = PointerProperty(type=AplanatSceneSettings)
     bpy.types.ViewLayer.aplanat = PointerProperty(type=AplanatViewLayerSettings)
-    bpy.types.Material.aplanat = PointerProperty(
-        type=AplanatMaterialSettings, override={"LIBRARY_OVERRIDABLE"}
-    )
-    bpy.types.Light.aplanat = PointerProperty(
-        type=AplanatLightSettings, override={"LIBRARY_OVERRIDABLE"}
-    )
-    bpy.types.World.aplanat = PointerProperty(
-        type=AplanatWorldSettings, override={"LIBRARY_OVERRIDABLE"}
-    )
-    bpy.types.Camera.aplanat = PointerProperty(
-        type=AplanatCameraSettings, override={"LIBRARY_OVERRIDABLE"}
-    )
+    bpy.types.Material.aplanat = PointerProperty(type=AplanatMaterialSettings, override=OVERRIDABLE)
+    bpy.types.Light.aplanat = PointerProperty(type=AplanatLightSettings, override=OVERRIDABLE)
+    bpy.types.World.aplanat = PointerProperty(type=AplanatWorldSettings, override=OVERRIDABLE)
+    bpy.types.Camera.aplanat = PointerProperty(type=AplanatCameraSettings, override=OVERRIDABLE)
 
 
 def unregister():
