@@ -55,7 +55,10 @@ def render_view_layer(engine, depsgraph, heard):
     AplanatError
         `RenderCancelledError` if the user stopped the render.
     """
-    extractor = SceneExtractor()
+    if bpy.app.background:
+        # Nothing has drawn yet, and what the device holds is asked before.
+        context.ensure_context()
+    extractor = SceneExtractor(largest_image=context.max_texture_size())
     for view in views_of(engine, depsgraph.scene):
         if view is not None:
             view.activate()

@@ -46,7 +46,7 @@ class _ViewedScene:
 
     def __init__(self, space):
         self.buffers = SceneBuffers()
-        self._extractor = SceneExtractor(space)
+        self._extractor = SceneExtractor(space, device_context.max_texture_size())
         # Closes itself when no 3D view shows the scene any more.
         self.levels = level_store().open()
         self._wanted = set()

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import OpenEXR
 import pytest
 
 from tests.pictures import energy_ratio, render_aplanat, render_cycles, save_side_by_side, ssim
@@ -223,3 +224,59 @@ def test_the_world_behind_the_scene_is_blurred_as_in_cycles(bpy, shared, tmp_pat
     assert energy_ratio(ours, cycles) == pytest.approx(1.0, abs=0.01), tmp_path
     # Both are sums of 256 places on the lens.
     assert ssim(ours, cycles) > 0.97, tmp_path
+
+
+def _sequence(bpy, folder, kind):
+    """Two frames of 16-bit PNG or float EXR with alpha; return the path of the first."""
+    pixels = random_pixels(5, alpha=True)
+    # No brighter than white when divided by alpha: sRGB raises what is brighter to thousands.
+    pixels[..., :3] *= pixels[..., 3:]
+    # Light without opacity, such as a flame's.
+    pixels[0, :2, 3] = 0.0
+    suffix = "exr" if kind == "EXR" else "png"
+    for frame in (1, 2):
+        made = image(bpy, f"frame {frame}", pixels / frame, True, "Linear Rec.709", "PREMUL")
+        path = str(folder / f"{kind}{frame:04d}.{suffix}")
+        if kind == "EXR":
+            top_first = np.ascontiguousarray(pixels[::-1] / frame)
+            OpenEXR.File({"type": OpenEXR.scanlineimage}, {"RGBA": top_first}).write(path)
+        else:
+            settings = bpy.context.scene.render.image_settings
+            settings.media_type = "IMAGE"
+            settings.file_format, settings.color_mode = "PNG", "RGBA"
+            settings.color_depth = "16" if kind == "PNG16" else "8"
+            made.save_render(path)
+    return str(folder / f"{kind}0001.{suffix}")
+
+
+@pytest.mark.parametrize("mode", ["STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"])
+@pytest.mark.parametrize("space", ["sRGB", "Linear Rec.2020", "Non-Color"])
+@pytest.mark.parametrize("kind", ["PNG8", "PNG16", "EXR"])
+def test_frames_of_sequences_are_decoded_as_in_cycles(bpy, tmp_path, kind, space, mode):
+    scene, _, tree = card_scene(bpy, 16)
+    made = bpy.data.images.load(_sequence(bpy, tmp_path, kind))
+    made.source = "SEQUENCE"
+    made.colorspace_settings.name, made.alpha_mode = space, mode
+    node = tree.node("TexImage", image=made)
+    node.image_user.frame_duration, node.image_user.use_auto_refresh = 2, True
+    node.image_user.frame_start = 1
+    scene.frame_set(2)
+    tree.emission(node.outputs["Color"], node.outputs["Alpha"])
+    assert_equal_pixel_by_pixel(scene, tmp_path)
+    tree.emission(node.outputs["Color"])
+    assert_equal_pixel_by_pixel(scene, tmp_path)
+
+
+@pytest.mark.parametrize("working", ["Linear Rec.2020", "ACEScg"])
+def test_colors_become_values_with_the_weights_of_the_working_space(bpy, tmp_path, working):
+    scene, _, tree = card_scene(bpy, 8)
+    bpy.ops.wm.set_working_color_space(working_space=working)
+    # The space of the file is set back by the next empty one.
+    pixels = image(bpy, "colors", random_pixels(6), True, working)
+    node = tree.node("TexImage", image=pixels, interpolation="Closest")
+    tree.emission((1.0, 1.0, 1.0), node.outputs["Color"])
+    assert_equal_pixel_by_pixel(scene, tmp_path)
+    stated = tree.node("RGB")
+    stated.outputs[0].default_value = (0.9, 0.1, 0.4, 1.0)
+    tree.emission((1.0, 1.0, 1.0), stated.outputs[0])
+    assert_equal_pixel_by_pixel(scene, tmp_path)
