@@ -6,11 +6,13 @@ import bpy
 
 from ..bokeh.iris_mask import PictureIris
 from ..device.context import device_name
+from ..engine.views import views_of
 from ..sampling.chromatic import RGB_WAVELENGTHS_NM
 from ..scene.bokeh import corner_tangent, read_bokeh
 from ..scene.camera import focus_distance
 from ..scene.chromatic import read_chromatic
 from ..scene.lenses import read_real_lens
+from ..scene.settings import read_passes
 from .version import version
 
 
@@ -53,6 +55,7 @@ def settings_in_force(scene, arguments=None):
             render.resolution_x * render.resolution_percentage // 100,
             render.resolution_y * render.resolution_percentage // 100,
         ],
+        "pixel_aspect": render.pixel_aspect_x / render.pixel_aspect_y,
         "border": (
             [render.border_min_x, render.border_min_y, render.border_max_x, render.border_max_y]
             if render.use_border
@@ -63,7 +66,13 @@ def settings_in_force(scene, arguments=None):
         "simplify": render.use_simplify,
         "scene": scene.name,
         "view_layers": [layer.name for layer in scene.view_layers if layer.use],
+        "passes": {
+            layer.name: list(read_passes(layer)) for layer in scene.view_layers if layer.use
+        },
+        "views": [view.name for view in views_of(None, scene) if view] or None,
+        "stereo": _stereo(render, data),
         "compositing": bool(render.use_compositing and scene.compositing_node_group),
+        "compositor_precision": render.compositor_precision.lower(),
         "camera": camera.name,
         "camera_type": data.type.lower(),
         "focal_length_mm": data.lens if data.type == "PERSP" else None,
@@ -84,8 +93,24 @@ def settings_in_force(scene, arguments=None):
         "chromatic": _chromatic(data, lens),
         "amplify_whites": scene.world.aplanat.amplification if scene.world else 0.0,
         "view_transform": scene.view_settings.view_transform,
+        "look": scene.view_settings.look,
+        "exposure": scene.view_settings.exposure,
+        "gamma": scene.view_settings.gamma,
+        "working_space": bpy.data.colorspace.working_space,
         "no_bokeh": bool(arguments and arguments.no_bokeh),
         "no_chromatic": bool(arguments and arguments.no_chromatic),
+    }
+
+
+def _stereo(render, data):
+    if not render.use_multiview or render.views_format != "STEREO_3D":
+        return None
+    stereo = data.stereo
+    return {
+        "convergence": stereo.convergence_mode.lower(),
+        "convergence_distance_m": stereo.convergence_distance,
+        "interocular_distance_m": stereo.interocular_distance,
+        "pivot": stereo.pivot.lower(),
     }
 
 

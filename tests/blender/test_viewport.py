@@ -335,3 +335,12 @@ def test_vulkan_draws_viewport_and_final_render(blender, display, tmp_path):
         assert similarity(shown, rendered) >= 0.99
         log = window.log.read_text()
         assert "Traceback" not in log, log
+
+
+def test_the_status_line_tells_what_is_not_drawn(stage):
+    wait_until_converged(stage)
+    assert not stage.run("result = [text for text in texts() if 'arning' in text]")
+    stage.run("bpy.context.scene.render.use_motion_blur = True")
+    stage.wait_for("any('motion blur is not drawn' in text for text in texts())")
+    stage.run("bpy.context.scene.render.use_motion_blur = False")
+    stage.wait_for("not any('arning' in text for text in texts())")
