@@ -1,0 +1,318 @@
+"""Whether a scene's own method agrees with the reference method, whatever the noise.
+
+Both are rendered again and again with other seeds, each of which gives an independent estimate of
+the same picture, until noise does not decide any more: until the noise that the spread of these
+pictures tells is small against the bar, or the difference is larger than the bar by more than it.
+
+- *Energy*: the sum of each channel of the mean picture differs by 1 % at most.
+- *Looks*: the mean difference of the two mean pictures as they are displayed (the scene's view
+  transform, 8 bits) is 0.02 at most. Noise alone makes pictures differ; its share of the mean
+  difference, which half the mean difference of two halves of the pictures shows for each of the
+  two, is taken off.
+"""
+
+import tempfile
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from scipy.stats import t as student
+
+ENERGY_BAR = 0.01
+LOOK_BAR = 0.02
+# Noise decides no more where its standard error is this share of the bar: two of them, which one
+# scene in twenty has by chance, are then half the bar.
+_QUIET = 0.25
+# A scene fails by more than chance brings one of a few thousand scenes, at four numbers each.
+_CHANCE = 1e-5
+# Pictures of each method: two give a spread, and sixteen are as much as a check can afford.
+_FEWEST, MOST = 2, 16
+# Of the reference pictures at first.
+_REFERENCE_SAMPLES = 64
+# Light below this, in a picture's mean, is black on every display and lost in single precision.
+_DARK = 1e-6
+
+# Settings that trade exactness for speed by their own words, and the least of each at which the
+# picture is promised to be that of the reference method: the defaults.
+_SCENE_TRADES = {
+    "level_bias": lambda value: max(value, 0.0),
+    "render_error": lambda value: min(value, 0.01),
+    "render_samples": lambda value: max(value, 64),
+    "sharing_cells": lambda value: max(value, 2),
+    "subsamples": lambda value: min(value, 4),
+    "least_triangles": lambda value: max(value, 256),
+}
+_BOKEH_TRADES = {
+    "model": lambda value: "POINT",
+    "visibility": lambda value: "AUTO",
+    "layers": lambda value: max(value, 4),
+    "overscan": lambda value: max(value, 0.25),
+    "lens_views": lambda value: max(value, 4),
+    # Marks on a picture are no picture.
+    "debug_view": lambda value: "NONE",
+}
+# Looks of a disc that samples of the lens know nothing of: with any of these the reference method
+# draws its highlights one by one, too, and the check is of all the rest.
+_PLAIN_LOOKS = {
+    "gain": 1.0,
+    "hardness": 0.0,
+    "iris_image": None,
+    "blade_curvature": 0.0,
+    "grain": 0.0,
+    "dust": 0.0,
+    "diffraction": 0.0,
+    "onion": 0.0,
+    "amplification": 0.0,
+}
+
+
+@dataclass
+class Agreement:
+    """How far two methods agree.
+
+    Attributes
+    ----------
+    fault : str
+        One line, or empty where they agree.
+    measured : dict of str to float
+        ``energy`` (largest relative difference of a channel), ``energy_noise`` (its standard
+        error), ``look`` (mean difference as displayed, without noise), ``look_noise``, ``renders``
+        (of each method) and ``undecided`` (1 where noise still decides).
+    """
+
+    fault: str = ""
+    measured: dict = field(default_factory=dict)
+
+
+def compare(scene, render, first, most=MOST):
+    """Compare the method that a scene asks for with the reference method.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+        Its settings are put back.
+    render : callable
+        Renders a scene: see `judge.render`.
+    first : dict of (str, str) to ndarray
+        What the scene itself rendered to.
+    most : int
+        Pictures of each method; a scene that is undecided then is not failed, but told.
+
+    Returns
+    -------
+    Agreement
+    """
+    with _fit_to_compare(scene) as changed:
+        own = _Estimate(scene, render, _set_seed)
+        if not changed:
+            own.add(first)
+        with _as_reference(scene):
+            pass
+        reference = _Estimate(scene, render, _render_reference)
+        count = _FEWEST
+        while True:
+            own.fill(count)
+            reference.fill(count)
+            found = _judge(scene, own, reference)
+            if found.fault or not found.measured["undecided"] or count >= _MOST:
+                return found
+            count *= 2
+
+
+class _Estimate:
+    """Independent pictures of one scene by one method."""
+
+    def __init__(self, scene, render, prepare):
+        self._scene = scene
+        self._render = render
+        self._prepare = prepare
+        self._seed = scene.aplanat.seed
+        self.pictures = {}
+        self.count = 0
+
+    def add(self, passes):
+        for (layer, name), pixels in passes.items():
+            if name == "Combined":
+                self.pictures.setdefault(layer, []).append(pixels.astype(np.float64))
+        self.count += 1
+
+    def fill(self, count):
+        while self.count < count:
+            with self._prepare(self._scene, self._seed + self.count):
+                self.add(self._render(self._scene))
+
+
+@contextmanager
+def _kept(group, names):
+    values = {name: getattr(group, name) for name in names}
+    try:
+        yield
+    finally:
+        for name, value in values.items():
+            setattr(group, name, value)
+
+
+@contextmanager
+def _set_seed(scene, seed):
+    with _kept(scene.aplanat, ("seed",)):
+        scene.aplanat.seed = seed % 2**31
+        yield
+
+
+@contextmanager
+def _as_reference(scene, samples):
+    settings = scene.aplanat
+    with _kept(settings, ("method", "render_samples", "use_reference_bokeh")):
+        settings.method = "REFERENCE"
+        settings.render_samples = samples
+        settings.use_reference_bokeh = not has_plain_look(scene.camera.data)
+        yield
+
+
+@contextmanager
+def _render_reference(scene, seed, samples):
+    # Far from the seeds of the scene's own method, so that no noise is shared.
+    with _as_reference(scene, samples), _set_seed(scene, seed + 1_000_003):
+        yield
+
+
+@contextmanager
+def _fit_to_compare(scene):
+    """Take back what trades exactness for speed; yields whether that changed anything."""
+    groups = ((scene.aplanat, _SCENE_TRADES), (scene.camera.data.aplanat.bokeh, _BOKEH_TRADES))
+    changed = False
+    with _kept(scene.aplanat, _SCENE_TRADES), _kept(groups[1][0], _BOKEH_TRADES):
+        for group, trades in groups:
+            for name, bound in trades.items():
+                value = getattr(group, name)
+                if bound(value) != value:
+                    setattr(group, name, bound(value))
+                    # Both of these count only where the other does not.
+                    automatic = scene.aplanat.use_target_error
+                    changed |= name != ("render_samples" if automatic else "render_error")
+        yield changed
+
+
+def has_plain_look(camera):
+    """Whether samples of the lens alone give the discs of a camera's highlights.
+
+    Parameters
+    ----------
+    camera : bpy.types.Camera
+
+    Returns
+    -------
+    bool
+    """
+    bokeh = camera.aplanat.bokeh
+    if not bokeh.use:
+        return True
+    real_lens = bool(camera.aplanat.lens)
+    bent = (real_lens and bokeh.profile_strength > 0.0) or (
+        bokeh.vignetting == "ANALYTIC" or (bokeh.vignetting == "LENS" and real_lens)
+    )
+    return not bent and all(getattr(bokeh, k) == value for k, value in _PLAIN_LOOKS.items())
+
+
+def _judge(scene, own, reference):
+    measured = {"energy": 0.0, "energy_noise": 0.0, "look": 0.0, "look_noise": 0.0}
+    measured |= {"renders": own.count, "undecided": 0.0}
+    faults = []
+    for layer in own.pictures:
+        ours, theirs = own.pictures[layer], reference.pictures[layer]
+        for fault in (
+            _judge_energy(ours, theirs, measured),
+            _judge_look(scene, ours, theirs, measured),
+        ):
+            if fault:
+                faults.append(f"view layer '{layer}': {fault}")
+    return Agreement("; ".join(faults), measured)
+
+
+def _judge_energy(ours, theirs, measured):
+    means = [np.stack([p.mean(axis=(0, 1)) for p in pictures]) for pictures in (ours, theirs)]
+    reference = means[1].mean(axis=0)
+    lit = np.maximum(np.abs(reference), np.abs(means[0].mean(axis=0))) > _DARK
+    if not lit.any():
+        return ""
+    scale = np.maximum(np.abs(reference), _DARK)
+    difference = (means[0].mean(axis=0) - reference) / scale
+    variance = sum(m.var(axis=0, ddof=1) / len(m) for m in means)
+    noise = np.sqrt(variance) / scale
+    # The two spreads rest on few pictures each.
+    freedom = len(ours) - 1
+    wide, usual = student.ppf(1.0 - _CHANCE, freedom), student.ppf(0.975, freedom) / 2.0
+    worst = int(np.argmax(np.where(lit, np.abs(difference), 0.0)))
+    if abs(difference[worst]) >= measured["energy"]:
+        measured["energy"] = float(abs(difference[worst]))
+        measured["energy_noise"] = float(noise[worst])
+    beyond = lit & (np.abs(difference) - wide * noise > ENERGY_BAR)
+    if beyond.any():
+        channel = int(np.argmax(np.where(beyond, np.abs(difference), 0.0)))
+        return (
+            f"energy of {'RGBA'[channel]} is {1.0 + difference[channel]:.4f} times the reference's"
+            f" (noise {noise[channel]:.4f})"
+        )
+    quiet = noise * usual < _QUIET * ENERGY_BAR
+    within = np.abs(difference) + 2.0 * usual * noise < ENERGY_BAR
+    if (lit & ~quiet & ~within).any() or (lit & quiet & (np.abs(difference) > ENERGY_BAR)).any():
+        measured["undecided"] = 1.0
+    return ""
+
+
+def _judge_look(scene, ours, theirs, measured):
+    shown = [[displayed(scene, p) for p in _halves(pictures)] for pictures in (ours, theirs)]
+    noise = sum(float(np.abs(a - b).mean()) / 2.0 for a, b in shown)
+    means = [displayed(scene, np.mean(pictures, axis=0)) for pictures in (ours, theirs)]
+    difference = max(0.0, float(np.abs(means[0] - means[1]).mean()) - noise)
+    measured["look"] = max(measured["look"], difference)
+    measured["look_noise"] = max(measured["look_noise"], noise)
+    if difference > LOOK_BAR and noise < LOOK_BAR:
+        return f"looks differ by {difference:.4f} (noise {noise:.4f})"
+    if difference > LOOK_BAR:
+        measured["undecided"] = 1.0
+    return ""
+
+
+def _halves(pictures):
+    half = len(pictures) // 2
+    return np.mean(pictures[:half], axis=0), np.mean(pictures[half:], axis=0)
+
+
+def displayed(scene, picture):
+    """Return a picture as Blender displays it, on black.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+        Its view transform, look, exposure and gamma.
+    picture : ndarray of shape (height, width, 4)
+        Scene linear, premultiplied by alpha.
+
+    Returns
+    -------
+    ndarray of shape (height, width, 3)
+        0 to 1, of 256 values: what is lost is a tenth of the bar at most.
+    """
+    import bpy
+    import imageio.v3 as iio
+
+    height, width = picture.shape[:2]
+    image = bpy.data.images.new("displayed", width, height, float_buffer=True)
+    settings = scene.render.image_settings
+    try:
+        opaque = np.concatenate([picture[..., :3], np.ones((height, width, 1))], axis=-1)
+        image.pixels.foreach_set(np.ascontiguousarray(opaque, np.float32).ravel())
+        settings.media_type = "IMAGE"
+        settings.file_format = "PNG"
+        settings.color_mode = "RGB"
+        settings.color_depth = "8"
+        settings.color_management = "FOLLOW_SCENE"
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "displayed.png"
+            image.save_render(str(path), scene=scene)
+            return iio.imread(path)[::-1].astype(np.float64) / 255.0
+    finally:
+        bpy.data.images.remove(image)
