@@ -108,17 +108,16 @@ def compare(scene, render, first, most=MOST):
         own = _Estimate(scene, render, _set_seed)
         if not changed:
             own.add(first)
-        with _as_reference(scene):
-            pass
-        reference = _Estimate(scene, render, _render_reference)
-        count = _FEWEST
+        count, samples = _FEWEST, _REFERENCE_SAMPLES
         while True:
             own.fill(count)
+            # Of more samples each, too: their noise falls faster that way than by averaging.
+            reference = _Estimate(scene, render, partial(_render_reference, samples=samples))
             reference.fill(count)
             found = _judge(scene, own, reference)
-            if found.fault or not found.measured["undecided"] or count >= _MOST:
+            if found.fault or not found.measured["undecided"] or 2 * count > most:
                 return found
-            count *= 2
+            count, samples = 2 * count, 2 * samples
 
 
 class _Estimate:

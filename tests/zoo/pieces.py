@@ -4,11 +4,10 @@
 the project. What they take are the parts of a recipe: plain dicts, lists, numbers and texts.
 """
 
-# ruff: noqa: I001 - the same lines, in the same order, stand at the top of each script.
 import math
 
+import bpy  # isort: skip - brings the two that follow
 import bmesh
-import bpy
 import mathutils
 import numpy as np
 
@@ -163,9 +162,7 @@ def make_mesh(name, spec):
         mesh.from_pydata([(i, 0, i * i % 3) for i in range(count)], [(0, 1), (1, 2)], [])
     elif shape == "flat":
         # Faces without an area among one that has one.
-        mesh.from_pydata(
-            [(0, 0, 0), (1, 0, 0), (0.5, 0, 1), (2, 0, 0)], [], [(0, 1, 2), (0, 1, 3)]
-        )
+        mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0.5, 0, 1), (2, 0, 0)], [], [(0, 1, 2), (0, 1, 3)])
     elif shape != "nothing":
         make_shape(mesh, shape, count)
     corners = len(mesh.loops)
@@ -246,7 +243,9 @@ def make_metaball(name, spec):
 
 def make_surface(name, spec):
     """Make a NURBS surface by Blender's own operator."""
-    getattr(bpy.ops.surface, spec.get("primitive", "primitive_nurbs_surface_sphere_add"))(radius=0.5)
+    getattr(bpy.ops.surface, spec.get("primitive", "primitive_nurbs_surface_sphere_add"))(
+        radius=0.5
+    )
     obj = bpy.context.object
     for collection in list(obj.users_collection):
         collection.objects.unlink(obj)

@@ -204,7 +204,13 @@ class NodeDrawer:
         rng = self._rng
         if socket.type == "SHADER":
             return self.shader(depth - 1) if depth > 0 and rng.random() < 0.9 else None
-        if rng.random() > chance or socket.type not in {"VALUE", "RGBA", "VECTOR", "INT", "BOOLEAN"}:
+        if rng.random() > chance or socket.type not in {
+            "VALUE",
+            "RGBA",
+            "VECTOR",
+            "INT",
+            "BOOLEAN",
+        }:
             return None
         if depth > 0 and rng.random() < 0.25 and socket.type != "BOOLEAN":
             return self.value(depth - 1)
@@ -223,7 +229,9 @@ class NodeDrawer:
     def _number(self, socket, prop):
         rng = self._rng
         if "Strength" in socket.name:
-            return rng.choice([1.0, even(rng, 0.0, 3.0), around(rng, 0.1, 30.0), around(rng, 1.0, 3e3)])
+            return rng.choice(
+                [1.0, even(rng, 0.0, 3.0), around(rng, 0.1, 30.0), around(rng, 1.0, 3e3)]
+            )
         low, high = max(prop.soft_min, -3.0), min(prop.soft_max, 5.0)
         if low >= high:
             low, high = prop.soft_min, prop.soft_max

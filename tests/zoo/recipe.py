@@ -13,7 +13,8 @@ from .random_settings import draw_settings, even
 
 # Sides of pictures, in pixels: tiny, because a check of a scene is worth more than one of a pixel.
 _SIDES = (1, 2, 3, 5, 9, 16, 17, 24, 31, 32, 33, 48)
-LONGEST_SIDE = max(_SIDES)
+# Blender's own least resolution; fewer pixels are a share of it.
+_SMALLEST_SIDE = 4
 
 _LAYER_PASSES = (
     *("use_pass_z", "use_pass_normal", "use_pass_position", "use_pass_vector"),
@@ -46,7 +47,7 @@ def make_recipe(bpy, seed, number):
         names = [f"m{i}" for i in range(rng.randint(1, 4))]
         materials = {name: draw_material(nodes, rng) for name in names}
         film = _draw_film(rng)
-        camera, view = draw_camera(rng, film["render.resolution_x"])
+        camera, view = draw_camera(rng, max(film["render.resolution_x"], 16))
         recipe = {"scene": film, "materials": materials}
         if rng.random() < 0.85:
             recipe["world"] = draw_world(nodes, rng)
@@ -73,14 +74,17 @@ def make_recipe(bpy, seed, number):
 
 
 def _draw_film(rng):
+    size = [rng.choice(_SIDES[-6:] if rng.random() < 0.8 else _SIDES) for _ in "xy"]
     settings = {
-        "render.resolution_x": rng.choice(_SIDES[-6:] if rng.random() < 0.8 else _SIDES),
-        "render.resolution_y": rng.choice(_SIDES[-6:] if rng.random() < 0.8 else _SIDES),
+        "render.resolution_x": size[0],
+        "render.resolution_y": size[1],
         # The factory's pictures are shown by AgX.
         "view_settings.view_transform": rng.choice(["Standard", "AgX", "Filmic"]),
     }
-    if rng.random() < 0.05:
-        settings["render.resolution_percentage"] = 100
+    if min(size) < _SMALLEST_SIDE:
+        settings["render.resolution_x"] = 4 * size[0]
+        settings["render.resolution_y"] = 4 * size[1]
+        settings["render.resolution_percentage"] = 25
     if rng.random() < 0.2:
         left, bottom = even(rng, 0.0, 0.6), even(rng, 0.0, 0.6)
         settings |= {
@@ -92,7 +96,7 @@ def _draw_film(rng):
         }
         if rng.random() < 0.5:
             settings["render.use_crop_to_border"] = True
-        _widen(settings)
+        _widen(settings, size)
     if rng.random() < 0.3:
         settings["render.film_transparent"] = True
     if rng.random() < 0.2:
@@ -106,12 +110,11 @@ def _draw_film(rng):
     return settings
 
 
-def _widen(settings):
+def _widen(settings, size):
     """Make a border hold a pixel: one without is refused, rightly."""
-    for axis in "xy":
-        size = settings[f"render.resolution_{axis}"]
+    for axis, pixels in zip("xy", size, strict=True):
         low, high = (settings[f"render.border_{end}_{axis}"] for end in ("min", "max"))
-        if int(high * size) <= int(low * size):
+        if int(high * pixels) <= int(low * pixels):
             settings[f"render.border_min_{axis}"] = 0.0
             settings[f"render.border_max_{axis}"] = 1.0
 

@@ -1,11 +1,18 @@
 """A recipe as a stand-alone script, which is also the only way in which a scene is built."""
 
-import inspect
+import ast
 import json
 import pprint
 import re
+from pathlib import Path
 
-from . import pieces
+_PIECES = Path(__file__).with_name("pieces.py").read_text(encoding="utf-8")
+# The source of each function by its name; the module is not imported, because that takes Blender.
+_FUNCTIONS = {
+    part.name: ast.get_source_segment(_PIECES, part)
+    for part in ast.parse(_PIECES).body
+    if isinstance(part, ast.FunctionDef)
+}
 
 _HEAD = '''"""{title}
 
@@ -18,8 +25,8 @@ the scene is saved if a file is named.
 import math
 import sys
 
+import bpy  # brings the two that follow
 import bmesh
-import bpy
 import mathutils
 import numpy as np
 
@@ -33,12 +40,6 @@ _TAIL = """
 if sys.argv[-1].endswith(".blend"):
     bpy.ops.wm.save_as_mainfile(filepath=sys.argv[-1])
 """
-
-_FUNCTIONS = {
-    name: function
-    for name, function in vars(pieces).items()
-    if inspect.isfunction(function) and function.__module__ == pieces.__name__
-}
 
 
 def script(recipe, title="A scene of the zoo.", name="SCRIPT.py"):
@@ -58,10 +59,10 @@ def script(recipe, title="A scene of the zoo.", name="SCRIPT.py"):
     str
     """
     body = body_of(recipe)
-    functions = "\n\n".join(inspect.getsource(_FUNCTIONS[n]) for n in _needed(body, recipe))
+    functions = "\n\n\n".join(_FUNCTIONS[n] for n in _needed(body, recipe))
     title = " ".join(title.replace("\\", "/").replace('"""', "'''").split())
     head = _HEAD.format(title=title, name=name)
-    return f"{head}\n\n{functions}\n\n{body}{_TAIL}"
+    return f"{head}\n\n{functions}\n\n\n{body}{_TAIL}"
 
 
 def body_of(recipe):
@@ -138,6 +139,6 @@ def _needed(body, recipe):
         name = waiting.pop()
         if name not in found:
             found.add(name)
-            called = inspect.getsource(_FUNCTIONS[name])
+            called = _FUNCTIONS[name]
             waiting += [n for n in _FUNCTIONS if n != name and re.search(rf"\b{n}\b", called)]
     return [name for name in _FUNCTIONS if name in found]

@@ -15,7 +15,7 @@ _KEPT_KEYS = {
     *("render.resolution_x", "render.resolution_y", "render.engine"),
 }
 # Numbers that make a scene smaller by being smaller, and the least of each.
-_HALVED = {"count": 1, "render.resolution_x": 1, "render.resolution_y": 1, "subdivisions": 1}
+_HALVED = {"count": 1, "render.resolution_x": 4, "render.resolution_y": 4, "subdivisions": 1}
 
 
 def shrink(recipe, fails, most_tries=200, seconds=120.0):
@@ -79,13 +79,33 @@ def reductions(recipe):
             # Small pictures make every other try fast.
             found.append((100 * value, path, max(least, value // 2)))
     found.sort(key=lambda entry: -entry[0])
-    for name in ("objects", "lights"):
-        items = recipe.get(name, [])
-        for half in (items[: len(items) // 2], items[len(items) // 2 :]):
-            if len(items) > 2:
-                yield {**copy.deepcopy(recipe), name: copy.deepcopy(half)}
+    yield from _without_many(recipe)
     for _, path, replacement in found:
         yield _changed(recipe, path, replacement)
+
+
+def _without_many(recipe):
+    """Leave out halves and quarters of what holds many parts: objects, settings."""
+    for path, value in _walk(recipe, ()):
+        if not isinstance(value, dict | list):
+            continue
+        keys = list(value) if isinstance(value, dict) else list(range(len(value)))
+        keys = [key for key in keys if _may_go(recipe, (*path, key))]
+        for parts in (1, 2, 4):
+            size = -(-len(keys) // parts)
+            if size > 1:
+                for first in range(0, len(keys), size):
+                    yield _without(recipe, path, keys[first : first + size])
+
+
+def _without(recipe, path, keys):
+    changed = copy.deepcopy(recipe)
+    place = changed
+    for step in path:
+        place = place[step]
+    for key in reversed(keys):
+        del place[key]
+    return changed
 
 
 def _walk(value, path):

@@ -1,0 +1,66 @@
+"""What Blender itself hands to an engine, told apart from what the engine makes of it.
+
+Blender's evaluation is not repeatable everywhere: the same text is filled with its triangles in
+another order, metaballs get their vertices in another order, and particles are elsewhere each time
+they are evaluated (bpy 5.2.3). Two renders must be the same bits only where they were given the
+same scene.
+"""
+
+import hashlib
+from contextlib import contextmanager
+from unittest.mock import patch
+
+import numpy as np
+
+from addon.engine import final_render
+
+
+@contextmanager
+def digests_of_scenes():
+    """Record a digest of each scene that is given to a final render inside a `with` block.
+
+    Yields
+    ------
+    list of str
+        One a view layer and view that is rendered.
+    """
+    digests = []
+
+    class Recorder(final_render.SceneExtractor):
+        def extract(self, depsgraph, *arguments, **options):
+            digests.append(digest(depsgraph))
+            return super().extract(depsgraph, *arguments, **options)
+
+    with patch.object(final_render, "SceneExtractor", Recorder):
+        yield digests
+
+
+def digest(depsgraph):
+    """Return a digest of the places and meshes of an evaluated scene, read without our readers.
+
+    Parameters
+    ----------
+    depsgraph : bpy.types.Depsgraph
+
+    Returns
+    -------
+    str
+    """
+    found = hashlib.sha256()
+    known = set()
+    for instance in depsgraph.object_instances:
+        obj = instance.object
+        found.update(obj.name.encode())
+        found.update(np.array(instance.matrix_world, np.float32).tobytes())
+        data = obj.data
+        if obj.type == "MESH" and data is not None and data.as_pointer() not in known:
+            known.add(data.as_pointer())
+            for items, name, width, kind in (
+                (data.vertices, "co", 3, np.float32),
+                (data.loops, "vertex_index", 1, np.int32),
+                (data.loop_triangles, "loops", 3, np.int32),
+            ):
+                values = np.zeros(len(items) * width, kind)
+                items.foreach_get(name, values)
+                found.update(values.tobytes())
+    return found.hexdigest()

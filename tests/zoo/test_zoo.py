@@ -1,0 +1,21 @@
+"""Forty random scenes, each asked everything that `judge` asks; `scripts/zoo` renders more."""
+
+import pytest
+
+from tests.zoo.judge import judge
+from tests.zoo.recipe import make_recipe
+from tests.zoo.script import script
+
+SEED = 1
+COUNT = 40
+
+
+@pytest.mark.parametrize("number", range(COUNT))
+@pytest.mark.timeout(120)
+def test_a_random_scene_renders_and_agrees_with_the_reference(aplanat_bpy, number):
+    recipe = make_recipe(aplanat_bpy, SEED, number)
+    # Four pictures of each method: what noise then still decides is left to `scripts/zoo`.
+    verdict = judge(recipe, most=4)
+    if verdict.kind != "ok":
+        text = script(recipe, f"Scene {SEED}:{number}: {verdict.kind}: {verdict.text}")
+        pytest.fail(f"{verdict.kind}: {verdict.text}\n{verdict.detail}\n{text}", pytrace=False)
