@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 REPO = Path(__file__).resolve().parents[2]
-SCRIPTS = ["aplanat", "bench-tracer", "build", "demo", "get-blender", "test"]
+SCRIPTS = ["aplanat", "bench-tracer", "build", "demo", "get-blender", "test", "zoo"]
 
 
 def run(script, *arguments, cwd=REPO):
@@ -27,7 +27,7 @@ def test_help_explains_usage(script):
     assert done.stdout.lower().startswith("usage:")
 
 
-@pytest.mark.parametrize("script", ["aplanat", "bench-tracer", "build", "get-blender"])
+@pytest.mark.parametrize("script", ["aplanat", "bench-tracer", "build", "get-blender", "zoo"])
 def test_unknown_option_is_refused(script):
     done = run(script, "--no-such-option")
     assert done.returncode == 2
