@@ -91,7 +91,7 @@ class BokehScene(BenchScene):
             @contextmanager
             def stage(name):
                 # The steps of a sample are left to run into one another.
-                if name in {"bounds", "surfaces", "sum"}:
+                if name in {"surfaces", "sum"}:
                     yield
                     return
                 with timed(seconds, name):

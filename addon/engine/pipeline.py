@@ -207,7 +207,7 @@ class FrameRenderer:
         samples : int
         stage : callable, optional
             For measuring: called with the name of each part of a sample's work (``bokeh``,
-            ``bounds``, ``surfaces``, ``sum``), it returns a context manager in which that is given
+            ``surfaces``, ``sum``), it returns a context manager in which that is given
             to the device. Within ``bokeh``, also with those of `BokehStage.run`.
         """
         self._targets.forget_framebuffers()
@@ -232,9 +232,6 @@ class FrameRenderer:
                 self._bokeh.run(self._fullscreen, self._targets, self._pixels, stage)
                 if self._bokeh is self._whole:
                     self._bokeh_seconds = time.perf_counter() - start
-        if self._blur and index == 0:
-            with stage("bounds"):
-                self._find_bounds()
         with stage("surfaces"):
             self._draw_sample(index)
         with stage("sum"):
@@ -277,14 +274,6 @@ class FrameRenderer:
             with targets.framebuffer("sample", depth="sample_depth").bind():
                 self._draw_background(index)
         self._drawing.draw_glows(index, framebuffer, self._view)
-
-    def _find_bounds(self):
-        targets = self._targets
-        framebuffer = targets.framebuffer("sample", depth="sample_depth")
-        with framebuffer.bind():
-            framebuffer.clear(depth=1.0)
-        self._drawing.draw_coarsest(framebuffer, self._view)
-        self._blur.find_bounds(self._fullscreen, targets)
 
     def _draw_background(self, index):
         background.draw(

@@ -266,20 +266,6 @@ class SceneDrawing:
             resources = {"highlights": self._highlights, "wavelength": self._wavelengths(index)}
             surface.draw_glows(listed, view, self._table, lens_sample, **resources)
 
-    def draw_coarsest(self, framebuffer, view):
-        """Draw everything at its coarsest level, from the lens' centre, for its depth alone."""
-        coarsest = [
-            run
-            for draw in self._draws
-            if draw.level == len(self._triangles[draw.group]) - 1
-            for run in self._runs(draw, np.ones(len(self._rows[draw.group][0]), bool))
-        ]
-        for row in self._single:
-            deepest = len(self._triangles_of(row)) - 1
-            coarsest += self._of_row(self._by_level, row, deepest, 0)
-        with framebuffer.bind():
-            self._draw(coarsest, view, (0.0, 0.0, 0.0, 0.0), 0, self._wavelengths(None))
-
     def specs(self):
         """Return the targets that drawing needs beside the sample's."""
         return self._shared.specs()

@@ -1,4 +1,4 @@
-"""Subsample blur in the frame: which depths can reach each pixel, and the blur of each sample.
+"""Subsample blur in the frame: each lens sample blurred over the part of the lens it stands for.
 
 References
 ----------
@@ -9,7 +9,7 @@ import numpy as np
 
 from ..device.targets import TargetSpec
 from ..device.textures import texture_2d
-from ..passes import nbuffer, pyramid, subsample
+from ..passes import pyramid, subsample
 from ..sampling.spectral_samples import GROUP
 
 # Of the pyramid: footprints wider than 64 texels are sampled too coarsely for any mean to help.
@@ -48,9 +48,7 @@ class SubsampleBlur:
         # As many levels as the widest footprint of a cell asks for.
         widest = self._cell / plan.lens_extent.max() * blur
         self._top = min(max(0, int(np.ceil(np.log2(max(widest, 1.0))))), _MOST_LEVELS)
-        if wavelengths:
-            blur += self._largest_growth()
-        self._layers = nbuffer.layers(min(blur + 1.0, max(plan.width, plan.height)))
+        self._levels = max(self._top, self._levels_in_reach())
 
     def _window_depth(self, depth):
         if np.isinf(depth):
@@ -60,7 +58,9 @@ class SubsampleBlur:
         clip = plan.projection @ np.array([0.0, 0.0, -depth, 1.0])
         return np.clip(clip[2] / max(clip[3], 1e-9) * 0.5 + 0.5, 0.0, 1.0)
 
-    def _coc(self, window_depth):
+    def _coc(self, window_depth, opening=None):
+        """Return the largest movement of a depth along an axis across an opening, in texels."""
+        opening = self._plan.lens_extent if opening is None else opening
         sweeps = [self._sweep]
         if self._wavelengths:
             sweeps = [
@@ -68,46 +68,23 @@ class SubsampleBlur:
                 for focus in self._plan.chromatic.overall().inverse_focus
             ]
         return max(
-            np.abs(self._plan.lens_extent * (sweep[:2] + sweep[2:] * window_depth)).max()
-            for sweep in sweeps
+            np.abs(opening * (sweep[:2] + sweep[2:] * window_depth)).max() for sweep in sweeps
         )
 
-    def _largest_growth(self):
-        chromatic = self._plan.chromatic
-        share = np.abs(chromatic.overall().scale - 1.0).max()
-        return share * chromatic.radius / np.abs(chromatic.raster[:2]).min()
+    def _levels_in_reach(self):
+        """Return how many levels hold the depths of all that a ray of a pixel may meet."""
+        plan = self._plan
+        reach = max(self._coc(depth, self._spread) for depth in (self._nearest, 1.0))
+        side = min(2.0 * (reach + 1.0), max(plan.width, plan.height) * plan.subpixels)
+        return int(np.ceil(np.log2(side)))
 
     def specs(self):
         """Return the targets that it needs beside the sample's."""
         return (
-            TargetSpec("depth_levels", "RG32F", self._layers),
-            TargetSpec("blur_bounds", "RG32F"),
             # A pyramid of no level still has to be bound.
             TargetSpec("sample_means", "RGBA32F", max(self._top, 1), 0.5),
-            TargetSpec("sample_ranges", "RG32F", max(self._top, 1), 0.5),
+            TargetSpec("sample_ranges", "RG32F", max(self._levels, 1), 0.5),
         )
-
-    def find_bounds(self, fullscreen, targets):
-        """Find which depths can reach each pixel.
-
-        Parameters
-        ----------
-        fullscreen : GPUBatch
-        targets : Targets
-            Its ``sample_depth`` is that of the scene seen from the lens' centre.
-        """
-        plan = self._plan
-        nbuffer.build(targets["sample_depth"], targets["depth_levels"], self._layers)
-        with targets.framebuffer("blur_bounds").bind():
-            nbuffer.draw_bounds(
-                fullscreen,
-                targets["depth_levels"],
-                self._sweep,
-                plan.lens_extent,
-                (self._nearest, 1.0),
-                self._gain,
-                self._wavelengths and self._wavelengths(0),
-            )
 
     def add(self, fullscreen, targets, index):
         """Blur a lens sample and add it to the bound frame buffer.
@@ -121,14 +98,16 @@ class SubsampleBlur:
         plan = self._plan
         sample = (targets["sample"], targets["sample_depth"])
         levels = (targets["sample_means"], targets["sample_ranges"])
-        pyramid.build(*sample, *levels, self._top)
+        pyramid.build(*sample, *levels, self._top, self._levels)
         subsample.blur(
             fullscreen,
-            (*sample, targets["blur_bounds"], self._offsets, *levels),
+            (*sample, self._offsets, *levels),
             sweep=self._sweep,
             spread=self._spread,
+            depths=(self._nearest, 1.0),
             cell=self._cell,
             top=self._top,
+            levels=self._levels,
             weight=float(plan.subpixel_weights[index].prod()),
             index=index,
             count=int(plan.subsample_counts[index]),

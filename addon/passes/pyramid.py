@@ -13,12 +13,12 @@ _INFO = ShaderInfo(
         ("RGBA32F", "FLOAT_2D_ARRAY", "means_img", ("READ", "WRITE")),
         ("RG32F", "FLOAT_2D_ARRAY", "ranges_img", ("READ", "WRITE")),
     ),
-    push_constants=(("INT", "level"), ("IVEC2", "film")),
+    push_constants=(("INT", "level"), ("INT", "means"), ("IVEC2", "film")),
     local_size=(_GROUP, _GROUP, 1),
 )
 
 
-def build(sample, depth, means, ranges, count):
+def build(sample, depth, means, ranges, top, levels):
     """Fill a pyramid.
 
     Parameters
@@ -26,9 +26,10 @@ def build(sample, depth, means, ranges, count):
     sample, depth : GPUTexture
         Colour and depth, of the same size.
     means, ranges : GPUTexture
-        RGBA32F and RG32F arrays of half that size, rounded up, with at least `count` layers. Layer
-        i holds the squares of 2^(i + 1) texels, from its lower left corner on.
-    count : int
+        RGBA32F and RG32F arrays of half that size, rounded up. Layer i holds the squares of
+        2^(i + 1) texels, from its lower left corner on.
+    top, levels : int
+        Layers of means and of ranges that are filled; not more means than ranges.
     """
     shader = compile_shader(_INFO)
     shader.bind()
@@ -37,7 +38,8 @@ def build(sample, depth, means, ranges, count):
     shader.image("means_img", means)
     shader.image("ranges_img", ranges)
     shader.uniform_int("film", (sample.width, sample.height))
-    for level in range(1, count + 1):
+    shader.uniform_int("means", top)
+    for level in range(1, levels + 1):
         shader.uniform_int("level", level)
         width, height = (-(-side // 2**level) for side in (sample.width, sample.height))
         dispatch(shader, -(-width // _GROUP), -(-height // _GROUP))

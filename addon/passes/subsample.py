@@ -7,7 +7,6 @@ from . import chromatic
 _SAMPLERS = (
     ("FLOAT_2D", "sample_tx"),
     ("FLOAT_2D", "depth_tx"),
-    ("FLOAT_2D", "bounds_tx"),
     ("FLOAT_2D", "offsets_tx"),
     ("FLOAT_2D_ARRAY", "means_tx"),
     ("FLOAT_2D_ARRAY", "ranges_tx"),
@@ -23,9 +22,11 @@ _INFO = ShaderInfo(
     push_constants=(
         ("VEC4", "sweep"),
         ("VEC2", "spread"),
+        ("VEC2", "depths"),
         ("FLOAT", "cell"),
         ("FLOAT", "weight"),
         ("INT", "top"),
+        ("INT", "levels"),
         ("INT", "sample_index"),
         ("INT", "count"),
     ),
@@ -39,8 +40,10 @@ def blur(
     *,
     sweep,
     spread,
+    depths,
     cell,
     top,
+    levels,
     weight,
     index,
     count,
@@ -52,17 +55,21 @@ def blur(
     Parameters
     ----------
     fullscreen : GPUBatch
-    textures : sequence of 6 GPUTexture
-        Colour and depth of the sample; bounds of the depths that reach each pixel; offsets, one row
-        a sample; means and ranges of the sample's pyramid.
+    textures : sequence of 5 GPUTexture
+        Colour and depth of the sample; offsets, one row a sample; means and ranges of the sample's
+        pyramid.
     sweep : sequence of 4 float
         See ``lib/sweep_lib.glsl``.
     spread : sequence of 2 float
         Largest offset of any sample along x and y, m.
+    depths : sequence of 2 float
+        Least and largest value that the depth buffer may have.
     cell : float
         Side of the part of the lens that a ray stands for, m.
     top : int
-        Levels of the pyramid; 0 uses none.
+        Levels of means that are used; 0 uses none.
+    levels : int
+        Levels of ranges.
     weight : float
     index, count : int
         Row of the offsets, and how many there are in it.
@@ -78,9 +85,11 @@ def blur(
         shader.uniform_sampler(name, texture)
     shader.uniform_float("sweep", tuple(sweep))
     shader.uniform_float("spread", tuple(spread))
+    shader.uniform_float("depths", tuple(depths))
     shader.uniform_float("cell", cell)
     shader.uniform_float("weight", weight)
     shader.uniform_int("top", top)
+    shader.uniform_int("levels", levels)
     shader.uniform_int("sample_index", index)
     shader.uniform_int("count", count)
     if wavelength is not None:

@@ -1,69 +1,11 @@
-"""Numpy twins of N-buffers, blur bounds, pyramid and subsample blur."""
+"""Numpy twins of the pyramid of a lens sample and of its subsample blur."""
 
 import numpy as np
-
-
-def nbuffers(depth, count):
-    """Least and largest value over squares that begin at each texel.
-
-    Parameters
-    ----------
-    depth : ndarray of shape (height, width)
-    count : int
-        Layers; layer i has squares of 2^i texels.
-
-    Returns
-    -------
-    ndarray of shape (count, height, width, 2)
-        As far as the squares lie in the picture.
-    """
-    height, width = depth.shape
-    layers = np.empty((count, height, width, 2), depth.dtype)
-    for i in range(count):
-        for y in range(height):
-            for x in range(width):
-                square = depth[y : y + 2**i, x : x + 2**i]
-                layers[i, y, x] = square.min(), square.max()
-    return layers
 
 
 def sweep_px(move, sweep, depth):
     """How far a surface moves between two places on the lens, in texels."""
     return np.asarray(move) * (sweep[:2] + sweep[2:] * depth)
-
-
-def square_extremes(depth, x, y, reach):
-    """Least and largest value within `reach` texels of one."""
-    square = depth[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1]
-    return square.min(), square.max()
-
-
-def blur_bounds(depth, sweep, opening, depth_range, iterations=3):
-    """Nearest and farthest depth that can reach each pixel through the lens.
-
-    Parameters
-    ----------
-    depth : ndarray of shape (height, width)
-    sweep : ndarray of shape (4,)
-    opening : ndarray of shape (2,)
-    depth_range : tuple of 2 float
-    iterations : int
-
-    Returns
-    -------
-    ndarray of shape (height, width, 2)
-    """
-    bounds = np.empty((*depth.shape, 2))
-    for y, x in np.ndindex(depth.shape):
-        low, high = depth_range
-        for _ in range(iterations):
-            reach = max(
-                np.abs(sweep_px(opening, sweep, low)).max(),
-                np.abs(sweep_px(opening, sweep, high)).max(),
-            )
-            low, high = square_extremes(depth, x, y, int(np.ceil(reach)) + 1)
-        bounds[y, x] = low, high
-    return bounds
 
 
 def pyramid(color, depth, count):
@@ -92,21 +34,20 @@ def pyramid(color, depth, count):
     return levels
 
 
-def subsample_sum(levels, bounds, offsets, sweep, cell, tolerance=1.0):
+def subsample_sum(levels, top, offsets, sweep, cell):
     """Sum of a lens sample's picture and of those seen from places beside its own.
 
     Parameters
     ----------
     levels : list of (ndarray, ndarray)
-        See `pyramid`.
-    bounds : ndarray of shape (height, width, 2)
+        See `pyramid`; as many as hold what is in reach.
+    top : int
+        Levels of means that are used.
     offsets : ndarray of shape (K, 2)
         In m.
     sweep : ndarray of shape (4,)
     cell : float
         Side of the part of the lens that a place stands for, m.
-    tolerance : float
-        In texels.
 
     Returns
     -------
@@ -119,29 +60,28 @@ def subsample_sum(levels, bounds, offsets, sweep, cell, tolerance=1.0):
     margin = np.full(depth.shape, np.inf)
     spread = np.abs(offsets).max(axis=0)
     for y, x in np.ndindex(depth.shape):
-        ends = bounds[y, x]
-        reach = max(np.abs(sweep_px(spread, sweep, d)).max() for d in ends)
-        margin[y, x] = abs(reach - 0.5)
-        if reach <= 0.5:
+        in_reach, reach, sure = _depths_in_reach(levels, (y, x), spread, sweep)
+        margin[y, x] = sure
+        if reach == 0:
             total[y, x] = color[y, x] * (len(offsets) + 1)
             continue
-        total[y, x], sure = _cell_color(levels, (y, x), sweep, cell)
+        total[y, x], sure = _cell_color(levels, top, (y, x), sweep, cell)
         margin[y, x] = min(margin[y, x], sure)
         for move in offsets:
-            place, sure = _cast(np.array([x, y]) + 0.5, depth, ends, move, sweep, tolerance)
-            seen, sure_of_color = _cell_color(levels, place, sweep, cell)
+            texel, sure = seen_texel(levels, (y, x), in_reach, move, sweep)
+            seen, sure_of_color = _cell_color(levels, top, texel, sweep, cell)
             total[y, x] += seen
             margin[y, x] = min(margin[y, x], sure, sure_of_color)
     return total, margin
 
 
-def _cell_color(levels, texel, sweep, cell, alike=1.0, width_of_cell=0.85):
+def _cell_color(levels, top, texel, sweep, cell, alike=1.0, width_of_cell=0.85):
     """Return the mean of the colours round a texel that a cell brings to one pixel; the margin."""
     depth = levels[0][1][texel][0]
     width = width_of_cell * np.abs(sweep_px([cell, cell], sweep, depth)).min()
     wanted = np.log2(max(width, 1.0)) + 0.5
     sure = min(wanted % 1.0, -wanted % 1.0) if wanted > 0.5 else np.inf
-    for level in range(min(int(wanted), len(levels) - 1), 0, -1):
+    for level in range(min(int(wanted), top), 0, -1):
         means, ranges = levels[level]
         last = np.array(means.shape[:2]) - 1
         place = (np.array(texel) + 0.5) / 2**level - 0.5
@@ -158,40 +98,114 @@ def _cell_color(levels, texel, sweep, cell, alike=1.0, width_of_cell=0.85):
     return levels[0][0][texel], sure
 
 
-def _cast(center, depth, bounds, move, sweep, tolerance):
-    """Return the texel that a ray hits, or what lies farthest on its way; and the margin."""
-    near, far = (sweep_px(move, sweep, d) for d in bounds)
-    way = near - far
-    first, last = _part_inside(center - near, way, np.array(depth.shape[::-1]))
-    start = center - near + way * first
-    way = way * max(last - first, 0.0)
-    length = np.abs(way).max()
-    steps = int(np.ceil(length))
-    # One step, whatever the rounding, if nothing lies before or behind.
-    sure = abs(length - np.round(length)) if length > 0.0 else np.inf
-    hit, closest, farthest, behind = None, tolerance, -1.0, None
-    for k in range(steps + 1):
-        place = start + way * (k / max(steps, 1))
-        sure = min(sure, np.abs(place - np.round(place)).min())
-        x, y = np.clip(np.floor(place).astype(int), 0, (depth.shape[1] - 1, depth.shape[0] - 1))
-        miss = np.array([x, y]) + 0.5 + sweep_px(move, sweep, depth[y, x]) - center
-        distance = np.abs(miss).max()
-        sure = min(sure, abs(distance - closest)) if (y, x) != hit else sure
-        if distance <= closest:
-            hit, closest = (y, x), distance
-        elif hit is not None:
+def _seen_depths(levels, a, b):
+    """Return least and largest depth over a rectangle of texels (y, x) and the squares it meets."""
+    low, high = np.minimum(a, b), np.maximum(a, b)
+    level = max(int((high - low).max()).bit_length(), 1)
+    ranges = levels[level][1]
+    met = ranges[np.ix_(*([c, d] for c, d in zip(low >> level, high >> level, strict=True)))]
+    return np.array([met[..., 0].min(), met[..., 1].max()])
+
+
+def _depths_in_reach(levels, texel, spread, sweep, approaches=3):
+    """Return the depths of what may come to a pixel, from how far, and the margin of none."""
+    depth = levels[0][1]
+    found = np.array([depth.min(), 1.0])
+    texel, last = np.array(texel), np.array(depth.shape[:2]) - 1
+    for i in range(approaches + 1):
+        moved = max(np.abs(sweep_px(spread, sweep, d)).max() for d in found)
+        reach = int(min(moved + 0.5, max(depth.shape)))
+        if reach == 0 or i == approaches:
             break
-        if depth[y, x] > farthest:
-            farthest, behind = depth[y, x], (y, x)
-    return (behind if hit is None else hit), sure
+        window = np.maximum(texel - reach, 0), np.minimum(texel + reach, last)
+        seen = _seen_depths(levels, *window)
+        if (seen == found).all():
+            break
+        found = seen
+    return found, reach, abs(moved - 0.5)
 
 
-def _part_inside(start, way, size):
-    """From where to where a way, from 0 to 1, lies in the picture or within a texel of it."""
-    first, last = 0.0, 1.0
+def _way(center, size, move, sweep, depths):
+    """Return start (x, y) and course of a way, its part in the picture, and its end texels."""
+    start = center - sweep_px(move, sweep, depths[0])
+    along = center - sweep_px(move, sweep, depths[1]) - start
+    part = [0.0, 1.0]
     for axis in range(2):
-        if abs(way[axis]) > 1.0:
-            ends = np.array([-1.0, size[axis] + 1.0])
-            a, b = sorted((ends - start[axis]) / way[axis])
-            first, last = max(first, a), min(last, b)
-    return np.clip([first, last], 0.0, 1.0)
+        low, high = sorted((start[axis], start[axis] + along[axis]))
+        if high < 0.0 or low > size[axis]:
+            start[axis] = 0.5 if start[axis] < 0.0 else size[axis] - 0.5
+            along[axis] = 0.0
+        elif low < 0.0 or high > size[axis]:
+            meets = sorted((edge - start[axis]) / along[axis] for edge in (0.0, size[axis]))
+            part = [max(part[0], meets[0]), min(part[1], meets[1])]
+    part[1] = max(part)
+    ends = [np.clip(np.floor(start + along * p).astype(int), 0, size - 1) for p in part]
+    return start, along, part, ends
+
+
+def seen_texel(levels, texel, in_reach, move, sweep, stretch=1.0):
+    """Find what is seen in a pixel from a place on the lens beside the sample's.
+
+    Parameters
+    ----------
+    levels : list of (ndarray, ndarray)
+    texel : tuple of 2 int
+        Row and column of the pixel.
+    in_reach : sequence of 2 float
+        Least and largest depth of what may come there.
+    move : ndarray of shape (2,)
+        From the sample's place on the lens to the other, m.
+    sweep : ndarray of shape (4,)
+    stretch : float
+        Neighbours are one surface if the move parts them by no more texels.
+
+    Returns
+    -------
+    seen : tuple of 2 int
+        Row and column.
+    margin : float
+        See `subsample_sum`.
+    """
+    depth = levels[0][1][..., 0]
+    center, size = np.array(texel)[::-1] + 0.5, np.array(depth.shape[::-1])
+    depths = np.array(in_reach, float)
+    start, along, part, ends = _way(center, size, move, sweep, depths)
+    place = start + along * part[0]
+    inside = (place > 1e-9) & (place < size - 1e-9)
+    sure = np.abs(place - np.round(place))[inside].min(initial=np.inf)
+    at = ends[0].copy()
+    moving = np.abs(along) > 1e-6
+    crosses = np.where(moving, 1.0 / np.maximum(np.abs(along), 1e-6), 1e30)
+    middle = np.where(moving, (at + 0.5 - start) * np.sign(along) * crosses, 0.0)
+    leaves = middle + 0.5 * crosses
+    entered = (middle - 0.5 * crosses).max()
+    extent = max(np.ptp(depths), 1e-20)
+    apart = np.abs(move * sweep[2:]).max()
+    ahead, depth_ahead = tuple(at[::-1]), None
+    for steps in range(np.abs(ends[1] - ends[0]).sum() + 1):
+        here = tuple(at[::-1])
+        reaches = depths[0] + extent * np.array([entered, leaves.min()])
+        sure = min(sure, apart * np.abs(depth[here] - reaches).min())
+        if depth[here] > reaches[1]:
+            ahead, depth_ahead = here, depth[here]
+        elif depth[here] >= reaches[0]:
+            return here, sure
+        else:
+            if depth_ahead is None:
+                if steps == 0:
+                    return ahead, sure
+            else:
+                gap = apart * (depth_ahead - depth[here])
+                sure = min(sure, abs(gap - stretch))
+                if gap <= stretch:
+                    return ahead, sure
+            depth_ahead = None
+        left = np.abs(ends[1] - at)
+        if left.any():
+            if left.all():
+                sure = min(sure, abs(leaves[0] - leaves[1]) * np.abs(along).max())
+            axis = 0 if left[1] == 0 or (left[0] > 0 and leaves[0] <= leaves[1]) else 1
+            entered = leaves[axis]
+            leaves[axis] += crosses[axis]
+            at[axis] += int(np.sign(along[axis]))
+    return ahead, sure

@@ -1,15 +1,15 @@
 // One lens sample's picture, blurred over the part of the lens that it stands for: rays from places
 // near the sample's are cast through its own colour and depth. Each ray stands for a cell of the lens,
 // and takes the mean of the colours that come to the pixel through it.
-// Inputs: sample_tx, depth_tx (the sample); bounds_tx (depths that can reach a pixel); offsets_tx
+// Inputs: sample_tx, depth_tx (the sample); depths (least and largest that it may have); offsets_tx
 // (row: sample; column: place on the lens relative to the sample's, m); means_tx, ranges_tx (pyramid
-// of the sample, `top` levels); sample_index, count; spread (largest offset, m); cell (side of a
-// cell of the lens, m); sweep; weight.
+// of the sample: `top` levels of means, `levels` of ranges); sample_index, count; spread (largest
+// offset, m); cell (side of a cell of the lens, m); sweep; weight.
 // CHROMATIC: as in surface_vert, and gain (of the sweep, by 1 / focus distance), tint (weights of the
 // channels).
 // Outputs: the weighted sum of the sample and its subsamples.
 // Source: methods 6 (JKL13 section 6, algorithm 3).
-#include "lib/nbuffer_lib.glsl"
+#include "lib/extremes_lib.glsl"
 #include "lib/sweep_lib.glsl"
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
@@ -20,23 +20,14 @@ vec4 focused_sweep;
 #define focused_sweep sweep
 #endif
 
-// A hit is a texel whose surface comes to lie within so many texels of the pixel.
-#define TOLERANCE 1.0
+// Neighbours are one surface if the ray's place on the lens parts them by no more, in texels.
+#define SURFACE_STRETCH 1.0
 // Surfaces move alike across a cell if they do within so many texels.
 #define MOVES_ALIKE 1.0
-
-// From where to where a way, from 0 to 1, lies in the picture or within a texel of it.
-vec2 part_inside(vec2 start, vec2 way, vec2 size)
-{
-  vec2 part = vec2(0.0, 1.0);
-  for (int axis = 0; axis < 2; axis++) {
-    if (abs(way[axis]) > 1.0) {
-      float a = (-1.0 - start[axis]) / way[axis], b = (size[axis] + 1.0 - start[axis]) / way[axis];
-      part = vec2(max(part.x, min(a, b)), min(part.y, max(a, b)));
-    }
-  }
-  return clamp(part, 0.0, 1.0);
-}
+// A way moves along an axis if it is longer than that, in texels.
+#define LEAST_WAY 1e-6
+// How often it is asked again how far away something may come from.
+#define APPROACHES 3
 
 // Side of the square of texels over which a bilinear look-up spreads as far as a ray's cell does: in
 // a level of squares of side w its variance is w^2 / 4, that of a cell c^2 / 12. Wider by a half,
@@ -72,65 +63,163 @@ vec4 cell_color(ivec2 texel, ivec2 size)
   return texelFetch(sample_tx, texel, 0);
 }
 
-vec4 cast_ray(ivec2 pixel, ivec2 size, vec2 move, vec2 bounds)
+// Least and largest depth of the sample over a rectangle of texels and what shares squares with it.
+vec2 seen_depths(ivec2 a, ivec2 b)
 {
-  vec2 near = sweep_px(move, focused_sweep, bounds.x);
-  vec2 far = sweep_px(move, focused_sweep, bounds.y);
-  vec2 way = near - far;
+  ivec2 low = min(a, b), high = max(a, b);
+  int level = max(findMSB(max(high.x - low.x, high.y - low.y)), 0) + 1;
+  if (level > levels) {
+    return depths;
+  }
+  ivec3 c = ivec3(low >> level, level - 1), d = ivec3(high >> level, level - 1);
+  return extremes(extremes(texelFetch(ranges_tx, c, 0).xy, texelFetch(ranges_tx, d, 0).xy),
+                  extremes(texelFetch(ranges_tx, ivec3(d.x, c.yz), 0).xy,
+                           texelFetch(ranges_tx, ivec3(c.x, d.yz), 0).xy));
+}
+
+// Least and largest depth over a square of the pyramid, or of a texel.
+vec2 square_depths(ivec2 square, int level)
+{
+  return (level == 0) ? vec2(texelFetch(depth_tx, square, 0).x) :
+                        texelFetch(ranges_tx, ivec3(square, level - 1), 0).xy;
+}
+
+// The texel that a ray sees. Each texel is a square that moves with its surface; the ray ends at the
+// nearest that comes to cover the pixel's centre. So a surface of one depth covers as many pixels as
+// it has texels, wherever it moves to, and one in focus stays as it is.
+// From the least depth in reach to the largest, the place of what comes to the pixel runs along a
+// straight way. A texel is hit if its depth is one of those that it is crossed at. Whole squares that
+// lie behind the ray's depths, or in front of them, are crossed at once.
+ivec2 seen_texel(ivec2 pixel, ivec2 size, vec2 move, vec2 in_reach)
+{
   vec2 center = vec2(pixel) + 0.5;
-  vec2 inside = part_inside(center - near, way, vec2(size));
-  vec2 start = center - near + way * inside.x;
-  way *= max(inside.y - inside.x, 0.0);
-  int steps = int(ceil(max(abs(way.x), abs(way.y))));
-  ivec2 hit = pixel, behind = pixel;
-  float closest = TOLERANCE, farthest = -1.0;
-  bool found = false;
-  for (int k = 0; k <= steps; k++) {
-    vec2 place = start + way * (float(k) / float(max(steps, 1)));
-    ivec2 texel = clamp(ivec2(floor(place)), ivec2(0), size - 1);
-    float depth = texelFetch(depth_tx, texel, 0).x;
-    vec2 miss = abs(vec2(texel) + 0.5 + sweep_px(move, focused_sweep, depth) - center);
-    float distance = max(miss.x, miss.y);
-    if (distance <= closest) {
-      // The nearest surface that is hit, where it is hit best.
-      closest = distance;
-      hit = texel;
-      found = true;
+  vec2 start = center - sweep_px(move, focused_sweep, in_reach.x);
+  vec2 along = center - sweep_px(move, focused_sweep, in_reach.y) - start;
+  vec2 part = vec2(0.0, 1.0);
+  // What is outside the picture is taken to continue its outermost texels: a way that lies beyond an
+  // edge runs along it.
+  for (int axis = 0; axis < 2; axis++) {
+    float a = start[axis], b = a + along[axis], edge = float(size[axis]);
+    if (max(a, b) < 0.0 || min(a, b) > edge) {
+      start[axis] = (a < 0.0) ? 0.5 : edge - 0.5;
+      along[axis] = 0.0;
     }
-    else if (found) {
-      break;
-    }
-    if (depth > farthest) {
-      farthest = depth;
-      behind = texel;
+    else if (min(a, b) < 0.0 || max(a, b) > edge) {
+      vec2 meets = (vec2(0.0, edge) - a) / along[axis];
+      part = vec2(max(part.x, min(meets.x, meets.y)), min(part.y, max(meets.x, meets.y)));
     }
   }
-  // Nothing that the sample sees came to lie here, so the ray looks past an edge at what the sample
-  // does not see: that continues what lies farthest along the way, the background if it is there.
-  return cell_color(found ? hit : behind, size);
+  part.y = max(part.x, part.y);
+  ivec2 texel = clamp(ivec2(floor(start + along * part.x)), ivec2(0), size - 1);
+  ivec2 last = clamp(ivec2(floor(start + along * part.y)), ivec2(0), size - 1);
+  ivec2 stride = ivec2(sign(along));
+  bvec2 moves = greaterThan(abs(along), vec2(LEAST_WAY));
+  vec2 pace = vec2(stride) / max(abs(along), LEAST_WAY);
+  float extent = max(in_reach.y - in_reach.x, 1e-20);
+  // Where it came into the texel, as a share of the way; also of the first, though it begins inside.
+  vec2 enters = (vec2(texel) + max(-vec2(stride), 0.0) - start) * pace;
+  enters = mix(vec2(-1e30), enters, moves);
+  float entered = max(enters.x, enters.y);
+  // The last texel in front of whose surface the ray was, and whether that was the one before.
+  ivec2 ahead = texel;
+  bool was_ahead = false, begun = false;
+  int level = 0;
+  while (true) {
+    ivec2 square = texel >> level, low = square << level;
+    ivec2 edge = low + max(stride, 0) * ((1 << level) - 1);
+    vec2 leaves = (vec2(edge) + max(vec2(stride), 0.0) - start) * pace;
+    leaves = mix(vec2(1e30), leaves, moves);
+    bvec2 goes_on = notEqual(last >> level, square);
+    // Rounding may not lead past the last texel.
+    int axis = (!goes_on.y || (goes_on.x && leaves.x <= leaves.y)) ? 0 : 1;
+    float left = any(goes_on) ? leaves[axis] : min(leaves.x, leaves.y);
+    vec2 seen = square_depths(square, level);
+    bool in_front = seen.x > in_reach.x + extent * left;
+    bool behind = seen.y < in_reach.x + extent * entered;
+    if (level > 0 && !in_front && (!behind || was_ahead)) {
+      level--;
+      continue;
+    }
+    if (!in_front && !behind) {
+      return texel;
+    }
+    // The texel by which it leaves the square.
+    ivec2 leaving = last;
+    if (any(goes_on)) {
+      ivec2 on_way = ivec2(floor(start + along * left));
+      on_way = clamp(on_way, max(min(texel, last), low), min(max(texel, last), low + (1 << level) - 1));
+      leaving[axis] = edge[axis];
+      leaving[1 - axis] = on_way[1 - axis];
+    }
+    if (in_front) {
+      ahead = leaving;
+    }
+    else if (level == 0 && (was_ahead || !begun)) {
+      // It has met a slope between two texels, passed the edge of something nearer, or comes from
+      // beyond the picture's edge.
+      vec2 parted = abs(move * focused_sweep.zw);
+      float gap = texelFetch(depth_tx, ahead, 0).x - seen.x;
+      if (!begun || gap * max(parted.x, parted.y) <= SURFACE_STRETCH) {
+        return ahead;
+      }
+    }
+    if (!any(goes_on)) {
+      break;
+    }
+    was_ahead = in_front;
+    begun = true;
+    texel = leaving;
+    texel[axis] += stride[axis];
+    entered = left;
+    level = min(level + 1, levels);
+  }
+  // What the ray sees is hidden from the sample. The surface that vanished behind an edge goes on.
+  return ahead;
+}
+
+// Depths of all that the sample shows and that comes to a pixel from some place of its part of the
+// lens: those of all that it shows tell how far away that may lie, and so on. Also how far, in texels.
+vec2 depths_in_reach(ivec2 pixel, ivec2 size, out int reach)
+{
+  vec2 found = depths;
+  for (int i = 0; i <= APPROACHES; i++) {
+    vec2 moved = max(abs(sweep_px(spread, focused_sweep, found.x)),
+                     abs(sweep_px(spread, focused_sweep, found.y)));
+    // Half a texel stays within the texel.
+    reach = int(min(max(moved.x, moved.y) + 0.5, float(max(size.x, size.y))));
+    if (reach == 0 || i == APPROACHES) {
+      break;
+    }
+    vec2 seen = seen_depths(max(pixel - reach, ivec2(0)), min(pixel + reach, size - 1));
+    if (seen == found) {
+      break;
+    }
+    found = seen;
+  }
+  return found;
 }
 
 void main()
 {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   ivec2 size = textureSize(sample_tx, 0);
-  vec4 primary = texelFetch(sample_tx, pixel, 0);
-  vec2 bounds = texelFetch(bounds_tx, pixel, 0).xy;
 #ifdef CHROMATIC
   // The field changes so slowly that a surface has the focus of where its light arrives.
   vec2 place = gl_FragCoord.xy * chromatic_buf.raster.xy + chromatic_buf.raster.zw;
   float axial = field_strengths(field_tx, place, chromatic_buf).x;
   focused_sweep = sweep + gain * chromatic_focus(dispersion.x, axial, chromatic_buf);
 #endif
-  vec2 reach = max(abs(sweep_px(spread, focused_sweep, bounds.x)),
-                   abs(sweep_px(spread, focused_sweep, bounds.y)));
-  vec4 total = primary * float(count + 1);
-  // What moves by less than half a texel stays in it.
-  if (max(reach.x, reach.y) > 0.5) {
+  int reach;
+  vec2 in_reach = depths_in_reach(pixel, size, reach);
+  vec4 total;
+  if (reach == 0) {
+    total = texelFetch(sample_tx, pixel, 0) * float(count + 1);
+  }
+  else {
     total = cell_color(pixel, size);
     for (int i = 0; i < count; i++) {
       vec2 move = texelFetch(offsets_tx, ivec2(i, sample_index), 0).xy;
-      total += cast_ray(pixel, size, move, bounds);
+      total += cell_color(seen_texel(pixel, size, move, in_reach), size);
     }
   }
 #ifdef CHROMATIC

@@ -1,0 +1,11 @@
+// Least and largest value, together.
+#ifndef EXTREMES_LIB_GLSL
+#define EXTREMES_LIB_GLSL
+
+// Of both of two ranges.
+vec2 extremes(vec2 a, vec2 b)
+{
+  return vec2(min(a.x, b.x), max(a.y, b.y));
+}
+
+#endif
