@@ -48,14 +48,13 @@ class Claims:
         for path in paths:
             try:
                 path.parent.mkdir(parents=True, exist_ok=True)
-                # One process only gets through here, whatever the others do.
-                os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
-            except FileExistsError:
-                self.give_back(taken)
-                return False
+                is_ours = _make(path)
             except OSError as error:
                 self.give_back(taken)
                 raise OutputError(f"cannot write '{path}': {error.strerror or error}") from error
+            if not is_ours:
+                self.give_back(taken)
+                return False
             taken.append(path)
             self._paths.add(path)
             remember_file(path)
@@ -78,3 +77,12 @@ class Claims:
                 if Path(path).stat().st_size == 0:
                     os.unlink(path)
             self.settle(path)
+
+
+def _make(path):
+    try:
+        # One process only gets through here, whatever the others do.
+        os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+    except FileExistsError:
+        return False
+    return True

@@ -52,6 +52,8 @@ def read_light(light, matrix):
     if light.type == "SUN":
         # It shines from everywhere: only its direction counts.
         matrix[:3, 3] = 0.0
+    if light.use_custom_distance:
+        notes.append("the custom distance of EEVEE does not end its light, as in Cycles")
     axes = _unit_axes(matrix)
     read = {"SUN": _sun, "POINT": _point, "SPOT": _spot, "AREA": _area}[light.type]
     values = read(light, matrix, axes, power, notes)

@@ -6,6 +6,8 @@ read. What no version of Aplanat draws in any scene (shadows, light that bounces
 documentation instead: a warning that is always there warns of nothing.
 """
 
+import os
+
 import bpy
 
 # Names are listed up to here; of more, the number is told.
@@ -46,7 +48,7 @@ def read_unsupported(depsgraph):
         One line each, which names the data-block.
     """
     scene = depsgraph.scene
-    lines = missing_links()
+    lines = missing_links() + missing_files()
     lines += [f"scene '{scene.name}': {what}" for what in _of_scene(depsgraph)]
     lines += _of_camera(depsgraph.scene_eval)
     layer = depsgraph.view_layer
@@ -84,6 +86,38 @@ def missing_links():
         elif names:
             lines.append(f"library '{library.filepath}' lacks what is linked: {_listed(names)}")
     return lines
+
+
+def missing_files():
+    """Return a warning for each font and each cache of geometry whose file is missing.
+
+    Images tell for themselves, because only those that are drawn count.
+
+    Returns
+    -------
+    list of str
+    """
+    lines = []
+    for font in bpy.data.fonts:
+        if font.users and not font.packed_file and _is_missing(font):
+            lines.append(
+                f"font '{font.name}' ({font.filepath}) cannot be read; Blender's own is used"
+            )
+    for cache in bpy.data.cache_files:
+        # A sequence has no file of the name itself.
+        if cache.users and not cache.is_sequence and _is_missing(cache):
+            lines.append(
+                f"cache file '{cache.name}' ({cache.filepath}) cannot be read; what is in it is"
+                " missing or stands still"
+            )
+    return lines
+
+
+def _is_missing(block):
+    # Blender's built-in font.
+    if block.filepath in {"", "<builtin>"}:
+        return False
+    return not os.path.isfile(bpy.path.abspath(block.filepath, library=block.library))
 
 
 def _linked_blocks():

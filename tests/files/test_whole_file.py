@@ -56,6 +56,21 @@ def test_nothing_stays_after_an_exception(kind, tmp_path):
     assert os.listdir(tmp_path) == []
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="permissions of POSIX")
+@pytest.mark.parametrize("mask", [0o022, 0o027, 0o077, 0o000])
+def test_file_has_the_permissions_of_the_umask(kind, tmp_path, mask):
+    path = tmp_path / "a.txt"
+    for content in ("new", "replaced"):
+        before = os.umask(mask)
+        try:
+            with whole_file(path) as place:
+                Path(place).write_text(content)
+        finally:
+            os.umask(before)
+        assert path.read_text() == content
+        assert path.stat().st_mode & 0o777 == 0o666 & ~mask
+
+
 def test_check_leaves_nothing(kind, tmp_path):
     check_writable(tmp_path / "a.exr")
     assert os.listdir(tmp_path) == []

@@ -1,5 +1,7 @@
 """What Cycles or EEVEE obey and Aplanat does not draw is told, once, with its name."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -153,6 +155,41 @@ def test_missing_library_and_what_it_lacks_are_told_by_name(bpy, tmp_path):
     (line,) = report(bpy)
     assert line.startswith("library '//props.blend' cannot be read")
     assert "collection 'Props'" in line
+
+
+def test_missing_fonts_and_caches_are_told_by_name(bpy, tmp_path):
+    text = bpy.data.objects.new("Text", bpy.data.curves.new("Text", "FONT"))
+    bpy.context.scene.collection.objects.link(text)
+    assert report(bpy) == ()
+    path = tmp_path / "letters.ttf"
+    # Blender looks into the file when it loads it, and keeps what it found.
+    system = next(Path("/usr/share/fonts").rglob("*.ttf"), None) or next(
+        Path(bpy.utils.system_resource("DATAFILES", path="fonts")).glob("*.woff2"), None
+    )
+    if system is None:
+        pytest.skip("there is no font to copy")
+    path.write_bytes(system.read_bytes())
+    text.data.font = bpy.data.fonts.load(str(path))
+    assert report(bpy) == ()
+    path.unlink()
+    (line,) = report(bpy)
+    assert line.startswith("font '") and "letters.ttf" in line
+
+    cube = scenes.add(bpy, "cube", scenes.cube(bpy))
+    bpy.ops.wm.alembic_export(filepath=str(tmp_path / "cube.abc"), as_background_job=False)
+    bpy.data.objects.remove(text)
+    bpy.ops.cachefile.open(filepath=str(tmp_path / "cube.abc"))
+    (cache,) = bpy.data.cache_files
+    cube.modifiers.new("cache", "MESH_SEQUENCE_CACHE").cache_file = cache
+    assert not any("cache file" in line for line in report(bpy))
+    (tmp_path / "cube.abc").unlink()
+    assert any(line.startswith("cache file 'cube.abc'") for line in report(bpy))
+
+
+def test_custom_distance_of_eevee_is_told(bpy):
+    add_light(bpy, "POINT").data.use_custom_distance = True
+    (line,) = report(bpy)
+    assert line.startswith("object 'Lamp'") and "custom distance" in line
 
 
 def test_grease_pencil_and_freestyle_are_drawn_by_blender_and_told(bpy, tmp_path):
