@@ -17,7 +17,7 @@ from ..files.whole_file import whole_file
 from ..scene.mesh_levels import Halving
 
 # Grows when the same mesh would get other levels.
-_VERSION = 3
+_VERSION = 4
 _FIELDS = tuple(field.name for field in fields(Halving))
 
 

@@ -214,9 +214,9 @@ def size_of_levels(levels):
 
 
 def _shape_key(mesh, positions, places, least_triangles):
-    """Hash what the collapses depend on: places and the triangles between them."""
+    """Hash what the collapses depend on: places, the triangles between them and their slots."""
     shape = _bare(mesh, positions, places)
-    digest = hashlib.blake2b(f"{least_triangles}".encode(), digest_size=20)
+    digest = hashlib.blake2b(f"{least_triangles} {mesh.slots}".encode(), digest_size=20)
     for array in (shape.positions, shape.triangles):
         digest.update(f"|{array.dtype} {array.shape}|".encode())
         digest.update(np.ascontiguousarray(array))

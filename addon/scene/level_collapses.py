@@ -13,6 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
+from .level_parts import paired, small_parts
+
 # fast-simplification's thresholds begin at 2e-6 in squared lengths: the mesh is scaled so that its
 # edges are long against that, and the best collapses come first.
 _EDGE_LENGTH = 0.5
@@ -51,6 +53,8 @@ class Surface:
     mesh : MeshSnapshot
     places : ndarray of shape (V,)
         Of its vertices.
+    parts : ndarray of shape (P,), optional
+        The part of each place, where that is known.
 
     Attributes
     ----------
@@ -65,7 +69,8 @@ class Surface:
         Length of the normals: twice the areas.
     """
 
-    def __init__(self, mesh, places):
+    def __init__(self, mesh, places, parts=None):
+        self._parts = parts
         self.places = places
         self.points = _points(mesh.positions, places).astype(np.float64)
         self.faces = places[mesh.triangles]
@@ -74,8 +79,21 @@ class Surface:
 
     @cached_property
     def borders(self):
-        """The edges that one triangle has alone, and those triangles: see `_borders`."""
-        return _borders(self.faces, len(self.points))
+        """The edges that one triangle has alone, and those triangles: see `borders`."""
+        return borders(self.faces, len(self.points))
+
+    @cached_property
+    def parts(self):
+        """The part of each place: what edges connect."""
+        if self._parts is not None:
+            return self._parts
+        edges = np.concatenate([self.faces[:, :2], self.faces[:, 1:]])
+        return _numbered(connected(edges, len(self.points)))
+
+    @cached_property
+    def part_count(self):
+        """A number above those of all parts."""
+        return int(self.parts.max(initial=-1)) + 1
 
 
 def weld(positions):
@@ -130,7 +148,7 @@ def _numbered(first):
     return (np.cumsum(leads, dtype=np.int32) - 1)[first]
 
 
-def decimate(surface, triangles, check=None):
+def decimate(surface, triangles, slots=(), check=None):
     """Decide which places merge.
 
     Parameters
@@ -138,6 +156,8 @@ def decimate(surface, triangles, check=None):
     surface : Surface
     triangles : int
         How many to leave.
+    slots : sequence of (int, int, int), optional
+        Material slot, first triangle and count, of the mesh.
     check : callable, optional
         Called before each patch; it may raise to end the work.
 
@@ -148,26 +168,54 @@ def decimate(surface, triangles, check=None):
     points, faces, normal = surface.points, surface.faces, surface.normal
     # A triangle without area has no plane, and none of its errors would be a number.
     proper = surface.size > _LEAST_AREA * surface.size.mean()
+    small, of_face = small_parts(surface)
+    pairs = np.empty((0, 2), np.int64)
+    if small.any():
+        proper &= ~small[of_face]
+        pairs = paired(surface, small, of_face, slots)
+    left = triangles / max(len(faces), 1)
     if proper.all():
-        borders = surface.borders
+        border, owner = surface.borders
     else:
         faces, normal = faces[proper], normal[:, proper]
-        borders = _borders(faces, len(points))
+        border, owner = borders(faces, len(points))
     if len(faces) == 0:
-        return Halving(surface.places, np.arange(len(points), dtype=np.int32))
-    along = (points[faces[:, 0]] - points[faces[:, 1]]).T
-    edge = np.sqrt(np.square(along).sum(axis=0)).mean()
-    scaled = (points - points.mean(axis=0)) * (_EDGE_LENGTH / max(edge, 1e-30))
-    apexes, cones = _cones(scaled, *borders, normal)
+        return Halving(surface.places, _groups(pairs, len(points), 0))
+    scaled = _scaled(surface, points, faces)
+    apexes, cones = _cones(scaled, border, owner, normal)
+    left = left * len(faces) + len(cones) // 2
     faces = np.concatenate([faces, cones]).astype(np.int32, copy=False)
     scaled = np.concatenate([scaled, apexes])
-    share = min((triangles + len(cones) // 2) / len(faces), 1.0)
-    collapses = []
+    share = min(left / len(faces), 1.0)
+    collapses = [pairs]
     for patch in _patches(scaled, faces):
         if check is not None:
             check()
         collapses.append(_collapse(scaled, faces[patch], share, len(patch) < len(faces)))
     return Halving(surface.places, _groups(np.concatenate(collapses), len(points), len(apexes)))
+
+
+def _scaled(surface, points, faces):
+    """Return points with edges of one mean length in every part.
+
+    So each part loses the same share of its triangles: against one bound for the whole mesh, small
+    lamps beside large ones would vanish before those are touched.
+    """
+    along = (points[faces[:, 0]] - points[faces[:, 1]]).T
+    length = np.sqrt(np.square(along).sum(axis=0))
+    centered = points - points.mean(axis=0)
+    if surface.part_count == 1:
+        return centered * (_EDGE_LENGTH / max(length.mean(), 1e-30))
+    count = surface.part_count
+    part = surface.parts[faces[:, 0]]
+    edge = np.bincount(part, length, count) / np.maximum(np.bincount(part, minlength=count), 1)
+    mean = length.mean()
+    scale = np.where(edge > 0.0, mean / np.where(edge > 0.0, edge, 1.0), 1.0)
+    sizes = np.maximum(np.bincount(surface.parts, minlength=count), 1)
+    middle = [np.bincount(surface.parts, x, count) / sizes for x in centered.T]
+    middle = np.stack(middle, axis=1)[surface.parts]
+    centered = middle + (centered - middle) * scale[surface.parts][:, None]
+    return centered * (_EDGE_LENGTH / max(mean, 1e-30))
 
 
 def _collapse(points, faces, share, in_part):
@@ -262,7 +310,7 @@ def facets(points, faces):
     return result
 
 
-def _borders(faces, count):
+def borders(faces, count):
     """Return the edges that one triangle has alone, shape (E, 2), and those triangles.
 
     Parameters

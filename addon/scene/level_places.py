@@ -10,19 +10,25 @@ Garland and Heckbert, *Surface simplification using quadric error metrics*, SIGG
 
 import numpy as np
 
-# Weight of a border's perpendicular plane against the triangle at the border.
+# Weight of the perpendicular plane through a border or seam against the triangle there.
 _BORDER_WEIGHT = 10.0
 # How much of the quadric's trace, without borders, pulls a merged place to the mean of its group.
-_PULL = 0.1
+_PULL = 0.003
+# Weight of a seam's own direction, against the triangle there: along a curved seam its planes would
+# meet anywhere, so places keep the mean of their group along it.
+_HOLD_ALONG_SEAMS = 2.0
 
 
-def merged_places(surface, halving):
+def merged_places(surface, groups, seams):
     """Return where the groups of places merge to.
 
     Parameters
     ----------
     surface : Surface
-    halving : Halving
+    groups : ndarray of shape (P,)
+        The new place of each old one.
+    seams : tuple of two ndarray
+        See `seam_edges`; they hold what merges as borders do.
 
     Returns
     -------
@@ -31,7 +37,6 @@ def merged_places(surface, halving):
     normal, length = surface.normal, surface.size
     center = surface.points.mean(axis=0) if len(surface.points) else np.zeros(3)
     points = surface.points - center
-    groups = halving.groups
     count = int(groups.max(initial=-1)) + 1
     sizes = np.bincount(groups, minlength=count)
     mean = np.stack([np.bincount(groups, v, count) for v in points.T])
@@ -42,18 +47,44 @@ def merged_places(surface, halving):
     _add_planes(quadric, pull, groups, moving, surface.faces, points, normal, length)
     trace = quadric[0] + quadric[3] + quadric[5]
     hold = np.where(trace > 0.0, _PULL * trace, 1.0)
-    border, owner = surface.borders
-    if len(border):
-        along = points[border[:, 1]] - points[border[:, 0]]
+    for edges, owner in (surface.borders, seams):
+        if len(edges) == 0:
+            continue
+        along = points[edges[:, 1]] - points[edges[:, 0]]
         unit = normal[:, owner] / np.maximum(length[owner], 1e-300)
         outward = np.cross(along, unit.T).T
         weight = np.sqrt(np.square(outward).sum(axis=0))
         # Weighted by its square, against a vector as long as itself.
         outward *= _BORDER_WEIGHT * weight
         _add_planes(
-            quadric, pull, groups, moving, border, points, outward, _BORDER_WEIGHT * weight**2
+            quadric, pull, groups, moving, edges, points, outward, _BORDER_WEIGHT * weight**2
         )
-    moved = mean + _move(quadric, pull, hold, mean)
+    held = quadric.copy()
+    edges, _ = seams
+    if len(edges):
+        unused = np.zeros((3, count))
+        along = (points[edges[:, 1]] - points[edges[:, 0]]).T
+        weight = _HOLD_ALONG_SEAMS * np.sqrt(np.square(along).sum(axis=0))
+        _add_planes(
+            held,
+            unused,
+            groups,
+            moving,
+            edges,
+            points,
+            weight * along,
+            weight * weight / _HOLD_ALONG_SEAMS,
+        )
+    for row in (0, 3, 5):
+        held[row] += hold
+    move = _move(quadric, held, pull, mean)
+    # No farther than what merged: where planes are nearly parallel, they meet far away.
+    spread = sum(np.square(x - m[groups]) for x, m in zip(points.T, mean, strict=True))
+    farthest = np.zeros(count)
+    np.maximum.at(farthest, groups, spread)
+    distance = np.square(move).sum(axis=0)
+    move *= np.sqrt(np.minimum(farthest / np.maximum(distance, 1e-300), 1.0))
+    moved = mean + move
     return np.where(moving, moved, mean).T + center
 
 
@@ -102,16 +133,17 @@ def _add_planes(quadric, pull, groups, moving, corners, points, normal, weight):
             row += 1
 
 
-def _move(quadric, pull, hold, mean):
-    """Solve (Q + hold) x = pull - Q mean, by cofactors: the matrices are well conditioned."""
+def _move(quadric, held, pull, mean):
+    """Solve held x = pull - quadric mean, by cofactors: the matrices are well conditioned."""
     xx, xy, xz, yy, yz, zz = quadric
     mx, my, mz = mean
     bx = pull[0] - (xx * mx + xy * my + xz * mz)
     by = pull[1] - (xy * mx + yy * my + yz * mz)
     bz = pull[2] - (xz * mx + yz * my + zz * mz)
+    xx, xy, xz, yy, yz, zz = held
     # Of one size, so that no product of three overflows or vanishes.
-    size = 1.0 / np.maximum(xx + yy + zz + hold, 1e-300)
-    xx, yy, zz = (xx + hold) * size, (yy + hold) * size, (zz + hold) * size
+    size = 1.0 / np.maximum(xx + yy + zz, 1e-300)
+    xx, yy, zz = xx * size, yy * size, zz * size
     xy, xz, yz = xy * size, xz * size, yz * size
     bx, by, bz = bx * size, by * size, bz * size
     cxx, cxy, cxz = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy

@@ -26,7 +26,7 @@ from .level_collapses import (
     stable_order,
     weld,
 )
-from .level_places import merged_places
+from .level_step import Step
 from .snapshot import MeshSnapshot, next_uid
 
 __all__ = ["Halving", "MeshLevel", "available", "replay", "simplify", "slots_of", "surviving"]
@@ -83,21 +83,49 @@ def simplify(mesh, least_triangles, check=None):
     """
     if not available():
         return (), ()
-    levels, halvings = [], []
-    full = len(mesh.triangles)
-    places = None
+    places = weld(mesh.positions)
+    if not _has_own_seams(mesh, places):
+        made = list(_halved(mesh, places, least_triangles, check))
+        return tuple(level for level, _ in made), tuple(halving for _, halving in made)
+    # Which places merge does not depend on what is on them, so that meshes of one shape share it.
+    first = np.zeros(int(places.max(initial=-1)) + 1, np.intp)
+    first[places[::-1]] = np.arange(len(places) - 1, -1, -1)
+    points = mesh.positions[first] + np.float32(0.0)
+    bare = MeshSnapshot(mesh.uid, mesh.name, points, places[mesh.triangles], mesh.slots)
+    plain = np.arange(len(points), dtype=np.int32)
+    shared = [halving for _, halving in _halved(bare, plain, least_triangles, check)]
+    made = list(_followed(mesh, shared, places))
+    return tuple(level for level, _ in made), tuple(halving for _, halving in made)
+
+
+def _has_own_seams(mesh, places):
+    """Whether vertices of one place differ in more than their normals."""
+    split = len(places) > int(places.max(initial=-1)) + 1
+    return split and any(key != "normal" for key in mesh.attributes)
+
+
+def _halved(mesh, places, least_triangles, check):
+    """Give level after level, and how it followed."""
+    full, parts = len(mesh.triangles), None
     while len(mesh.triangles) >= 2 * least_triangles:
-        lost = full - len(mesh.triangles)
-        watch = None if check is None else partial(check, lost)
-        surface = Surface(mesh, weld(mesh.positions) if places is None else places)
-        halving = decimate(surface, len(mesh.triangles) // 2, watch)
-        level, following = _merge(mesh, surface, halving)
+        watch = None if check is None else partial(check, full - len(mesh.triangles))
+        surface = Surface(mesh, places, parts)
+        halving = decimate(surface, len(mesh.triangles) // 2, mesh.slots, watch)
+        level, places, parts = _merge(mesh, surface, halving)
         if not 0 < len(level.triangles) <= _LEAST_REDUCTION * len(mesh.triangles):
-            break
-        levels.append(level)
-        halvings.append(halving)
-        mesh, places = level, following
-    return tuple(levels), tuple(halvings)
+            return
+        yield level, halving
+        mesh = level
+
+
+def _followed(mesh, halvings, places=None):
+    """Give level after level by known halvings, and these with the places of the mesh itself."""
+    parts, own = None, places is not None
+    for halving in halvings:
+        if own:
+            halving = replace(halving, places=places)
+        mesh, places, parts = _merge(mesh, Surface(mesh, halving.places, parts), halving)
+        yield mesh, halving
 
 
 def replay(mesh, halvings, places=None):
@@ -117,26 +145,20 @@ def replay(mesh, halvings, places=None):
     -------
     tuple of MeshLevel
     """
-    levels = []
-    own = places is not None
-    for halving in halvings:
-        if own:
-            halving = replace(halving, places=places)
-        mesh, places = _merge(mesh, Surface(mesh, halving.places), halving)
-        levels.append(mesh)
-    return tuple(levels)
+    return tuple(level for level, _ in _followed(mesh, halvings, places))
 
 
 def _merge(mesh, surface, halving):
-    """Return the next level, and the place of each of its vertices."""
+    """Return the next level, and the place of each of its vertices and the part of each place."""
     place = halving.groups[halving.places]
     kept = surviving(surface.faces, halving.groups[surface.faces])
-    points = merged_places(surface, halving)
     old = mesh.triangles[kept]
     vertex_of, vertex_places = _vertices(mesh, halving, place, old)
     triangles = np.ascontiguousarray(vertex_of[old], np.int32)
+    step = Step(mesh, surface, halving.groups, vertex_of, vertex_places, triangles)
+    points = step.points
     positions = np.ascontiguousarray(points[vertex_places], np.float32)
-    attributes = carry(mesh, surface, vertex_of, positions, triangles)
+    attributes = carry(step, positions)
     # A side of a seam that has shrunk to nothing continues as another of its place.
     vertex_at = np.full(len(points), -1, np.int32)
     vertex_at[vertex_places] = np.arange(len(vertex_places), dtype=np.int32)
@@ -150,7 +172,10 @@ def _merge(mesh, surface, halving):
         places=halving.places,
         merged=np.where(vertex_of >= 0, vertex_of, vertex_at[place]).astype(np.int32),
     )
-    return level, _without_gaps(vertex_places)
+    following = _without_gaps(vertex_places)
+    parts = np.zeros(int(following.max(initial=-1)) + 1, step.parts.dtype)
+    parts[following] = step.parts[vertex_places]
+    return level, following, parts
 
 
 def surviving(before, corners):
