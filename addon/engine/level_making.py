@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..scene.level_collapses import weld
-from ..scene.mesh_levels import replay, simplify
+from ..scene.mesh_levels import replay, seam_edges, simplify
 from ..scene.snapshot import MeshSnapshot
 
 # Smaller meshes are simplified about as fast as they are read.
@@ -101,11 +101,12 @@ class LevelMaker:
             if levels is not None:
                 return levels, work
         places = weld(mesh.positions)
-        key = _shape_key(mesh, mesh.positions, places, least_triangles)
+        seams = seam_edges(mesh, places)
+        key = _shape_key(mesh, mesh.positions, places, seams, least_triangles)
         known = self._find(key, mesh, work)
         if known is not None:
             return replay(mesh, known.halvings, places), work
-        levels, halvings = simplify(mesh, least_triangles, check)
+        levels, halvings = simplify(mesh, least_triangles, check, seams)
         self._keep(key, mesh, levels, halvings, work)
         return levels, work
 
@@ -122,11 +123,12 @@ class LevelMaker:
         if not _meet(mesh.positions, places):
             return None
         own = LevelWork()
-        key = _shape_key(mesh, mesh.rest, places, least_triangles)
+        seams = seam_edges(mesh, places)
+        key = _shape_key(mesh, mesh.rest, places, seams, least_triangles)
         known = self._find(key, mesh, own)
         if known is None:
             shape = _bare(mesh, mesh.rest, places)
-            known = self._keep(key, shape, *simplify(shape, least_triangles, check), own)
+            known = self._keep(key, shape, *simplify(shape, least_triangles, check, seams), own)
         work.add(own)
         levels = replay(mesh, known.halvings, places)
         ratio = _shrinkage(mesh, levels) / max(known.shrinkage, 1e-30)
@@ -213,11 +215,11 @@ def size_of_levels(levels):
     )
 
 
-def _shape_key(mesh, positions, places, least_triangles):
-    """Hash what the collapses depend on: places, the triangles between them and their slots."""
+def _shape_key(mesh, positions, places, seams, least_triangles):
+    """Hash what the collapses depend on: places, the triangles between them, slots and seams."""
     shape = _bare(mesh, positions, places)
     digest = hashlib.blake2b(f"{least_triangles} {mesh.slots}".encode(), digest_size=20)
-    for array in (shape.positions, shape.triangles):
+    for array in (shape.positions, shape.triangles, seams):
         digest.update(f"|{array.dtype} {array.shape}|".encode())
         digest.update(np.ascontiguousarray(array))
     return digest.hexdigest()

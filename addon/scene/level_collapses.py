@@ -39,10 +39,13 @@ class Halving:
         int32; the place of each vertex: those of one place are the sides of a seam.
     groups : ndarray of shape (P,)
         int32; the place that each place merges into, in the next level.
+    seams : ndarray of shape (E, 2)
+        int32; places at the ends of edges where more than normals change.
     """
 
     places: np.ndarray
     groups: np.ndarray
+    seams: np.ndarray
 
 
 class Surface:
@@ -53,6 +56,8 @@ class Surface:
     mesh : MeshSnapshot
     places : ndarray of shape (V,)
         Of its vertices.
+    seams : ndarray of shape (E, 2)
+        Of its places; see `level_seams`.
     parts : ndarray of shape (P,), optional
         The part of each place, where that is known.
 
@@ -69,8 +74,9 @@ class Surface:
         Length of the normals: twice the areas.
     """
 
-    def __init__(self, mesh, places, parts=None):
+    def __init__(self, mesh, places, seams, parts=None):
         self._parts = parts
+        self.seams = seams
         self.places = places
         self.points = _points(mesh.positions, places).astype(np.float64)
         self.faces = places[mesh.triangles]
@@ -180,7 +186,8 @@ def decimate(surface, triangles, slots=(), check=None):
         faces, normal = faces[proper], normal[:, proper]
         border, owner = borders(faces, len(points))
     if len(faces) == 0:
-        return Halving(surface.places, _groups(pairs, len(points), 0))
+        groups = _groups(pairs, len(points), 0)
+        return Halving(surface.places, groups, surface.seams)
     scaled = _scaled(surface, points, faces)
     apexes, cones = _cones(scaled, border, owner, normal)
     left = left * len(faces) + len(cones) // 2
@@ -192,7 +199,8 @@ def decimate(surface, triangles, slots=(), check=None):
         if check is not None:
             check()
         collapses.append(_collapse(scaled, faces[patch], share, len(patch) < len(faces)))
-    return Halving(surface.places, _groups(np.concatenate(collapses), len(points), len(apexes)))
+    groups = _groups(np.concatenate(collapses), len(points), len(apexes))
+    return Halving(surface.places, groups, surface.seams)
 
 
 def _scaled(surface, points, faces):

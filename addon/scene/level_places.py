@@ -19,7 +19,7 @@ _PULL = 0.003
 _HOLD_ALONG_SEAMS = 2.0
 
 
-def merged_places(surface, groups, seams):
+def merged_places(surface, groups):
     """Return where the groups of places merge to.
 
     Parameters
@@ -27,8 +27,6 @@ def merged_places(surface, groups, seams):
     surface : Surface
     groups : ndarray of shape (P,)
         The new place of each old one.
-    seams : tuple of two ndarray
-        See `seam_edges`; they hold what merges as borders do.
 
     Returns
     -------
@@ -47,34 +45,25 @@ def merged_places(surface, groups, seams):
     _add_planes(quadric, pull, groups, moving, surface.faces, points, normal, length)
     trace = quadric[0] + quadric[3] + quadric[5]
     hold = np.where(trace > 0.0, _PULL * trace, 1.0)
-    for edges, owner in (surface.borders, seams):
-        if len(edges) == 0:
-            continue
-        along = points[edges[:, 1]] - points[edges[:, 0]]
-        unit = normal[:, owner] / np.maximum(length[owner], 1e-300)
-        outward = np.cross(along, unit.T).T
-        weight = np.sqrt(np.square(outward).sum(axis=0))
-        # Weighted by its square, against a vector as long as itself.
-        outward *= _BORDER_WEIGHT * weight
+    border, owner = surface.borders
+    if len(border):
+        across = normal[:, owner] / np.maximum(length[owner], 1e-300)
         _add_planes(
-            quadric, pull, groups, moving, edges, points, outward, _BORDER_WEIGHT * weight**2
+            quadric, pull, groups, moving, border, points, *_through(points, border, across)
         )
     held = quadric.copy()
-    edges, _ = seams
-    if len(edges):
+    if len(surface.seams):
+        across = _place_normals(surface)[:, surface.seams].sum(axis=2)
+        across /= np.maximum(np.sqrt(np.square(across).sum(axis=0)), 1e-300)
+        planes = _through(points, surface.seams, across)
+        _add_planes(quadric, pull, groups, moving, surface.seams, points, *planes)
+        held = quadric.copy()
+        along = (points[surface.seams[:, 1]] - points[surface.seams[:, 0]]).T
+        size = np.square(along).sum(axis=0)
+        along *= _HOLD_ALONG_SEAMS * np.sqrt(size)
         unused = np.zeros((3, count))
-        along = (points[edges[:, 1]] - points[edges[:, 0]]).T
-        weight = _HOLD_ALONG_SEAMS * np.sqrt(np.square(along).sum(axis=0))
-        _add_planes(
-            held,
-            unused,
-            groups,
-            moving,
-            edges,
-            points,
-            weight * along,
-            weight * weight / _HOLD_ALONG_SEAMS,
-        )
+        weight = _HOLD_ALONG_SEAMS * size
+        _add_planes(held, unused, groups, moving, surface.seams, points, along, weight)
     for row in (0, 3, 5):
         held[row] += hold
     move = _move(quadric, held, pull, mean)
@@ -86,6 +75,30 @@ def merged_places(surface, groups, seams):
     move *= np.sqrt(np.minimum(farthest / np.maximum(distance, 1e-300), 1.0))
     moved = mean + move
     return np.where(moving, moved, mean).T + center
+
+
+def _through(points, edges, across):
+    """Return the planes through edges that hold what lies there, and their weights.
+
+    Parameters
+    ----------
+    points : ndarray of shape (P, 3)
+    edges : ndarray of shape (E, 2)
+    across : ndarray of shape (3, E)
+        Unit normals of the surface there.
+    """
+    outward = np.cross(points[edges[:, 1]] - points[edges[:, 0]], across.T).T
+    weight = np.sqrt(np.square(outward).sum(axis=0))
+    # Weighted by its square, against a vector as long as itself.
+    return _BORDER_WEIGHT * weight * outward, _BORDER_WEIGHT * weight**2
+
+
+def _place_normals(surface):
+    normal = np.zeros((3, len(surface.points)))
+    for total, values in zip(normal, surface.normal, strict=True):
+        for corner in surface.faces.T:
+            total += np.bincount(corner, values, len(surface.points))
+    return normal
 
 
 def _add_planes(quadric, pull, groups, moving, corners, points, normal, weight):

@@ -1,7 +1,8 @@
 """Where a texture, vertex colours or the material change from one triangle to its neighbour.
 
 Such seams are lines on the surface. A place that leaves its seam would pull one side's texture
-over the other's.
+over the other's. At further levels, seams follow by the places that merge, so that meshes of one
+shape with the same seams merge alike, whatever else is on them.
 """
 
 import numpy as np
@@ -10,38 +11,37 @@ import numpy as np
 _MOST_SHARE = 0.3
 
 
-def seam_edges(mesh, surface):
+def seam_edges(mesh, places):
     """Find the edges of which the triangles on both sides differ in more than their normals.
 
     Parameters
     ----------
     mesh : MeshSnapshot
-    surface : Surface
-        Of its places.
+    places : ndarray of shape (V,)
+        Of its vertices.
 
     Returns
     -------
-    edges : ndarray of shape (E, 2)
-        Places; one row for each triangle at a seam.
-    owners : ndarray of shape (E,)
-        Those triangles.
+    ndarray of shape (E, 2)
+        int32; pairs of places, each once and sorted.
     """
-    none = np.empty((0, 2), np.int64), np.empty(0, np.int64)
+    none = np.empty((0, 2), np.int32)
+    count = int(places.max(initial=-1)) + 1
+    faces, vertices = places[mesh.triangles], mesh.triangles
     columns = [
         np.ascontiguousarray(values[:, k], np.float32)
         for key, values in mesh.attributes.items()
         if key != "normal"
         for k in range(values.shape[1])
     ]
-    split = _split(surface, columns) if len(mesh.positions) > len(surface.points) else None
+    split = _split(places, columns, count) if len(places) > count else None
     slot_of = None
     if len(mesh.slots) > 1:
         slot_of = np.repeat(np.arange(len(mesh.slots)), [count for _, _, count in mesh.slots])
-        between = _between(surface, slot_of)
+        between = _between(faces, slot_of, count)
         split = between if split is None else split | between
     if split is None or not split.any():
         return none
-    faces, vertices = surface.faces, mesh.triangles
     ends, corners, owners = [], [], []
     for k in range(3):
         j = (k + 1) % 3
@@ -63,28 +63,49 @@ def seam_edges(mesh, surface):
         differs |= slot_of[owners[first]] != slot_of[owners[second]]
     for column in columns:
         differs |= (column[corners[first]] != column[corners[second]]).any(axis=1)
-    found = np.concatenate([first[differs], second[differs]])
-    if len(found) == 0 or len(found) > _MOST_SHARE * 3 * len(faces):
+    found = np.unique(keys[first[differs]])
+    if len(found) == 0 or len(found) > _MOST_SHARE * 1.5 * len(faces):
         return none
-    return ends[found], owners[found]
+    return _pairs(found)
 
 
-def _split(surface, columns):
+def following_seams(seams, number):
+    """Return the seams of the next level.
+
+    Parameters
+    ----------
+    seams : ndarray of shape (E, 2)
+    number : ndarray of shape (P,)
+        The place that each place becomes, -1 where nothing is left.
+
+    Returns
+    -------
+    ndarray of shape (F, 2)
+        int32.
+    """
+    ends = np.sort(number[seams], axis=1).astype(np.int64)
+    ends = ends[(ends[:, 0] >= 0) & (ends[:, 0] != ends[:, 1])]
+    return _pairs(np.unique((ends[:, 0] << 32) | ends[:, 1]))
+
+
+def _pairs(keys):
+    return np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1).astype(np.int32)
+
+
+def _split(places, columns, count):
     """Return which places have vertices of different values."""
-    count = len(surface.points)
     own = np.zeros(count, np.int64)
-    own[surface.places[::-1]] = np.arange(len(surface.places))[::-1]
+    own[places[::-1]] = np.arange(len(places))[::-1]
     split = np.zeros(count, bool)
     for column in columns:
-        split[surface.places[column != column[own][surface.places]]] = True
+        split[places[column != column[own][places]]] = True
     return split
 
 
-def _between(surface, slot_of):
+def _between(faces, slot_of, count):
     """Return which places have triangles of several materials."""
-    count = len(surface.points)
     low, high = np.full(count, slot_of.max() + 1), np.full(count, -1)
-    for corner in surface.faces.T:
+    for corner in faces.T:
         np.minimum.at(low, corner, slot_of)
         np.maximum.at(high, corner, slot_of)
     return low < high

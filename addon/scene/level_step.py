@@ -10,7 +10,6 @@ import numpy as np
 from .level_parts import find_pairs, following_parts, grown
 from .level_places import merged_places
 from .level_projection import Projection, vertex_areas
-from .level_seams import seam_edges
 from .level_shape import Shape
 
 
@@ -49,7 +48,7 @@ class Step:
         self.whole = np.arange(surface.part_count)
         if self.pairs is not None:
             self.whole[self.pairs.goes] = self.pairs.stays
-        points = merged_places(surface, groups, seam_edges(mesh, surface))
+        points = merged_places(surface, groups)
         fixed = np.zeros(len(points), bool)
         if self.pairs is not None:
             places, where = grown(surface, self.pairs)

@@ -26,10 +26,20 @@ from .level_collapses import (
     stable_order,
     weld,
 )
+from .level_seams import following_seams, seam_edges
 from .level_step import Step
 from .snapshot import MeshSnapshot, next_uid
 
-__all__ = ["Halving", "MeshLevel", "available", "replay", "simplify", "slots_of", "surviving"]
+__all__ = [
+    "Halving",
+    "MeshLevel",
+    "available",
+    "replay",
+    "seam_edges",
+    "simplify",
+    "slots_of",
+    "surviving",
+]
 
 # A level that keeps more than this share of its predecessor's triangles is not worth its memory.
 _LEAST_REDUCTION = 0.75
@@ -62,7 +72,7 @@ def available():
     return True
 
 
-def simplify(mesh, least_triangles, check=None):
+def simplify(mesh, least_triangles, check=None, seams=None):
     """Make the levels of a mesh.
 
     Parameters
@@ -73,6 +83,8 @@ def simplify(mesh, least_triangles, check=None):
     check : callable, optional
         Called now and then with the triangles that the mesh has lost so far; it may raise to end
         the work.
+    seams : ndarray of shape (E, 2), optional
+        See `seam_edges`; default: those of the mesh.
 
     Returns
     -------
@@ -84,48 +96,21 @@ def simplify(mesh, least_triangles, check=None):
     if not available():
         return (), ()
     places = weld(mesh.positions)
-    if not _has_own_seams(mesh, places):
-        made = list(_halved(mesh, places, least_triangles, check))
-        return tuple(level for level, _ in made), tuple(halving for _, halving in made)
-    # Which places merge does not depend on what is on them, so that meshes of one shape share it.
-    first = np.zeros(int(places.max(initial=-1)) + 1, np.intp)
-    first[places[::-1]] = np.arange(len(places) - 1, -1, -1)
-    points = mesh.positions[first] + np.float32(0.0)
-    bare = MeshSnapshot(mesh.uid, mesh.name, points, places[mesh.triangles], mesh.slots)
-    plain = np.arange(len(points), dtype=np.int32)
-    shared = [halving for _, halving in _halved(bare, plain, least_triangles, check)]
-    made = list(_followed(mesh, shared, places))
-    return tuple(level for level, _ in made), tuple(halving for _, halving in made)
-
-
-def _has_own_seams(mesh, places):
-    """Whether vertices of one place differ in more than their normals."""
-    split = len(places) > int(places.max(initial=-1)) + 1
-    return split and any(key != "normal" for key in mesh.attributes)
-
-
-def _halved(mesh, places, least_triangles, check):
-    """Give level after level, and how it followed."""
+    if seams is None:
+        seams = seam_edges(mesh, places)
+    levels, halvings = [], []
     full, parts = len(mesh.triangles), None
     while len(mesh.triangles) >= 2 * least_triangles:
         watch = None if check is None else partial(check, full - len(mesh.triangles))
-        surface = Surface(mesh, places, parts)
+        surface = Surface(mesh, places, seams, parts)
         halving = decimate(surface, len(mesh.triangles) // 2, mesh.slots, watch)
-        level, places, parts = _merge(mesh, surface, halving)
+        level, places, parts, seams = _merge(mesh, surface, halving)
         if not 0 < len(level.triangles) <= _LEAST_REDUCTION * len(mesh.triangles):
-            return
-        yield level, halving
+            break
+        levels.append(level)
+        halvings.append(halving)
         mesh = level
-
-
-def _followed(mesh, halvings, places=None):
-    """Give level after level by known halvings, and these with the places of the mesh itself."""
-    parts, own = None, places is not None
-    for halving in halvings:
-        if own:
-            halving = replace(halving, places=places)
-        mesh, places, parts = _merge(mesh, Surface(mesh, halving.places, parts), halving)
-        yield mesh, halving
+    return tuple(levels), tuple(halvings)
 
 
 def replay(mesh, halvings, places=None):
@@ -145,11 +130,19 @@ def replay(mesh, halvings, places=None):
     -------
     tuple of MeshLevel
     """
-    return tuple(level for level, _ in _followed(mesh, halvings, places))
+    levels, parts = [], None
+    own = places is not None
+    for halving in halvings:
+        if own:
+            halving = replace(halving, places=places)
+        surface = Surface(mesh, halving.places, halving.seams, parts)
+        mesh, places, parts, _ = _merge(mesh, surface, halving)
+        levels.append(mesh)
+    return tuple(levels)
 
 
 def _merge(mesh, surface, halving):
-    """Return the next level, and the place of each of its vertices and the part of each place."""
+    """Return the next level, the place of each of its vertices, and the places' parts and seams."""
     place = halving.groups[halving.places]
     kept = surviving(surface.faces, halving.groups[surface.faces])
     old = mesh.triangles[kept]
@@ -175,7 +168,9 @@ def _merge(mesh, surface, halving):
     following = _without_gaps(vertex_places)
     parts = np.zeros(int(following.max(initial=-1)) + 1, step.parts.dtype)
     parts[following] = step.parts[vertex_places]
-    return level, following, parts
+    number = np.full(len(points), -1, np.int32)
+    number[vertex_places] = following
+    return level, following, parts, following_seams(surface.seams, number[halving.groups])
 
 
 def surviving(before, corners):

