@@ -198,7 +198,7 @@ def build_table(shadows):
 
 
 def build_subject():
-    """Put a porcelain figurine on two books."""
+    """Put a porcelain bird on two books; return what the camera focuses on."""
     paper = material("Paper", (0.70, 0.60, 0.44), roughness=0.9)
     below = 0.0
     covers = (
@@ -223,25 +223,143 @@ def build_subject():
             place = spine @ Matrix.Translation((shift * size[0], -0.0012, 0.0))
             add("Band", box((0.005, 0.0022, size[2] * 0.94)), gold, place, smooth=False)
         below += size[2]
+    return build_bird(below)
 
-    figurine = bmesh.new()
-    bmesh.ops.create_monkey(figurine)
-    porcelain = material("Porcelain", (0.82, 0.76, 0.68), roughness=0.22)
-    scale = 0.066
+
+def build_bird(below):
+    """Put a painted porcelain bird on the books; return its place.
+
+    Body, head and tail are metaballs, which flow into each other as clay does, and become a mesh
+    that is painted vertex by vertex. The bird looks along -y and a little to the left.
+    """
     place = (
-        Matrix.Translation((0.0, 0.0, below + 0.054))
-        @ Matrix.Rotation(math.radians(-22), 4, "Z")
-        @ Matrix.Rotation(math.radians(-20), 4, "X")
-        @ Matrix.Scale(scale, 4)
+        Matrix.Translation((0.0, 0.0, below))
+        @ Matrix.Rotation(math.radians(-34), 4, "Z")
+        @ Matrix.Scale(1.12, 4)
     )
-    suzanne = add("Suzanne", figurine, porcelain, place)
-    smoothing = suzanne.modifiers.new("Subdivision", "SUBSURF")
-    smoothing.levels = smoothing.render_levels = 2
-    eye = bpy.data.objects.new("Focus", None)
-    eye.location = place @ Vector((-0.32, -0.85, 0.25))
-    eye.empty_display_size = 0.02
-    bpy.context.scene.collection.objects.link(eye)
-    return eye
+    body = _porcelain(
+        "Bird",
+        (
+            # Centre, radii, tilt about x in degrees.
+            ((0.0, 0.004, 0.046), (0.032, 0.042, 0.035), -24.0),
+            ((0.0, -0.012, 0.038), (0.029, 0.030, 0.031), 0.0),
+            ((0.0, -0.026, 0.083), (0.0255, 0.0265, 0.0245), 0.0),
+            ((0.0, -0.020, 0.064), (0.023, 0.025, 0.026), 0.0),
+            ((0.0, 0.050, 0.050), (0.013, 0.034, 0.0085), -30.0),
+            ((0.0, 0.083, 0.067), (0.011, 0.030, 0.0055), -26.0),
+        ),
+        place,
+    )
+    paint(body, _feathers)
+    wings = material("Wing glaze", (0.012, 0.055, 0.16), roughness=0.16)
+    for side in (-1, 1):
+        wing = sphere(1.0, 48)
+        _taper(wing, 0.75)
+        turn = (
+            Matrix.Translation((side * 0.0285, 0.018, 0.051))
+            @ Matrix.Rotation(math.radians(-27), 4, "X")
+            @ Matrix.Rotation(math.radians(side * 12), 4, "Z")
+            @ Matrix.Diagonal((0.0062, 0.040, 0.0215, 1.0))
+        )
+        add("Wing", wing, wings, place @ turn)
+    horn = material("Beak", (0.75, 0.30, 0.05), roughness=0.3)
+    beak = lathe([(0.0078, 0.0), (0.0062, 0.004), (0.0038, 0.0095), (0.0, 0.0165)], 24)
+    turn = Matrix.Translation((0.0, -0.0495, 0.081)) @ Matrix.Rotation(math.radians(97), 4, "X")
+    add("Beak", beak, horn, place @ turn)
+    black = material("Eye", (0.004, 0.004, 0.005), roughness=0.05)
+    shine = emission("Glint", (1.0, 0.95, 0.85), 2.5)
+    ring = material("Eye ring", (0.86, 0.83, 0.76), roughness=0.2)
+    eye = None
+    for side in (-1, 1):
+        centre = Vector((side * 0.0165, -0.0425, 0.0905))
+        out = (centre - Vector((0.0, -0.026, 0.083))).normalized()
+        add("Eye ring", sphere(0.0062, 32), ring, place @ Matrix.Translation(centre - 0.0021 * out))
+        add("Eye", sphere(0.0052, 32), black, place @ Matrix.Translation(centre))
+        spark = centre + 0.0046 * (out + Vector((-0.25, -0.2, 0.55))).normalized()
+        add("Glint", sphere(0.00085, 12), shine, place @ Matrix.Translation(spark))
+        if side < 0:
+            eye = place @ (centre + 0.005 * out)
+    gold = material("Gold foot", (0.95, 0.62, 0.20), roughness=0.25)
+    foot = [(0.0, 0.010), (0.010, 0.010), (0.0145, 0.006), (0.021, 0.0025), (0.022, 0.0)]
+    add("Foot", lathe(foot), gold, place @ Matrix.Translation((0.0, 0.0, 0.0)))
+    target = bpy.data.objects.new("Focus", None)
+    target.location = eye
+    target.empty_display_size = 0.02
+    bpy.context.scene.collection.objects.link(target)
+    return target
+
+
+def _porcelain(name, parts, place):
+    """Make one smooth mesh of ellipsoids that flow into each other."""
+    data = bpy.data.metaballs.new(name)
+    data.resolution = data.render_resolution = 0.0016
+    data.threshold = 0.35
+    for centre, radii, tilt in parts:
+        ball = data.elements.new(type="ELLIPSOID")
+        # An element's surface lies at about three quarters of its radius at this threshold.
+        ball.radius = 1.55 * max(radii)
+        ball.size_x, ball.size_y, ball.size_z = (size / max(radii) for size in radii)
+        ball.co = centre
+        ball.rotation = Matrix.Rotation(math.radians(tilt), 3, "X").to_quaternion()
+    made = bpy.data.objects.new(name, data)
+    bpy.context.scene.collection.objects.link(made)
+    graph = bpy.context.evaluated_depsgraph_get()
+    mesh = bpy.data.meshes.new_from_object(made.evaluated_get(graph))
+    bpy.data.objects.remove(made)
+    mesh.shade_smooth()
+    glaze = material("Glaze", (1.0, 1.0, 1.0), roughness=0.14)
+    tree = glaze.node_tree
+    colors = tree.nodes.new("ShaderNodeVertexColor")
+    colors.layer_name = "Paint"
+    tree.links.new(colors.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    mesh.materials.clear()
+    mesh.materials.append(glaze)
+    return add(name, mesh, None, place)
+
+
+def paint(made, colors):
+    """Give each vertex a colour, computed from its place in the object."""
+    mesh = made.data
+    places = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", places)
+    layer = mesh.color_attributes.new("Paint", "FLOAT_COLOR", "POINT")
+    values = np.ones((len(mesh.vertices), 4), np.float32)
+    values[:, :3] = colors(places.reshape(-1, 3))
+    layer.data.foreach_set("color", values.ravel())
+
+
+def _feathers(places):
+    """Return the colours of a bluethroat: blue above, an orange breast, a white belly and cheek."""
+    x, y, z = places.T
+    blue = np.array([0.015, 0.11, 0.30])
+    orange = np.array([0.72, 0.17, 0.028])
+    white = np.array([0.82, 0.76, 0.66])
+    # Fine dark rows on the back, as a brush draws them.
+    strokes = 0.82 + 0.18 * np.sin(z * 1500.0 + 3.0 * np.sin(x * 420.0) + y * 380.0)
+    back = blue * strokes[:, None]
+    breast = _step((-y - 0.012 + 0.35 * (z - 0.05)) / 0.012) * _step((0.074 - z) / 0.006)
+    belly = _step((0.036 - z + 0.25 * y) / 0.012)
+    cheek = _step(1.0 - np.hypot(np.abs(x) - 0.019, 0.8 * (y + 0.030)) / 0.010)
+    cheek *= _step(1.0 - np.abs(z - 0.077) / 0.0075) * _step((-y - 0.012) / 0.004)
+    color = back
+    for share, paint_color in ((breast, orange), (belly, white), (cheek, white)):
+        color = color + share[:, None] * (paint_color - color)
+    return color
+
+
+def _step(value):
+    """Go smoothly from 0 at -1 to 1 at 1."""
+    t = np.clip(0.5 * value + 0.5, 0.0, 1.0)
+    return t * t * (3.0 - 2.0 * t)
+
+
+def _taper(mesh, share):
+    """Make a unit sphere narrow towards +y, as a folded wing is."""
+    for vertex in mesh.verts:
+        along = 0.5 * (vertex.co.y + 1.0)
+        vertex.co.x *= 1.0 - share * along
+        vertex.co.z *= 1.0 - share * along
+        vertex.co.z += 0.35 * along * along
 
 
 def build_cup(place):
@@ -417,8 +535,6 @@ def build(width=960, seed=3):
     register_engine()
     scene = bpy.context.scene
     scene.render.engine = "APLANAT"
-    scene.aplanat.method = "REFERENCE"
-    scene.aplanat.render_samples = 384
     scene.name = "Table-top at night"
     world = scene.world = bpy.data.worlds.new("Night")
     background = world.node_tree.nodes["Background"]
