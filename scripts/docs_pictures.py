@@ -3,8 +3,8 @@
 Usage: scripts/docs_pictures.py [-o FOLDER] [STEP ...]
 
 Run it with the checkout's Python (.venv/bin/python) after scripts/demo. It installs the extension
-into a user folder of its own, opens Blender on a virtual screen, carries out each step as a newcomer
-would, and writes docs/images/step-*.jpg.
+into a user folder of its own, opens Blender on a virtual screen, carries out each step as a
+newcomer would, and writes docs/images/step-*.jpg.
 """
 
 import argparse
@@ -74,10 +74,11 @@ def busy():
     background = importlib.import_module("bl_ext.user_default.aplanat.addon.ui.background")
     return background.progress() is not None
 
-def text_of_viewports():
+def converged():
     import gc, importlib
     kind = importlib.import_module("bl_ext.user_default.aplanat.addon.engine.viewport").Viewport
-    return [v.text for v in gc.get_objects() if isinstance(v, kind)]
+    found = [v for v in gc.get_objects() if isinstance(v, kind) and v._renderer is not None]
+    return bool(found) and all(v._renderer.finished() for v in found)
 """
 
 
@@ -160,8 +161,7 @@ class Steps:
         """Show the Rendered viewport through the camera."""
         self.window.run("rendered()")
         self.window.wait_for(
-            "any(t.startswith('Sample') and t.split()[1].split('/')[0] == t.split()[1].split('/')[1]"
-            " for t in text_of_viewports())",
+            "converged()",
             timeout=900,
         )
         self.picture("step-viewport")
