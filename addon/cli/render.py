@@ -10,6 +10,7 @@ import bpy
 
 from ..device.context import ensure_context, max_texture_size
 from ..engine import outcome
+from ..engine.report import without_count
 from ..errors import (
     AplanatError,
     DeviceLimitError,
@@ -86,6 +87,7 @@ class Warnings:
 
     def __init__(self, console, strict=False):
         self.lines = []
+        self._told = set()
         self.strict = strict
         self._console = console
 
@@ -98,7 +100,8 @@ class Warnings:
             If there are any and the command is strict.
         """
         for line in lines:
-            if line not in self.lines:
+            if without_count(line) not in self._told:
+                self._told.add(without_count(line))
                 self.lines.append(line)
                 self._console.say(f"warning: {line}")
         if self.strict and self.lines:

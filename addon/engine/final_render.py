@@ -22,7 +22,7 @@ from .pacing import Pacer
 from .pipeline import FrameRenderer
 from .plan import plan_frame
 from .render_passes import cryptomatte_metadata, fill_layer, render_pass
-from .report import frame_report
+from .report import frame_report, without_count
 from .scene_buffers import SceneBuffers
 from .views import views_of
 
@@ -114,9 +114,9 @@ def _render_view(engine, depsgraph, heard, extractor, view):
 def _show_report(engine, heard, lines):
     heard.note(lines)
     for line in lines:
-        if line not in _reported:
+        if without_count(line) not in _reported:
             engine.report({"WARNING"}, line)
-    _reported.update(lines)
+            _reported.add(without_count(line))
 
 
 def _open_device():

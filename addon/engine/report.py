@@ -7,6 +7,11 @@ and to the `RenderOutcome` of whoever listens (``--json``, ``--stats``, ``--stri
 tells the first of them.
 """
 
+import re
+
+# How many copies of an object a warning is about changes from frame to frame.
+_COUNT = re.compile(r" \(\d+ copies\)$")
+
 
 def frame_report(snapshot, renderer=None):
     """Return the warnings of a frame, each once.
@@ -23,6 +28,11 @@ def frame_report(snapshot, renderer=None):
     """
     drawn = renderer.report if renderer is not None else ()
     return tuple(dict.fromkeys([*snapshot.camera.report, *snapshot.content.report, *drawn]))
+
+
+def without_count(line):
+    """Return what a warning says whatever the frame: an animation tells it once."""
+    return _COUNT.sub("", line)
 
 
 def in_short(lines):

@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 from addon.engine.outcome import RenderOutcome
-from addon.engine.report import frame_report, in_short
+from addon.engine.report import frame_report, in_short, without_count
 from addon.errors import StrictError
 
 
@@ -38,3 +38,9 @@ def test_only_a_strict_listener_stops_at_warnings():
         except StrictError as error:
             stopped = error.warnings
         assert stopped == (("a", "b") if strict else None)
+
+
+def test_a_warning_about_more_copies_is_the_same_warning():
+    line = "object 'Hair': hair curves cannot be drawn; left out"
+    assert without_count(f"{line} (12 copies)") == without_count(line) == line
+    assert without_count("scene 'A (2 copies)': left out") == "scene 'A (2 copies)': left out"
