@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bpy
 
-from ..errors import InputError
+from ..errors import OutputError
 from ..files.whole_file import check_writable
 from .pictures import uses_compositor
 
@@ -33,12 +33,17 @@ class FileOutputs:
         if uses_compositor(scene):
             self._nodes = list(_nodes(scene.compositing_node_group, set()))
         self._before = []
+        # Why the files of a node cannot be written, by its number.
+        self._lost = {}
 
     def __enter__(self):
         """Redirect the nodes."""
         places = [_absolute(node) for node in self._nodes]
-        for node, (folder, _) in zip(self._nodes, places, strict=True):
-            _check_folder(node, folder)
+        for number, (folder, _) in enumerate(places):
+            try:
+                _check_folder(folder)
+            except OutputError as error:
+                self._lost[number] = str(error)
         self._before = [(node.directory, node.file_name) for node in self._nodes]
         for number, (node, (folder, name)) in enumerate(zip(self._nodes, places, strict=True)):
             node.directory = self._held.stand_in(_room(number), folder)
@@ -66,14 +71,21 @@ class FileOutputs:
         """
         files, warnings = [], []
         for number, node in enumerate(self._nodes):
+            if not _writes(node):
+                continue
             written = self._held.found(_room(number))
-            files += written
-            if not written and _writes(node):
-                tree = node.id_data.name
+            told = f"File Output node '{node.name}' of '{node.id_data.name}'"
+            if number in self._lost:
+                # Where the scene comes from, the folder may have been there: no reason to refuse
+                # the rest of the picture.
+                warnings.append(f"{told}: {self._lost[number]}; its files are left out")
+            elif not written:
                 warnings.append(
-                    f"File Output node '{node.name}' of '{tree}' wrote no file; check its folder"
-                    " and file name: a {variable} in them may be unknown"
+                    f"{told} wrote no file; check its folder and file name: a {{variable}} in them"
+                    " may be unknown"
                 )
+            else:
+                files += written
         return files, warnings
 
 
@@ -117,14 +129,11 @@ def _blend_folder(_match):
     return os.path.dirname(bpy.data.filepath)
 
 
-def _check_folder(node, folder):
+def _check_folder(folder):
     known = folder.partition("{")[0]
     existing = Path(known)
     while not existing.exists():
         existing = existing.parent
     if not existing.is_dir():
-        raise InputError(
-            f"File Output node '{node.name}' of '{node.id_data.name}': '{existing}' is no folder;"
-            " choose another one"
-        )
+        raise OutputError(f"cannot write to '{folder}': '{existing}' is no folder")
     check_writable(existing / "frame")

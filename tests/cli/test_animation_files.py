@@ -220,19 +220,29 @@ def test_a_node_whose_path_cannot_be_resolved_is_told(aplanat, make_blend, tmp_p
     assert not list(tmp_path.iterdir())
 
 
-def test_a_node_that_cannot_write_there_is_refused_before_anything_is_drawn(
+def test_a_node_that_cannot_write_there_is_told_and_the_rest_is_written(
     aplanat, make_blend, tmp_path
 ):
     (tmp_path / "file").write_text("in the way")
 
     def change(bpy, scene):
         tree, layers = add_compositor(bpy, scene)
-        add_file_output(tree, layers.outputs["Image"], f"{tmp_path}/file/x/", "a_", "PNG")
+        image = layers.outputs["Image"]
+        add_file_output(tree, image, f"{tmp_path}/file/x/", "a_", "PNG")
+        add_file_output(tree, image, f"{tmp_path}/there/", "b_", "PNG")
 
-    done = aplanat("render", make_blend(change), "-o", tmp_path / "a.png")
-    assert done.code == 2
-    assert "File Output node" in done.err and "is no folder" in done.err
-    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+    words = ("render", make_blend(change), "-o", tmp_path / "a.png", "--frame", "1", "--json")
+    done = aplanat(*words, "--strict")
+    assert done.code == 2 and not (tmp_path / "a.png").exists()
+    done = aplanat(*words)
+    assert done.code == 0
+    (line,) = done.answer["warnings"]
+    assert line.startswith("File Output node 'File Output'") and "is no folder" in line
+    assert done.answer["files"] == [
+        str(tmp_path / "a.png"),
+        str(tmp_path / "there" / "b_Image0001.png"),
+    ]
+    assert (tmp_path / "file").read_text() == "in the way"
 
 
 def test_nodes_write_what_the_engine_made(aplanat, make_blend, tmp_path):
