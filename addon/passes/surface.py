@@ -236,7 +236,8 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
         samplers += [("FLOAT_2D", name) for name in LIGHTING_TEXTURES]
     if target.names_material and not holdout:
         push_constants.append(("FLOAT", "material_id"))
-    fragment = shader_source.join((*_LIBRARIES, shader_source.Text(generated), target.fragment))
+    libraries = (*_LIBRARIES, *(code.libraries if shades else ()))
+    fragment = shader_source.join((*libraries, shader_source.Text(generated), target.fragment))
     return ShaderInfo(
         name="aplanat_surface",
         vertex=vertex,

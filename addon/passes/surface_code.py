@@ -10,8 +10,9 @@ import numpy as np
 
 from ..device.geometry import attribute_identifier
 from ..scene.surface_graph import Constant, Link
-from .surface_nodes import GENERATORS
+from . import surface_nodes, surface_values
 
+_GENERATORS = surface_nodes.GENERATORS | surface_values.GENERATORS
 _ATTRIBUTE_COMPONENTS = {"normal": 3, "uv": 2, "color": 4}
 
 
@@ -36,6 +37,8 @@ class SurfaceCode:
     glows : bool
         The surface may add light to what it lets through, so its light cannot be decided by the
         same chance as its opacity.
+    libraries : tuple of str
+        Below ``gpu_shaders/``: what the code calls beside what every surface has.
     """
 
     source: str
@@ -45,6 +48,7 @@ class SurfaceCode:
     transparent: bool
     lit: bool = False
     glows: bool = False
+    libraries: tuple[str, ...] = ()
 
 
 @dataclass
@@ -93,6 +97,12 @@ class Writer:
         self.constants.append((*map(float, padded), 0.0))
         expression = f"material_buf.constants[{index}]"
         return expression + (".x" if wanted == "float" else ".xyz")
+
+    def table(self, rows):
+        """Add rows of 4 numbers to the constants and return the place of the first."""
+        first = len(self.constants)
+        self.constants += rows
+        return first
 
     def attribute(self, key):
         """Return the varying of a mesh attribute, or zero where the mesh lacks it."""
@@ -163,7 +173,8 @@ def generate(graph, available):
     used = frozenset((link.node, link.output) for link in links)
     writer = Writer(frozenset(available), used, graph.luminance)
     for node in graph.nodes:
-        writer.outputs.append(GENERATORS[node.kind](node, writer))
+        writer.outputs.append(_GENERATORS[node.kind](node, writer))
+    computes = any(node.kind in surface_values.GENERATORS for node in graph.nodes)
     surface = "closure_none()"
     if graph.surface is not None:
         surface = writer.value(graph.surface, "closure")
@@ -176,4 +187,5 @@ def generate(graph, available):
         transparent=surface in writer.transmitting,
         lit=writer.lit,
         glows=writer.glows and surface in writer.transmitting,
+        libraries=surface_values.LIBRARIES if computes else (),
     )

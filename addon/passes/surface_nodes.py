@@ -5,17 +5,9 @@ socket's identifier; types are GLSL's, and ``"color"`` for a vec3 that converts 
 luminance.
 """
 
-GENERATORS = {}
+from .surface_registry import generator_registry
 
-
-def generates(kind):
-    """Register the generator of a kind of node."""
-
-    def register(function):
-        GENERATORS[kind] = function
-        return function
-
-    return register
+GENERATORS, generates = generator_registry()
 
 
 @generates("none")

@@ -10,6 +10,9 @@ from .surface_graph import Constant
 
 # Of a white surface at most: tables of what lobes reflect are not exact.
 _REFLECTANCE = 1.1
+# Blend modes whose result is never above both colours and their product.
+_BOUNDED_BLENDS = frozenset({"MIX", "DARKEN", "LIGHTEN", "MULTIPLY", "HUE", "COLOR", "VALUE"})
+_SORTING_KINDS = frozenset({"luminance", "separate", "combine"})
 # What a glossy surface brighter than white gains by light that it scatters again, at most.
 _REPEATED = 2.0
 
@@ -143,9 +146,30 @@ def _graph_bound(graph, mesh, images, reflected):
             # code may divide by it.
             bound = images[node.image].peak if node.image in images else 1.0
         else:
-            bound = np.inf
+            bound = _value_bound(node, of)
         bounds.append(float(bound))
     return bounds[graph.surface.node]
+
+
+def _value_bound(node, of):
+    """Bound what a node computes from numbers and colours; inf where nothing is known."""
+    if node.setting("clamp") and node.kind == "math" or node.setting("clamp_result"):
+        return 1.0
+    if node.kind in {"mix_color", "mix_value"}:
+        a, b = of(node.input("a")), of(node.input("b"))
+        # Beyond its ends a mix has no bound.
+        if node.setting("clamp_factor") and node.setting("blend", "MIX") in _BOUNDED_BLENDS:
+            return max(a, b, _product(a, b))
+    elif node.kind == "ramp":
+        return max(abs(value) for row in node.table for value in row)
+    elif node.kind == "hue_saturation":
+        color = of(node.input("Color"))
+        return max(color, _product(color, of(node.input("Value"))))
+    elif node.kind == "invert" and of(node.input("Fac")) <= 1.0:
+        return of(node.input("Color")) + 1.0
+    elif node.kind in _SORTING_KINDS and node.setting("model", "RGB") in {"RGB", "XYZ"}:
+        return max(of(source) for _, source in node.inputs)
+    return np.inf
 
 
 def _product(a, b):

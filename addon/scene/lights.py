@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 
-from .material_nodes import constant, constant_number, numbers_of
 from .node_tree import source_of
 from .snapshot import Light
+from .tree_reader import constant, constant_number, numbers_of
 
 # A row each of the light table: textures of this height exist on every device.
 MAX_LIGHTS = 8192

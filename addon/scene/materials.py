@@ -1,10 +1,13 @@
 """Blender's materials to `MaterialSnapshot`."""
 
+from . import material_nodes, value_nodes
 from .cryptomatte import cryptomatte_id
 from .images import ImageReader
-from .material_nodes import TreeReader
 from .snapshot import MaterialSnapshot, next_uid
 from .surface_graph import DEFAULT_GRAPH, Constant, Link, ShaderNode, SurfaceGraph
+from .tree_reader import TreeReader
+
+_READERS = material_nodes.READERS | value_nodes.READERS
 
 _INVISIBLE_GRAPH = SurfaceGraph(
     (ShaderNode("transparent", (("Color", Constant((1.0, 1.0, 1.0))),)),), Link(0, "BSDF")
@@ -92,7 +95,7 @@ class MaterialReader:
         output = tree and tree.get_output_node("EEVEE")
         if not output:
             return SurfaceGraph()
-        reader = TreeReader(f"material '{material.name}'", self.image_reader)
+        reader = TreeReader(f"material '{material.name}'", self.image_reader, _READERS)
         graph = reader.surface(output)
         if graph.surface is None and reader.linked(output, "Volume", ()):
             # The hull of a fog or smoke is not to be seen itself.

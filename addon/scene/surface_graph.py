@@ -39,12 +39,15 @@ class ShaderNode:
         Choices that change the code: attribute names, interpolation, blend types.
     image : int
         `ImageSnapshot.uid` of the node's image, 0 without one.
+    table : tuple of tuples of 4 float
+        Values at evenly spaced places from 0 to 1: of a ramp or of curves.
     """
 
     kind: str
     inputs: tuple[tuple[str, Constant | Link], ...] = ()
     settings: tuple[tuple[str, str], ...] = ()
     image: int = 0
+    table: tuple[tuple[float, ...], ...] = ()
 
     def input(self, name):
         """Return the input called `name`."""

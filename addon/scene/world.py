@@ -3,10 +3,11 @@
 import numpy as np
 
 from . import color_spaces
-from .material_nodes import constant, constant_number, euler_matrix, mapping_matrix, numbers_of
+from .material_nodes import euler_matrix, mapping_matrix
 from .node_tree import source_of
 from .snapshot import World
 from .surface_graph import LARGEST_RADIANCE, MISSING_IMAGE_COLOR
+from .tree_reader import constant, constant_number, numbers_of
 
 # How far a Mapping may be from a rotation.
 _ROTATION_TOLERANCE = 1e-4

@@ -127,6 +127,26 @@ def test_lamps_that_give_no_highlights_do_not_count():
     assert 1.5 <= bound(over, world=world) < 1.7
 
 
+def test_nodes_before_an_emission_keep_a_bound():
+    def lit(*nodes):
+        glow = ShaderNode(
+            "emission",
+            (("Color", Link(len(nodes) - 1, "Color")), ("Strength", Constant((2.0,)))),
+        )
+        return SurfaceGraph((*nodes, glow), Link(len(nodes), "Emission"))
+
+    red = Constant((3.0, 0.1, 0.1))
+    parts = (("factor", Constant((0.5,))), ("a", red), ("b", Constant((0.5, 0.5, 0.5))))
+    mix = ShaderNode("mix_color", parts, (("blend", "MIX"), ("clamp_factor", "1")))
+    assert bound(lit(mix)) == 6.0
+    added = ShaderNode("mix_color", parts, (("blend", "ADD"), ("clamp_factor", "1")))
+    assert bound(lit(added)) == np.inf
+    clamped = ShaderNode("mix_color", parts, (("blend", "ADD"), ("clamp_result", "1")))
+    assert bound(lit(clamped)) == 2.0
+    ramp = ShaderNode("ramp", (("Fac", Constant((0.5,))),), table=((0.1,) * 4, (0.7,) * 4))
+    assert bound(lit(ramp)) == pytest.approx(1.4)
+
+
 def test_only_gloss_looks_different_from_elsewhere():
     half = Constant((0.5,))
     assert not mirrors(emission_graph((1.0, 1.0, 1.0)))

@@ -190,3 +190,50 @@ def test_an_image_without_pixels_is_magenta_and_reported(bpy):
     snapshot, reader = read(material)
     assert snapshot.graph.nodes[0].input("Color") == Constant((1.0, 0.0, 1.0))
     assert reader.report == ["image 'gone' (//gone.png) cannot be read; drawn in magenta"]
+
+
+def test_images_behind_a_mix_are_read_and_those_behind_an_unknown_node_are_told(bpy):
+    material, tree = new_material(bpy, "Wall")
+    first = tree.node("TexImage", image=image(bpy, "a", random_pixels(0)))
+    second = tree.node("TexImage", image=image(bpy, "b", random_pixels(1)))
+    mix = tree.node("Mix", data_type="RGBA")
+    by_name = {socket.identifier: socket for socket in (*mix.inputs, *mix.outputs)}
+    tree.tree.links.new(first.outputs["Color"], by_name["A_Color"])
+    tree.tree.links.new(second.outputs["Color"], by_name["B_Color"])
+    glow = tree.emission(by_name["Result_Color"])
+    snapshot, reader = read(material)
+    assert kinds(snapshot).count("image_texture") == 2 and "mix_color" in kinds(snapshot)
+    assert reader.report == []
+    bevel = tree.node("Bevel")
+    tree.tree.links.new(bevel.outputs[0], glow.inputs["Color"])
+    _, reader = read(material)
+    assert reader.report == [
+        "material 'Wall': node 'Bevel' is not read; its socket's value is used"
+    ]
+
+
+def test_more_ramps_than_the_constants_hold_are_told(bpy):
+    material, tree = new_material(bpy)
+    value = tree.node("Value").outputs[0]
+    for _ in range(20):
+        value = tree.node("ValToRGB", {"Fac": value}).outputs[0]
+    tree.emission(value)
+    snapshot, reader = read(material)
+    rows = sum(len(node.table) for node in snapshot.graph.nodes)
+    assert rows <= 3584
+    assert reader.report == [
+        "material 'm': node 'Color Ramp' is not read; its socket's value is used"
+    ]
+
+
+def test_dragging_a_ramps_color_changes_constants_and_not_the_code(bpy):
+    from addon.passes.surface_code import generate
+
+    material, tree = new_material(bpy)
+    ramp = tree.node("ValToRGB")
+    tree.emission(ramp.outputs[0])
+    before = generate(read(material)[0].graph, ())
+    ramp.color_ramp.elements[0].color = (1.0, 0.0, 0.0, 1.0)
+    after = generate(read(material)[0].graph, ())
+    assert before.source == after.source
+    assert before.constants != after.constants
