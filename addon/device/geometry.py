@@ -79,6 +79,26 @@ def fullscreen_batch():
     return census.record("batch", gpu.types.GPUBatch(type="TRIS", buf=vertices))
 
 
+def rectangles_batch(rectangles):
+    """Return two triangles for each of some rectangles; attribute ``pos``.
+
+    Parameters
+    ----------
+    rectangles : ndarray of shape (R, 4)
+        Left, lower, right and upper edge, in clip space.
+    """
+    import gpu
+
+    corners = np.asarray(rectangles, np.float32)[:, [0, 1, 2, 1, 0, 3, 0, 3, 2, 1, 2, 3]]
+    corners = np.ascontiguousarray(corners.reshape(-1, 2))
+    vertex_format = gpu.types.GPUVertFormat()
+    vertex_format.attr_add(id="pos", comp_type="F32", len=2, fetch_mode="FLOAT")
+    vertices = gpu.types.GPUVertBuf(vertex_format, len(corners))
+    vertices.attr_fill("pos", corners)
+    census.record("vertex_buffer", vertices, corners.nbytes)
+    return census.record("batch", gpu.types.GPUBatch(type="TRIS", buf=vertices))
+
+
 def square_batch():
     """Return two triangles over the unit square; attribute ``pos``."""
     import gpu

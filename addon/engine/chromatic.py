@@ -10,7 +10,7 @@ tables of the field maps run over the distance from the axis in that plane, whic
 the tilt: the device then needs no arc tangent.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -85,6 +85,10 @@ class ChromaticPlan:
     def dispersion(self, sample):
         """Return a sample's focal error and lateral strength, 2 floats."""
         return float(self.focal_errors[sample]), float(self.lateral_strengths[sample])
+
+    def with_samples(self, aberration, samples):
+        """Return the same aberration with other samples; parameters as of `plan_chromatic`."""
+        return replace(self, **_sampled(aberration, samples))
 
     @property
     def samples_for_one(self):
@@ -255,16 +259,12 @@ def plan_chromatic(aberration, samples, camera, film, focus_distance):
     -------
     ChromaticPlan
     """
-    weights = np.column_stack([samples.weights, samples.weights.mean(axis=1)])
     # Mean and width of all the light there is, whatever wavelengths the samples have.
     (light,) = spectral_bands(aberration, 0.0, 0.0, 1)
     deviation = light.focal_width / np.sqrt(12.0)
     radius = camera.field_radius or picture_radius(camera.projection, camera.orthographic)
     return ChromaticPlan(
-        wavelengths_nm=samples.wavelengths_nm,
-        weights=weights,
-        focal_errors=aberration.focal_errors(samples.wavelengths_nm),
-        lateral_strengths=aberration.lateral_strengths(samples.wavelengths_nm),
+        **_sampled(aberration, samples),
         table=field_table(aberration, radius, camera.orthographic),
         radius=radius,
         parallel=camera.orthographic,
@@ -273,6 +273,15 @@ def plan_chromatic(aberration, samples, camera, film, focus_distance):
         raster=field_of_raster(camera.projection, film),
         typical_errors=(light.focal_error - deviation, light.focal_error + deviation),
     )
+
+
+def _sampled(aberration, samples):
+    return {
+        "wavelengths_nm": samples.wavelengths_nm,
+        "weights": np.column_stack([samples.weights, samples.weights.mean(axis=1)]),
+        "focal_errors": aberration.focal_errors(samples.wavelengths_nm),
+        "lateral_strengths": aberration.lateral_strengths(samples.wavelengths_nm),
+    }
 
 
 def picture_radius(projection, orthographic):

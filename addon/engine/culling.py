@@ -37,13 +37,15 @@ class BoundingSpheres:
             self.radii[rows] = stretch * np.linalg.norm(high - low) / 2
 
 
-def seen(spheres, plan):
+def seen(spheres, plan, part=None):
     """Return which instances any of a frame's samples may see.
 
     Parameters
     ----------
     spheres : BoundingSpheres
     plan : FramePlan
+    part : tuple of 4 int, optional
+        x, y, width, height of the part of the raster that is looked at, px; default: all of it.
 
     Returns
     -------
@@ -65,9 +67,14 @@ def seen(spheres, plan):
         growth = growth * (np.linalg.norm(eye[:, :2], axis=1) + spheres.radii)
     jitter = np.abs(plan.jitter).max(axis=0, initial=0.0)
     visible = np.ones(len(eye), bool)
-    for row, axis in ((x_row, 0), (y_row, 1), (z_row, None)):
-        for sign in (1.0, -1.0):
-            plane = w_row + sign * row
+    x, y, across, up = part or (0, 0, plan.width, plan.height)
+    sides = (
+        (x_row, 0, 2.0 * x / plan.width - 1.0, 2.0 * (x + across) / plan.width - 1.0),
+        (y_row, 1, 2.0 * y / plan.height - 1.0, 2.0 * (y + up) / plan.height - 1.0),
+        (z_row, None, -1.0, 1.0),
+    )
+    for row, axis, low, high in sides:
+        for plane in (row - low * w_row, high * w_row - row):
             reach = np.linalg.norm(plane[:3]) * spheres.radii
             if axis is not None:
                 reach = reach + np.abs(plane[:2]) @ plan.lens_extent * shear

@@ -10,6 +10,7 @@ import numpy as np
 from ..device import readback, state
 from ..device.targets import Targets, TargetSpec
 from ..passes import bokeh_marks, cryptomatte, data, resolve
+from ..sampling.tile_control import TILE
 from . import render_passes
 from .bokeh_marks import mark_targets, shows_marks
 
@@ -46,70 +47,69 @@ class FramePictures:
     def target_specs(plan):
         """Return the targets that pictures are made in."""
         specs = [TargetSpec("image", "RGBA32F", size=plan.size), *mark_targets(plan)]
+        if plan.distortion and plan.automatic:
+            specs.append(TargetSpec("mean", "RGBA32F"))
         if plan.distortion and render_passes.cryptomatte_kinds(plan.passes):
             specs.append(TargetSpec("ranks", "RGBA32F"))
         return specs
 
-    def resolve(self, samples, origin=(0, 0), pixel_size=1):
-        """Draw the picture of so many samples into the bound frame buffer.
+    def resolve(self, weights, origin=(0, 0), pixel_size=1):
+        """Draw the picture so far into the bound frame buffer.
 
         Parameters
         ----------
-        samples : int
+        weights : FrameWeights
+            Of the samples so far.
         origin : tuple of 2 int
             Where its lower left corner goes.
         pixel_size : int
             Side of the square that shows one pixel.
         """
         targets = self._targets
-        whole = (targets["sum"], self._weight(samples))
+        whole = (targets["sum"], weights.by_channel)
+        tiles = weights.scales
         bokeh = targets["bokeh"] if self._plan.bokeh else None
         if not shows_marks(self._plan):
-            self._resolve(*whole, origin, pixel_size, bokeh)
+            self._resolve(*whole, origin, pixel_size, bokeh, tiles)
             return
         targets.forget_framebuffers()
         with targets.framebuffer("image").bind():
-            self._resolve(*whole, bokeh=bokeh)
+            self._resolve(*whole, bokeh=bokeh, scales=tiles)
         with targets.framebuffer("seen_marks").bind():
             self._resolve(targets["marks"], 1.0)
         textures = (targets["image"], targets["seen_marks"])
         bokeh_marks.draw_picture(self._fullscreen, *textures, origin, pixel_size)
 
-    def _resolve(self, total, weight, origin=(0, 0), pixel_size=1, bokeh=None):
+    def _resolve(self, total, weight, origin=(0, 0), pixel_size=1, bokeh=None, scales=None):
         state.overwrite()
+        distortion = self._plan.distortion
+        if scales is not None and distortion is not None:
+            # What is sampled between pixels must be their means already.
+            with self._targets.framebuffer("mean").bind():
+                resolve.resolve(self._fullscreen, total, weight, scales=scales)
+            total, weight, scales = self._targets["mean"], 1.0, None
         resolve.resolve(
-            self._fullscreen, total, weight, origin, pixel_size, bokeh, self._plan.distortion
+            self._fullscreen, total, weight, origin, pixel_size, bokeh, distortion, scales
         )
 
-    def _weight(self, samples):
-        # A first sample whose places all lie outside a narrow box filter weighs nothing.
-        weight = self._plan.weight(samples)
-        if isinstance(weight, tuple):
-            return tuple(w or 1.0 for w in weight)
-        return weight or 1.0
-
-    def _mean_weight(self, samples):
-        weight = self._weight(samples)
-        return weight[3] if isinstance(weight, tuple) else weight
-
-    def read_combined(self, samples):
-        """Return the picture of so many samples, shape (height, width, 4), bottom row first."""
-        picture = self.read_defocus(samples)
+    def read_combined(self, weights):
+        """Return the picture so far, shape (height, width, 4), bottom row first."""
+        picture = self.read_defocus(weights)
         # Added here and not on the device, so that it is the sum of the two passes to the last bit.
         return picture + self.read_bokeh() if self._plan.bokeh else picture
 
-    def read_shown(self, samples):
+    def read_shown(self, weights):
         """Return what a viewport shows: Combined, or the debug view that takes its place."""
         if not shows_marks(self._plan):
-            return self.read_combined(samples)
+            return self.read_combined(weights)
         framebuffer = self._targets.framebuffer("marked")
         with framebuffer.bind():
-            self.resolve(samples)
+            self.resolve(weights)
         return readback.read_color(framebuffer, *self._plan.size)
 
-    def read_defocus(self, samples):
-        """Return what so many samples show, as `read_combined`."""
-        return self._read(self._targets["sum"], self._weight(samples))
+    def read_defocus(self, weights):
+        """Return what the samples show, as `read_combined`."""
+        return self._read(self._targets["sum"], weights.by_channel, weights.scales)
 
     def read_bokeh(self):
         """Return the highlights, as `read_combined`."""
@@ -121,19 +121,32 @@ class FramePictures:
             return self._read(self._targets["bokeh"], 1.0)
         return readback.read_color(self._targets.framebuffer("bokeh"), plan.width, plan.height)
 
-    def read_focus_matte(self, samples):
-        """Return the Focus Matte of so many samples, shape (height, width, 1)."""
-        focus = self._read(self._targets["focus_sum"], self._mean_weight(samples))
+    def read_focus_matte(self, weights):
+        """Return the Focus Matte so far, shape (height, width, 1)."""
+        focus = self._read(self._targets["focus_sum"], weights.mean, weights.mean_scales)
         return np.ascontiguousarray(focus[..., :1])
 
-    def _read(self, total, weight):
+    def _read(self, total, weight, scales=None):
         framebuffer = self._targets.framebuffer("image")
         with framebuffer.bind():
-            self._resolve(total, weight)
+            self._resolve(total, weight, scales=scales)
         return readback.read_color(framebuffer, *self._plan.size)
 
-    def read_cryptomatte(self, name, samples):
-        """Return a Cryptomatte pass of so many samples, as `read_combined`."""
+    def read_sample_count(self, counts):
+        """Return how many samples each pixel got, shape (height, width, 1).
+
+        Parameters
+        ----------
+        counts : ndarray of shape (rows, columns)
+            Of each tile of the raster.
+        """
+        plan = self._plan
+        each = counts.repeat(TILE, axis=0).repeat(TILE, axis=1)[: plan.height, : plan.width]
+        found = each[..., None].astype(np.float32)
+        return self._picked(found) if plan.distortion else np.ascontiguousarray(found)
+
+    def read_cryptomatte(self, name, weights):
+        """Return a Cryptomatte pass so far, as `read_combined`."""
         plan = self._plan
         framebuffer = self._targets.framebuffer("ranks" if plan.distortion else "image")
         with framebuffer.bind():
@@ -144,7 +157,8 @@ class FramePictures:
                 self._kinds,
                 name[:-2],
                 int(name[-2:]),
-                self._mean_weight(samples),
+                weights.mean,
+                weights.mean_scales,
             )
         found = readback.read_color(framebuffer, plan.width, plan.height)
         return self._picked(found) if plan.distortion else found

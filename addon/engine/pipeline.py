@@ -15,13 +15,16 @@ from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
 from ..passes import accumulate, background, chromatic, cryptomatte, surface
 from ..sampling.chromatic import LEAST_SCALE
+from ..sampling.tile_control import TILE
 from . import render_passes
 from .bokeh_plan import draft_of
 from .bokeh_stage import BokehStage, highlight_buffer
 from .bokeh_visibility import SceneOccluders
 from .frame_pictures import FramePictures
-from .scene_drawing import SceneDrawing
+from .plan import extended
+from .scene_drawing import DrawingCounts, SceneDrawing
 from .subsampling import SubsampleBlur
+from .tile_sampling import SamplingReport, TileSampling, weights_of
 
 # Samples that may wait in the device's queue: the queue's memory, too, is bounded.
 _SAMPLES_IN_FLIGHT = 32
@@ -46,7 +49,7 @@ class FrameRenderer:
         What is shown is a draft of the bokeh, or none yet.
     """
 
-    def __init__(self, plan, snapshot, buffers, drafts=False):
+    def __init__(self, plan, snapshot, buffers, drafts=False, leader=None):
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
         self._content = self._levels = self._drawing = self._blur = self._plain = None
@@ -54,9 +57,9 @@ class FrameRenderer:
         self._graded = {}
         self._targets = self._refining = None
         self._bokeh_seconds = np.inf
-        self.restart(plan, snapshot, drafts)
+        self.restart(plan, snapshot, drafts, leader)
 
-    def restart(self, plan, snapshot, drafts=False):
+    def restart(self, plan, snapshot, drafts=False, leader=None):
         """Begin a frame anew, with another view or content; what still fits is kept.
 
         Parameters
@@ -67,10 +70,17 @@ class FrameRenderer:
         drafts : bool
             Begin with a draft of the bokeh, unless the last whole one was quick, and leave the
             whole to `refine_bokeh`.
+        leader : TileSampling or None
+            Whose tiles are drawn, with `automatic` sampling of a picture beside another.
         """
         self._stop_refining()
         self.plan = plan
         self.samples_done = 0
+        self._stopped = False
+        self._earlier_rounds = DrawingCounts()
+        self._tiles = None
+        if plan.automatic:
+            self._tiles = TileSampling(plan, self._fullscreen, leader)
         self._cryptomattes = render_passes.cryptomatte_kinds(plan.passes)
         self._mattes = bool(render_passes.made_by(plan.passes, "MATTE", "CRYPTOMATTE"))
         target = surface.COLOR_AND_MATTES if self._mattes else surface.COLOR
@@ -96,6 +106,8 @@ class FrameRenderer:
         self._blur = None
         if plan.blurs:
             self._blur = SubsampleBlur(plan, self._drawing.nearest, wavelengths)
+        # A draft of the bokeh comes and goes with the time that is left: it must decide nothing.
+        self._measures_bokeh = bool(plan.bokeh) and not drafts
         self._bokeh = self._whole = self._draft = None
         if plan.bokeh:
             self._bokeh = self._whole = self._stage(plan)
@@ -121,9 +133,9 @@ class FrameRenderer:
                 self._plain.release()
             self._plain = None
         elif self._plain:
-            self._plain.restart(plan.plain, snapshot)
+            self._plain.restart(plan.plain, snapshot, leader=self._tiles)
         else:
-            self._plain = FrameRenderer(plan.plain, snapshot, self._buffers)
+            self._plain = FrameRenderer(plan.plain, snapshot, self._buffers, leader=self._tiles)
 
     def _wavelength(self, index):
         """Return a sample's `ChromaticSample`; that of the reference wavelength for None."""
@@ -142,9 +154,8 @@ class FrameRenderer:
     @property
     def counts(self):
         """Work done since the frame began, as `DrawingCounts`."""
-        if self._plain is None:
-            return self._drawing.counts
-        return self._drawing.counts + self._plain.counts
+        own = self._earlier_rounds + self._drawing.counts
+        return own if self._plain is None else own + self._plain.counts
 
     @property
     def highlights(self):
@@ -195,6 +206,8 @@ class FrameRenderer:
             layers = len(self._cryptomattes) * cryptomatte.slot_pairs(self._cryptomattes)
             specs.append(TargetSpec("tables", "RGBA32F", layers))
         specs += self._drawing.specs()
+        if self._tiles:
+            specs += self._tiles.specs()
         if self._blur:
             specs += self._blur.specs()
         return tuple(specs)
@@ -211,14 +224,63 @@ class FrameRenderer:
             to the device. Within ``bokeh``, also with those of `BokehStage.run`.
         """
         self._targets.forget_framebuffers()
-        end = min(self.samples_done + samples, self.plan.samples)
-        for index in range(self.samples_done, end):
-            self._render_sample(index, stage)
+        end = self.samples_done + samples
+        while self.samples_done < end and not self.sampled:
+            if self.samples_done == self.plan.samples:
+                self._begin_round()
+            self._render_sample(self.samples_done, stage)
             if self._plain:
                 self._plain.advance(1, stage)
-            if (index + 1) % _SAMPLES_IN_FLIGHT == 0:
+            self.samples_done += 1
+            if self.samples_done % _SAMPLES_IN_FLIGHT == 0:
                 self.wait()
-        self.samples_done = end
+            if self._tiles and self._tiles.is_look(self.samples_done):
+                with stage("error"):
+                    self._look()
+
+    @property
+    def sampled(self):
+        """Whether no further lens samples are needed."""
+        if self._tiles:
+            return self._tiles.done
+        return self._stopped or self.samples_done >= self.plan.samples
+
+    def stop(self):
+        """Draw no further samples; what there is becomes the picture."""
+        self._stopped = True
+        if self._tiles:
+            self._tiles.note(self.plan, self.samples_done)
+            self._tiles.stop()
+
+    def _look(self):
+        """See whether the picture is good enough, and where it is not."""
+        if self._plain:
+            self._plain._tiles.note(self._plain.plan, self.samples_done)
+        bokeh = self._targets["bokeh"] if self._measures_bokeh else None
+        if self._tiles.look(self.plan, self.samples_done, self._targets, bokeh):
+            for renderer in filter(None, (self, self._plain)):
+                renderer._drawing.confine(renderer._part())
+
+    def _part(self):
+        reach = self._blur.reach if self._blur else 0
+        return self._tiles.part(reach)
+
+    def _begin_round(self):
+        """Plan the samples of the next round, for what is still looked at."""
+        self._earlier_rounds += self._drawing.counts
+        self.plan = extended(self.plan)
+        wavelengths = self._wavelength if self.plan.chromatic else None
+        if self._blur:
+            self._blur = SubsampleBlur(self.plan, self._drawing.nearest, wavelengths)
+        self._drawing.aim(self.plan, wavelengths, self._highlights, self._part())
+        for spec in self._drawing.specs():
+            if spec.name not in self._targets:
+                self._targets.add(spec)
+        if self.plan.chromatic:
+            # More samples have wavelengths that reach a little further.
+            self._field = _chromatic_resources(self.plan.chromatic)
+            if self._blur:
+                self._find_bounds()
 
     def wait(self):
         """Return when the device has drawn everything it was given."""
@@ -271,7 +333,8 @@ class FrameRenderer:
             framebuffer = targets.framebuffer("sample", "mattes", depth="sample_depth")
         self._drawing.draw(index, framebuffer, self._view, targets)
         if self._shows_image:
-            with targets.framebuffer("sample", depth="sample_depth").bind():
+            framebuffer_of_color = targets.framebuffer("sample", depth="sample_depth")
+            with framebuffer_of_color.bind(), self._drawing.confined():
                 self._draw_background(index)
         self._drawing.draw_glows(index, framebuffer, self._view)
 
@@ -290,12 +353,13 @@ class FrameRenderer:
     def _add_sample(self, index):
         plan, targets = self.plan, self._targets
         weights = plan.subpixel_weights[index]
+        batch = self._tiles.batch if self._tiles else self._fullscreen
         with targets.framebuffer("sum").bind():
             if self._blur:
-                self._blur.add(self._fullscreen, targets, index)
+                self._blur.add(batch, targets, index)
             else:
                 tint = self._wavelength(index).tint if plan.chromatic else None
-                accumulate.accumulate(self._fullscreen, targets["sample"], weights, tint)
+                accumulate.accumulate(batch, targets["sample"], weights, tint)
         # The mattes are those of the sample's own place, with the weight of all it stands for.
         places = np.array([[1.0 + plan.subsample_counts[index]], [1.0]])
         if plan.chromatic:
@@ -303,10 +367,14 @@ class FrameRenderer:
             places[0] *= plan.chromatic.weights[index, 3]
         if "focus_sum" in targets:
             with targets.framebuffer("focus_sum").bind():
-                accumulate.accumulate_focus(self._fullscreen, targets["mattes"], weights * places)
+                accumulate.accumulate_focus(batch, targets["mattes"], weights * places)
         if self._cryptomattes:
             cryptomatte.count(
-                targets["mattes"], targets["tables"], self._cryptomattes, weights * places
+                targets["mattes"],
+                targets["tables"],
+                self._cryptomattes,
+                weights * places,
+                self._tiles and self._tiles.active,
             )
         self._drawing.counts.draw_calls += 1 + ("focus_sum" in targets)
 
@@ -316,7 +384,34 @@ class FrameRenderer:
 
     def finished(self):
         """Whether every sample has been rendered, and the whole bokeh."""
-        return self.samples_done >= self.plan.samples and not self.bokeh_drafted
+        return self.sampled and not self.bokeh_drafted
+
+    @property
+    def samples_expected(self):
+        """About how many samples the frame takes; exact where that is known."""
+        if self._tiles:
+            return self._tiles.expected(self.samples_done)
+        return self.samples_done if self._stopped else self.plan.samples
+
+    @property
+    def sampling(self):
+        """How far sampling has come, as `SamplingReport`."""
+        done = self.samples_done
+        if self._tiles:
+            return self._tiles.report(self.plan, done)
+        return SamplingReport(None, None, (done, float(done), done))
+
+    @property
+    def _weights(self):
+        if self._tiles:
+            return self._tiles.weights(self.plan, self.samples_done)
+        return weights_of(self.plan, self.samples_done)
+
+    def _sample_counts(self):
+        if self._tiles:
+            return self._tiles.counts(self.plan, self.samples_done)
+        tiles = (-(-side // TILE) for side in (self.plan.height, self.plan.width))
+        return np.full(tuple(tiles), self.samples_done)
 
     def resolve(self, origin=(0, 0), pixel_size=1):
         """Draw the picture so far into the bound frame buffer.
@@ -328,12 +423,12 @@ class FrameRenderer:
         pixel_size : int
             Side of the square that shows one pixel.
         """
-        self._pictures.resolve(self.samples_done, origin, pixel_size)
+        self._pictures.resolve(self._weights, origin, pixel_size)
 
     def read_image(self):
         """Return the picture so far, shape (height, width, 4), bottom row first."""
         self._targets.forget_framebuffers()
-        return self._pictures.read_shown(self.samples_done)
+        return self._pictures.read_shown(self._weights)
 
     def pass_groups(self):
         """Return the plan's passes in groups that are best read together.
@@ -361,28 +456,30 @@ class FrameRenderer:
         """
         names = self.plan.passes if names is None else names
         self._targets.forget_framebuffers()
-        made, done = self._pictures, self.samples_done
+        made, weights = self._pictures, self._weights
         pictures = made.read_data(render_passes.made_by(names, "DATA"))
         for name in names:
             if name == "Combined":
-                pictures[name] = made.read_shown(done)
+                pictures[name] = made.read_shown(weights)
             elif name == "Defocus":
-                pictures[name] = made.read_defocus(done)
+                pictures[name] = made.read_defocus(weights)
             elif name == "Bokeh":
                 pictures[name] = made.read_bokeh()
             elif name == "Focus Matte":
-                pictures[name] = made.read_focus_matte(done)
+                pictures[name] = made.read_focus_matte(weights)
             elif name == "Fringe":
-                pictures[name] = self._read_fringe()
+                pictures[name] = self._read_fringe(weights)
+            elif name == "Sample Count":
+                pictures[name] = made.read_sample_count(self._sample_counts())
             elif name not in pictures:
-                pictures[name] = made.read_cryptomatte(name, done)
+                pictures[name] = made.read_cryptomatte(name, weights)
         return {name: pictures[name] for name in names}
 
-    def _read_fringe(self):
-        picture = self._pictures.read_combined(self.samples_done)[..., :3]
+    def _read_fringe(self, weights):
+        picture = self._pictures.read_combined(weights)[..., :3]
         if self._plain is None:
             return np.zeros_like(picture, order="C")
-        return picture - self._plain._pictures.read_combined(self._plain.samples_done)[..., :3]
+        return picture - self._plain._pictures.read_combined(self._plain._weights)[..., :3]
 
     def texture_bytes(self):
         """Return how many bytes targets, images and instances hold on the device."""

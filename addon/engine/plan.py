@@ -1,17 +1,17 @@
 """From a snapshot to a frame plan: every number a frame needs, decided before anything is drawn."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from ..sampling.pixel_filter import subpixel_weights
-from ..sampling.sequence import lens_samples, pixel_offsets
-from ..sampling.spectral_samples import wavelengths_for
-from ..sampling.subsamples import subsample_offsets
-from .bokeh_plan import BokehPlan, plan_bokeh
-from .chromatic import ChromaticPlan, plan_chromatic
-from .distortion import DistortionPlan, plan_distortion
-from .quality import settle
+from ..sampling.rounds import first_look
+from ..sampling.spectral_samples import GROUP
+from .bokeh_plan import plan_bokeh
+from .chromatic import plan_chromatic
+from .distortion import plan_distortion
+from .frame_plan import AutomaticSampling, FramePlan
+from .frame_samples import SampleSource
+from .quality import LEAST_ERROR, settle
 
 # Diagonals of the picture over the diameter of the largest circle of confusion that counts as
 # sharp: the usual criterion of depth-of-field tables (0.029 mm for 36 x 24 mm).
@@ -25,172 +25,6 @@ _MOST_SUBPIXELS = 4
 # A lens sample's raster, in pixels (20 bytes each), and its longer side: within any device's means.
 _LARGEST_RASTER = 1 << 24
 _LONGEST_RASTER = 8192
-
-
-@dataclass(frozen=True, eq=False)
-class FramePlan:
-    """What the pipeline carries out.
-
-    Parameters
-    ----------
-    width, height : int
-        Of the rendered region, in pixels; with distortion those of the raster that is drawn.
-    origin : tuple of 2 int
-        Lower left pixel of the region in the picture.
-    view : ndarray of shape (4, 4)
-        World to camera space.
-    projection : ndarray of shape (4, 4)
-        Camera space to clip space of the region.
-    orthographic : bool
-    focus_distance : float
-        In m.
-    lens_positions : ndarray of shape (N, 2)
-        Places on the lens, in m.
-    jitter : ndarray of shape (N, 2)
-        Sub-pixel movement in clip units of the region.
-    subpixels : int
-        Sub-pixels along each side of a pixel in a lens sample's raster; see `subpixels`.
-    subpixel_weights : ndarray of shape (N, 2, subpixels)
-        Of the columns and rows of sub-pixels; see `sampling.pixel_filter.subpixel_weights`.
-    subsample_offsets : ndarray of shape (N, K, 2)
-        Places on the lens that a sample stands for besides its own, relative to it, in m.
-    subsample_counts : ndarray of shape (N,)
-        int; how many of them each sample has.
-    level_bias : float or None
-        Subtracted from the level of detail; None draws everything in full detail.
-    least_triangles : int
-        No level of detail has fewer.
-    reuse_grid : int
-        Cells along a pixel in which samples share a drawing; 0 shares none.
-    progressive : bool
-        The frame may be given up before all its samples are drawn.
-    lens_extent : ndarray of shape (2,)
-        Half the width and height of the opening, in m.
-    coc_scale : float
-        Radius of the circle of confusion in pixels, for `lib/lens_lib.glsl`.
-    sharp_radius : float
-        Largest radius that counts as sharp, in pixels; see `sharp_radius`.
-    empty_coc : float
-        Radius of the circle of confusion where nothing is, in pixels.
-    passes : tuple of str
-    alpha_threshold : float
-        Opacity below which a surface is left out of the data passes.
-    previous, next : ndarray of shape (4, 4)
-        World to clip space of the region in the neighbouring frames.
-    bokeh : BokehPlan or None
-        None draws highlights as everything else.
-    chromatic : ChromaticPlan or None
-        None: every sample stands for all wavelengths.
-    plain : FramePlan or None
-        The same frame without chromatic aberration, where Fringe needs it.
-    distortion : DistortionPlan or None
-        How the picture is made of the raster that is drawn; None: it is that raster.
-    """
-
-    width: int
-    height: int
-    origin: tuple[int, int]
-    view: np.ndarray
-    projection: np.ndarray
-    orthographic: bool
-    focus_distance: float
-    lens_positions: np.ndarray
-    jitter: np.ndarray
-    subpixels: int
-    subpixel_weights: np.ndarray
-    subsample_offsets: np.ndarray
-    subsample_counts: np.ndarray
-    level_bias: float | None
-    least_triangles: int
-    reuse_grid: int
-    progressive: bool
-    lens_extent: np.ndarray
-    coc_scale: float
-    sharp_radius: float
-    empty_coc: float
-    passes: tuple[str, ...]
-    alpha_threshold: float
-    previous: np.ndarray
-    next: np.ndarray
-    bokeh: BokehPlan | None = None
-    chromatic: ChromaticPlan | None = None
-    plain: "FramePlan | None" = None
-    distortion: DistortionPlan | None = None
-
-    @property
-    def size(self):
-        """Width and height of the picture, in pixels."""
-        made = self.distortion or self
-        return made.width, made.height
-
-    @property
-    def samples(self):
-        """Number of lens samples."""
-        return len(self.lens_positions)
-
-    def weight(self, samples):
-        """Return the summed weight of the first `samples` lens samples.
-
-        Parameters
-        ----------
-        samples : int
-
-        Returns
-        -------
-        float or tuple of 4 float
-            With chromatic aberration that of red, green, blue and alpha.
-        """
-        own = self.subpixel_weights[:samples].sum(axis=2).prod(axis=1)
-        own = own * (1 + self.subsample_counts[:samples])
-        if self.chromatic is None:
-            return float(own.sum())
-        return tuple((own @ self.chromatic.weights[:samples]).tolist())
-
-    def lens_sample(self, index):
-        """Return a sample's place on the lens in m and its jitter in clip units, 4 numbers."""
-        return (*self.lens_positions[index].tolist(), *self.jitter[index].tolist())
-
-    @property
-    def blurs(self):
-        """Whether any lens sample is blurred over subsamples."""
-        return bool(self.subsample_counts.any())
-
-    @property
-    def sweep(self):
-        """How far surfaces move between two places on the lens; see ``lib/sweep_lib.glsl``.
-
-        Returns
-        -------
-        ndarray of shape (4,)
-            In texels a metre: constant, x and y, and per unit of the depth buffer.
-        """
-        size = np.array([self.width, self.height]) * self.subpixels
-        scale = np.diag(self.projection)[:2] * size / 2.0
-        slope, offset = self.projection[2, 2:]
-        focus = self.focus_distance
-        if self.orthographic:
-            constant, linear = (offset + 1.0) / (slope * focus) - 1.0, -2.0 / (slope * focus)
-        else:
-            constant, linear = 1.0 / focus - (slope - 1.0) / offset, -2.0 / offset
-        return np.concatenate([scale * constant, scale * linear])
-
-    @property
-    def sweep_parts(self):
-        """The `sweep` in two parts, for a focus that varies over the field.
-
-        Returns
-        -------
-        base, gain : ndarray of shape (4,)
-            The sweep is ``base + gain / focus_distance``.
-        """
-        size = np.array([self.width, self.height]) * self.subpixels
-        scale = np.diag(self.projection)[:2] * size / 2.0
-        slope, offset = self.projection[2, 2:]
-        if self.orthographic:
-            base, gain = (-1.0, 0.0), ((offset + 1.0) / slope, -2.0 / slope)
-        else:
-            base, gain = (-(slope - 1.0) / offset, -2.0 / offset), (1.0, 0.0)
-        return tuple(np.outer(part, scale).ravel() for part in (base, gain))
 
 
 def region_projection(projection, film):
@@ -307,61 +141,64 @@ def plan_frame(snapshot):
 
 def _plan_raster(snapshot):
     sampling = snapshot.sampling
+    automatic = None
     if sampling.method == "ADAPTIVE" and sampling.target_error is not None:
         # Of wavelengths, several tell how far they reach.
         count = 1 if snapshot.camera.chromatic is None else _TYPICAL_SAMPLES
         first = _plan(snapshot, replace(sampling, lens_samples=count, subsamples=0))
+        automatic = AutomaticSampling(
+            max(sampling.target_error, LEAST_ERROR),
+            sampling.least_samples,
+            sampling.most_samples,
+            1 if first.chromatic is None else GROUP,
+        )
         sampling = settle(sampling, snapshot, first)
-    plan = _plan(snapshot, sampling)
+        sampling = replace(sampling, lens_samples=first_look(automatic.unit))
+    plan = _plan(snapshot, sampling, automatic)
     plan = replace(plan, bokeh=plan_bokeh(snapshot, plan))
     if plan.chromatic is None or "Fringe" not in snapshot.passes:
         return plan
     camera = replace(snapshot.camera, chromatic=None)
     achromatic = replace(snapshot, camera=camera, passes=("Combined",))
-    plain = _plan(achromatic, sampling)
+    plain = _plan(achromatic, sampling, automatic)
     return replace(plan, plain=replace(plain, bokeh=plan_bokeh(achromatic, plain)))
 
 
-def _plan(snapshot, sampling):
+def _plan(snapshot, sampling, automatic=None):
     film, camera = snapshot.film, snapshot.camera
     x, y, width, height = film.region
-    count = sampling.lens_samples
     lens = camera.lens
     adaptive = sampling.method == "ADAPTIVE"
-    is_pinhole = lens is None or lens.aperture_radius == 0.0
+    if lens is not None and lens.aperture_radius == 0.0:
+        lens = None
     aberration = camera.chromatic
-    if aberration is not None and not aberration.lateral and (is_pinhole or not aberration.axial):
+    if aberration is not None and not aberration.lateral and (lens is None or not aberration.axial):
         aberration = None
-    colors = wavelengths_for(aberration, count, sampling.seed) if aberration else None
-    # Samples of several wavelengths may look from the same place.
-    taken = colors.lens_indices if aberration else np.arange(count)
-    different = int(taken.max()) + 1
-    if is_pinhole:
-        positions, focus, extent = np.zeros((count, 2)), 1.0, np.zeros(2)
-        offsets_on_lens, places = np.zeros((count, 0, 2)), np.zeros(count, int)
-    else:
-        subsamples = sampling.subsamples if adaptive else 0
-        points = lens_samples(0, different * (1 + subsamples), lens.iris, sampling.seed)
-        points = points * lens.aperture_radius
+    source = SampleSource(
+        lens=lens,
+        aberration=aberration,
+        subsamples=sampling.subsamples if adaptive else 0,
+        filter_kind=film.filter_kind,
+        filter_size_px=film.filter_size_px,
+        # Subsamples and levels of detail take the place of a finer raster.
+        subpixels=1 if adaptive else subpixels(snapshot.content, width, height),
+        seed=sampling.seed,
+        progressive=sampling.progressive,
+        endless=automatic is not None,
+    )
+    drawn = source.draw(sampling.lens_samples)
+    focus, extent = 1.0, np.zeros(2)
+    if lens is not None:
         focus = lens.focus_distance
-        offsets_on_lens, places = subsample_offsets(
-            points[:different], points[different:], sampling.progressive
-        )
-        positions = points[taken]
-        offsets_on_lens, places = offsets_on_lens[taken], places[taken]
         extent = lens.aperture_radius * np.array([1.0 / lens.iris.ratio, 1.0])
-    # Subsamples and levels of detail take the place of a finer raster.
-    fine = 1 if adaptive else subpixels(snapshot.content, width, height)
-    filter_kind, filter_size = film.filter_kind, film.filter_size_px
-    offsets = pixel_offsets(0, different, filter_kind, filter_size, sampling.seed, fine)[taken]
-    weights = [subpixel_weights(axis, filter_kind, filter_size, fine) for axis in offsets.T]
     projection = region_projection(camera.projection, film)
     current = (camera.view, camera.projection)
     previous, following = (
         region_projection(frame_projection, film) @ frame_view
         for frame_view, frame_projection in (camera.previous or current, camera.next or current)
     )
-    scale = coc_scale(camera.projection, film, lens)
+    scale = coc_scale(camera.projection, film, camera.lens)
+    colors = drawn.colors
     return FramePlan(
         width=width,
         height=height,
@@ -370,13 +207,8 @@ def _plan(snapshot, sampling):
         projection=projection,
         orthographic=camera.orthographic,
         focus_distance=focus,
-        lens_positions=positions,
-        # A sample at +x in the pixel sees what lies to its right: the picture moves to the left.
-        jitter=-2.0 * offsets / np.array([width, height]),
-        subpixels=fine,
-        subpixel_weights=np.stack(weights, axis=1),
-        subsample_offsets=offsets_on_lens,
-        subsample_counts=places,
+        subpixels=source.subpixels,
+        **_arrays(drawn, width, height),
         level_bias=sampling.level_bias if adaptive and sampling.uses_levels else None,
         least_triangles=sampling.least_triangles,
         reuse_grid=sampling.reuse_grid if adaptive else 0,
@@ -390,6 +222,44 @@ def _plan(snapshot, sampling):
         previous=previous,
         next=following,
         chromatic=plan_chromatic(aberration, colors, camera, film, focus) if aberration else None,
+        source=source,
+        automatic=automatic,
+        time_limit=sampling.time_limit,
+    )
+
+
+def _arrays(drawn, width, height):
+    return {
+        "lens_positions": drawn.lens_positions,
+        # A sample at +x in the pixel sees what lies to its right: the picture moves to the left.
+        "jitter": -2.0 * drawn.pixel_offsets / np.array([width, height]),
+        "subpixel_weights": drawn.subpixel_weights,
+        "subsample_offsets": drawn.subsample_offsets,
+        "subsample_counts": drawn.subsample_counts,
+    }
+
+
+def extended(plan):
+    """Return the plan of the next round as well: twice the samples, the first half the same.
+
+    Parameters
+    ----------
+    plan : FramePlan
+        With `automatic` sampling; what Fringe compares with has a plan of its own.
+
+    Returns
+    -------
+    FramePlan
+    """
+    drawn = plan.source.draw(2 * plan.samples)
+    chromatic = plan.chromatic
+    if chromatic is not None:
+        chromatic = chromatic.with_samples(plan.source.aberration, drawn.colors)
+    return replace(
+        plan,
+        **_arrays(drawn, plan.width, plan.height),
+        first=plan.samples,
+        chromatic=chromatic,
     )
 
 

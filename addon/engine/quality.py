@@ -1,9 +1,9 @@
-"""One number for quality: how many lens samples, subsamples and triangles a frame needs.
+"""One number for quality: what it decides before a frame is drawn.
 
-The error of an accumulated picture, 1 - SSIM, falls with the number of places on the lens and
-grows with the area of the largest circle of confusion, over which they are spread: about
-``e = A C^2 / n``.
-A subsample counts for less than a sample, since it sees only what its sample sees.
+The number is the error of the picture, 1 - SSIM. How many lens samples it takes is found while they
+are drawn, from what the picture shows (`sampling.tile_control`, `engine.tile_sampling`). What more
+samples do not mend has to be small from the start: levels of detail and shared drawings are
+therefore the finer the smaller the number is.
 """
 
 import math
@@ -11,19 +11,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..sampling.subsamples import FIRST_INTERVAL
 from .levels import coc_ends, extents, world_corners
 
-# Measured on three scenes with circles of 55 px (toys, fishes, dragons at 1024 x 576): 62 to 160
-# places gave errors of 4.2e-4 to 5.5e-4 times C^2 / n.
-_ERROR_OF_PLACE = 5e-4
-# Of a sample's worth, 4 subsamples a sample: 16 to 64 samples gave errors of 0.8e-4 to 1.6e-4 times
-# C^2 / N on toys and fishes (dragons 2.6e-4, half of it the noise of what it was compared with).
-_WORTH_OF_SUBSAMPLE = 0.75
+LEAST_ERROR = 1e-4
 _SUBSAMPLES = 4
-# Edges in focus have no blur to smooth them.
-_LEAST_SAMPLES = 32
-_MOST_SAMPLES = 4096
-_LEAST_ERROR = 1e-4
+# What moves by less stays in its texel; see ``passes/subsample_frag.glsl``.
+_LEAST_MOVE_PX = 0.5
 
 # Levels blur colours that vary from vertex to vertex: the smaller the error, the finer the level.
 _BIAS_AT = 0.02
@@ -44,23 +38,19 @@ def settle(sampling, snapshot, plan):
     Returns
     -------
     Sampling
-        Without `target_error`.
+        Without `target_error`; the number of lens samples is as it was.
     """
     error = sampling.target_error
     if error is None:
         return sampling
-    error = max(error, _LEAST_ERROR)
-    largest = largest_coc(snapshot.content, plan)
-    places = _ERROR_OF_PLACE * largest**2 / error
-    if plan.chromatic is not None:
-        places *= plan.chromatic.samples_for_one
-    subsamples = _SUBSAMPLES if places > _LEAST_SAMPLES else 0
-    samples = math.ceil(places / (1.0 + _WORTH_OF_SUBSAMPLE * subsamples))
+    error = max(error, LEAST_ERROR)
+    # The part of the lens that a sample of the first round stands for, seen through the largest
+    # blur. Later rounds have smaller parts.
+    moved = largest_coc(snapshot.content, plan) / math.sqrt(FIRST_INTERVAL)
     return replace(
         sampling,
         target_error=None,
-        lens_samples=min(max(samples, _LEAST_SAMPLES), _MOST_SAMPLES),
-        subsamples=subsamples,
+        subsamples=_SUBSAMPLES if moved > _LEAST_MOVE_PX else 0,
         reuse_grid=sampling.reuse_grid and (2 if error > _FINE_CELLS_BELOW else 4),
         level_bias=sampling.level_bias + max(0.0, math.log2(_BIAS_AT / error)),
     )
@@ -89,7 +79,9 @@ def largest_coc(content, plan):
     eye = corners @ plan.view[:3, :3].T + plan.view[:3, 3]
     depths = (np.maximum(depth, 1e-6) for depth in (seen.nearest, seen.farthest))
     bound = np.abs(coc_ends(*depths, plan, seen.inverse_focus)).max(axis=0)
-    largest = abs(plan.empty_coc) if content.world.image else 0.0
+    # A parallel camera sees the same point of the world in every pixel: nothing to blur.
+    shows_world = bool(content.world.image) and not plan.orthographic
+    largest = abs(plan.empty_coc) if shows_world else 0.0
     # From the largest down, until no other can be larger.
     for row in np.argsort(-bound, kind="stable"):
         if bound[row] <= largest:

@@ -13,6 +13,7 @@ after this table, and asks for the passes of a view layer through `register`.
   the focus plane.
 - **Detail** shows where the adaptive method saves work: the object's level of detail, the share of
   the lens samples that copy a drawing of it, and 1 where there is an object.
+- **Sample Count** is the number of lens samples that a pixel got.
 - **Focus Matte** and the **Cryptomattes** are seen through the lens, so that they fit the blurred
   edges of Combined. Focus Matte is the share of a pixel that sharp surfaces fill; see
   `plan.sharp_radius`. It knows one focus, as CoC does: that of the reference wavelength.
@@ -66,6 +67,7 @@ _TABLE = {
         RenderPass("Detail", "XYZ", "VECTOR", "DATA"),
         RenderPass("Focus Matte", "X", "VALUE", "MATTE"),
         RenderPass("Fringe", "RGB", "COLOR", "COLOR"),
+        RenderPass("Sample Count", "X", "VALUE", "COLOR"),
     )
 }
 

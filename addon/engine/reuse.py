@@ -62,7 +62,7 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
     coc : float
         Signed radius of its largest circle of confusion, in pixels along the vertical.
     levels : ndarray of shape (N,)
-        int; its level for each sample.
+        int; its level for each sample of the round.
     triangles : sequence of int
         By level.
     rectangle : tuple of 4 int
@@ -82,6 +82,7 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
         moves, shifts = raster_moves(coc, plan)
     else:
         moves, shifts = corner_moves(corners, plan)
+    moves, shifts = moves[plan.first :], shifts[plan.first :]
     grid = plan.reuse_grid if abs(coc) < _BLUR_HIDES_PX else max(1, plan.reuse_grid // 2)
     cells = np.round(moves * grid)
     distance = np.square(moves * grid - cells).sum(axis=1)
@@ -105,8 +106,11 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
                 Sprite(
                     row,
                     level,
-                    parent,
-                    {int(m): (int(x), int(y)) for m, (x, y) in zip(members, offsets, strict=True)},
+                    plan.first + parent,
+                    {
+                        plan.first + int(m): (int(x), int(y))
+                        for m, (x, y) in zip(members, offsets, strict=True)
+                    },
                     rectangle,
                 )
             )

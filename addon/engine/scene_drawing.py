@@ -4,6 +4,7 @@ Decides, from the plan, at which level of detail each instance is drawn for each
 samples share a drawing.
 """
 
+from contextlib import nullcontext
 from dataclasses import astuple, dataclass, replace
 
 import numpy as np
@@ -90,8 +91,8 @@ class SceneDrawing:
         self._shared = SharedDrawings("MATTES" in target.defines)
         self._graded = GradedDrawings(content, buffers, graded)
 
-    def aim(self, plan, wavelengths=None, highlights=None):
-        """Prepare a frame: levels, shared drawings, order of the instances.
+    def aim(self, plan, wavelengths=None, highlights=None, part=None):
+        """Prepare a frame or a round of it: levels, shared drawings, order of the instances.
 
         Parameters
         ----------
@@ -101,14 +102,19 @@ class SceneDrawing:
             `passes.chromatic.ChromaticSample`; for a target of `surface.in_wavelengths`.
         highlights : GPUUniformBuf or None
             `HighlightParams`, for a target that splits light.
+        part : tuple of 4 int, optional
+            x, y, width, height of the part of the raster that is needed; default: all of it.
         """
         self._plan = plan
+        self._part = part
         self._wavelengths = wavelengths or (lambda _sample: None)
         self._highlights = highlights
         self.counts = DrawingCounts()
-        self._visible = culling.seen(self._spheres, plan)
+        self._seen = self._visible = culling.seen(self._spheres, plan)
+        if part is not None:
+            self._visible = self._seen & culling.seen(self._spheres, plan, part)
         seen = extents(self._corners, plan.view, plan.chromatic)
-        self.nearest = float(seen.nearest[self._visible].min(initial=np.inf))
+        self.nearest = float(seen.nearest[self._seen].min(initial=np.inf))
         self.levels = self._choose_levels(seen)
         self._find_graded()
         self._shared.forget()
@@ -181,7 +187,8 @@ class SceneDrawing:
         """List the draw calls for a sample, without what shares drawings."""
         plan = self._plan
         levels = [
-            level_for_sample(lower + change, index, plan.samples) for _, lower, change in self._rows
+            level_for_sample(lower + change, *plan.in_round(index))
+            for _, lower, change in self._rows
         ]
         return [run for draw in draws for run in self._runs(draw, levels[draw.group] == draw.level)]
 
@@ -215,7 +222,7 @@ class SceneDrawing:
         listed = []
         for row in self._single:
             if row not in copied:
-                level = level_for_sample(self.levels[row], index, self._plan.samples)
+                level = level_for_sample(self.levels[row], *self._plan.in_round(index))
                 listed += self._of_row(draws, row, level, index)
         return listed
 
@@ -225,6 +232,16 @@ class SceneDrawing:
         state.opaque()
         resources = {"highlights": self._highlights, "wavelength": wavelength}
         surface.draw_sample(listed, view, self._table, lens_sample, index, **resources)
+
+    def confine(self, part):
+        """Let the samples that follow draw less: a part of the part that was aimed at."""
+        self._part = part
+
+    def confined(self):
+        """Return a `with` block that draws into the part of a sample's raster that is needed."""
+        if self._part is None:
+            return nullcontext()
+        return state.scissored(*(self._plan.subpixels * side for side in self._part))
 
     def draw(self, index, framebuffer, view, targets):
         """Draw the opaque surfaces for a lens sample.
@@ -240,7 +257,7 @@ class SceneDrawing:
         """
         plan, shared = self._plan, self._shared
         listed = self._list(self._draws, index) + self._of_single(self._by_level, index)
-        with framebuffer.bind():
+        with framebuffer.bind(), self.confined():
             wavelength = self._wavelengths(index)
             self._draw(listed, view, plan.lens_sample(index), index, wavelength)
 
@@ -261,7 +278,7 @@ class SceneDrawing:
         listed = self._list(self._glows, index) + self._of_single(self._glows_by_level, index)
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
-        with framebuffer.bind():
+        with framebuffer.bind(), self.confined():
             lens_sample = self._plan.lens_sample(index)
             resources = {"highlights": self._highlights, "wavelength": self._wavelengths(index)}
             surface.draw_glows(listed, view, self._table, lens_sample, **resources)
@@ -294,7 +311,7 @@ class SceneDrawing:
             for draw in draws
             if draw.level == 0
             for first, count in culling.runs(
-                draw.first + np.flatnonzero(self._visible[draw.first : draw.first + draw.count]),
+                draw.first + np.flatnonzero(self._seen[draw.first : draw.first + draw.count]),
                 draw.triangles,
             )
         ]

@@ -62,7 +62,8 @@ class SharedDrawings:
         near, far = coc_ends(seen.nearest, seen.farthest, plan, seen.inverse_focus)
         largest = np.where(np.abs(near) > np.abs(far), near, far)
         # With many more cells than samples, hardly any two share one.
-        limit = np.sqrt(plan.samples) + 1.0
+        _, count = plan.in_round(plan.samples)
+        limit = np.sqrt(count) + 1.0
         budget = _BYTES
         for row in candidates:
             if seen.nearest[row] <= 0.0 or abs(largest[row]) > limit:
@@ -70,8 +71,7 @@ class SharedDrawings:
             rectangle = raster_rectangle(corners[row], plan)
             if rectangle is None:
                 continue
-            own = np.full(plan.samples, levels[row])
-            chosen = level_for_sample(own, np.arange(plan.samples), plan.samples)
+            chosen = level_for_sample(np.full(count, levels[row]), np.arange(count), count)
             coc = float(largest[row])
             eye = corners[row] @ plan.view[:3, :3].T + plan.view[:3, 3]
             for found in find_sprites(row, coc, chosen, triangles(row), rectangle, plan, eye):
@@ -92,7 +92,7 @@ class SharedDrawings:
         copied = np.zeros(count)
         for found in self._members.values():
             copied[list(found)] += 1.0
-        return copied / plan.samples
+        return copied / (plan.samples - plan.first)
 
     def drawings_of(self, row, samples):
         """Return how often a row is drawn for so many lens samples, sprites counted once each."""

@@ -38,7 +38,7 @@ class SubsampleBlur:
         offsets = np.zeros((*plan.subsample_offsets.shape[:2], 4))
         offsets[..., :2] = plan.subsample_offsets
         self._offsets = texture_2d(offsets)
-        self._spread = np.abs(plan.subsample_offsets).max(axis=(0, 1))
+        self._spread = np.abs(plan.subsample_offsets[plan.first :]).max(axis=(0, 1))
         blur = max(abs(self._coc(self._nearest)), abs(self._coc(1.0)))
         places = plan.samples + int(plan.subsample_counts.sum())
         if wavelengths:
@@ -70,6 +70,13 @@ class SubsampleBlur:
         return max(
             np.abs(opening * (sweep[:2] + sweep[2:] * window_depth)).max() for sweep in sweeps
         )
+
+    @property
+    def reach(self):
+        """How far from a pixel a sample's colours are looked at, in texels."""
+        moved = max(self._coc(depth, self._spread) for depth in (self._nearest, 1.0))
+        # A texel on either side, and those that a mean of the top level takes in.
+        return int(np.ceil(moved)) + 2 + (2 << self._top)
 
     def _levels_in_reach(self):
         """Return how many levels hold the depths of all that a ray of a pixel may meet."""

@@ -14,12 +14,14 @@ SIGGRAPH 2015.
 from ..device import shader_source
 from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
+from ..sampling.tile_control import TILE
 from .accumulate import padded
 
 # Channel of `surface.COLOR_AND_MATTES`' second target that holds the id.
 CHANNELS = {"CryptoObject": 0, "CryptoMaterial": 1}
 
 _GROUP = 8
+_TILED = (("TILED", "1"), ("TILE", str(TILE)))
 _SPARE_PAIRS = 1
 
 
@@ -34,12 +36,12 @@ def slot_pairs(kinds):
     return max(kinds.values()) + _SPARE_PAIRS
 
 
-@variants(pairs=(2, 4), subpixels=(1, 4))
-def _count_info(pairs, subpixels):
+@variants(pairs=(2, 4), subpixels=(1, 4), tiled=(False, True))
+def _count_info(pairs, subpixels, tiled):
     return ShaderInfo(
         name="aplanat_cryptomatte_count",
         compute=shader_source.load("passes/cryptomatte_comp.glsl"),
-        samplers=(("FLOAT_2D", "mattes_tx"),),
+        samplers=(("FLOAT_2D", "mattes_tx"), *(("FLOAT_2D", "active_tx"),) * tiled),
         images=(("RGBA32F", "FLOAT_2D_ARRAY", "tables_img", ("READ", "WRITE")),),
         push_constants=(
             ("VEC4", "columns"),
@@ -47,26 +49,34 @@ def _count_info(pairs, subpixels):
             ("IVEC2", "channels"),
             ("INT", "kinds"),
         ),
-        defines=(("SLOT_PAIRS", str(pairs)), ("SUBPIXELS", str(subpixels))),
+        defines=(
+            ("SLOT_PAIRS", str(pairs)),
+            ("SUBPIXELS", str(subpixels)),
+            *_TILED * tiled,
+        ),
         local_size=(_GROUP, _GROUP, 1),
     )
 
 
-@variants(pairs=(2, 4))
-def _rank_info(pairs):
+@variants(pairs=(2, 4), tiled=(False, True))
+def _rank_info(pairs, tiled):
     return ShaderInfo(
         name="aplanat_cryptomatte_rank",
         vertex=shader_source.load("passes/fullscreen_vert.glsl"),
         fragment=shader_source.load("passes/cryptomatte_frag.glsl"),
         attributes=(("VEC2", "pos"),),
         outputs=(("VEC4", "out_color"),),
-        samplers=(("FLOAT_2D_ARRAY", "tables_tx"),),
-        push_constants=(("INT", "first_layer"), ("INT", "rank"), ("FLOAT", "scale")),
-        defines=(("SLOT_PAIRS", str(pairs)),),
+        samplers=(("FLOAT_2D_ARRAY", "tables_tx"), *(("FLOAT_2D", "scales_tx"),) * tiled),
+        push_constants=(
+            ("INT", "first_layer"),
+            ("INT", "rank"),
+            *(("FLOAT", "scale"),) * (not tiled),
+        ),
+        defines=(("SLOT_PAIRS", str(pairs)), *_TILED * tiled),
     )
 
 
-def count(mattes, tables, kinds, weights):
+def count(mattes, tables, kinds, weights, active=None):
     """Count the ids of a lens sample.
 
     Parameters
@@ -79,12 +89,16 @@ def count(mattes, tables, kinds, weights):
         As `render_passes.cryptomatte_kinds` gives them.
     weights : ndarray of shape (2, k)
         Of the columns and rows of a pixel's sub-pixels; `mattes` is ``k`` times as large.
+    active : GPUTexture or None
+        1 for the tiles that count, else 0; None: all.
     """
     subpixels = len(weights[0])
-    shader = compile_shader(_count_info(slot_pairs(kinds), subpixels))
+    shader = compile_shader(_count_info(slot_pairs(kinds), subpixels, active is not None))
     channels = [CHANNELS[kind] for kind in kinds]
     shader.bind()
     shader.uniform_sampler("mattes_tx", mattes)
+    if active is not None:
+        shader.uniform_sampler("active_tx", active)
     shader.image("tables_img", tables)
     shader.uniform_int("kinds", len(channels))
     shader.uniform_int("channels", (channels + [0])[:2])
@@ -94,7 +108,7 @@ def count(mattes, tables, kinds, weights):
     dispatch(shader, -(-width // _GROUP), -(-height // _GROUP))
 
 
-def draw_ranks(fullscreen, tables, kinds, kind, index, weight):
+def draw_ranks(fullscreen, tables, kinds, kind, index, weight, scales=None):
     """Draw one pass of two ranks into the bound frame buffer.
 
     Parameters
@@ -108,12 +122,17 @@ def draw_ranks(fullscreen, tables, kinds, kind, index, weight):
         0 holds ranks 0 and 1, 1 holds 2 and 3, ...
     weight : float
         Summed weight of the samples.
+    scales : GPUTexture or None
+        Instead: one over that of each tile.
     """
     pairs = slot_pairs(kinds)
-    shader = compile_shader(_rank_info(pairs))
+    shader = compile_shader(_rank_info(pairs, scales is not None))
     shader.bind()
     shader.uniform_sampler("tables_tx", tables)
     shader.uniform_int("first_layer", list(kinds).index(kind) * pairs)
     shader.uniform_int("rank", 2 * index)
-    shader.uniform_float("scale", 1.0 / weight)
+    if scales is not None:
+        shader.uniform_sampler("scales_tx", scales)
+    else:
+        shader.uniform_float("scale", 1.0 / weight)
     shader.draw(fullscreen)

@@ -5,19 +5,30 @@ import numpy as np
 from ..device import shader_source
 from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
+from ..sampling.tile_control import TILE
 
 
-@variants(with_bokeh=(False, True), by_channel=(False, True), distorted=(False, True))
-def _info(with_bokeh, by_channel, distorted):
+@variants(
+    lambda distorted, by_channel, tiled, **_: not (tiled and (distorted or by_channel)),
+    with_bokeh=(False, True),
+    by_channel=(False, True),
+    distorted=(False, True),
+    tiled=(False, True),
+)
+def _info(with_bokeh, by_channel, distorted, tiled):
     return ShaderInfo(
         name="aplanat_resolve",
         vertex=shader_source.load("passes/fullscreen_vert.glsl"),
         fragment=shader_source.load("passes/resolve_frag.glsl"),
         attributes=(("VEC2", "pos"),),
         outputs=(("VEC4", "out_color"),),
-        samplers=(("FLOAT_2D", "sum_tx"),) + (("FLOAT_2D", "bokeh_tx"),) * with_bokeh,
+        samplers=(
+            ("FLOAT_2D", "sum_tx"),
+            *(("FLOAT_2D", "bokeh_tx"),) * with_bokeh,
+            *(("FLOAT_2D", "scales_tx"),) * tiled,
+        ),
         push_constants=(
-            ("VEC4" if by_channel else "FLOAT", "scale"),
+            *(("VEC4" if by_channel else "FLOAT", "scale"),) * (not tiled),
             ("IVEC2", "origin"),
             ("INT", "pixel_size"),
             *(
@@ -26,11 +37,24 @@ def _info(with_bokeh, by_channel, distorted):
                 else ()
             ),
         ),
-        defines=(("BOKEH", "1"),) * with_bokeh + (("DISTORTED", "1"),) * distorted,
+        defines=(
+            *(("BOKEH", "1"),) * with_bokeh,
+            *(("DISTORTED", "1"),) * distorted,
+            *(("TILED", "1"), ("TILE", str(TILE))) * tiled,
+        ),
     )
 
 
-def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1, bokeh=None, distortion=None):
+def resolve(
+    fullscreen,
+    total,
+    weight,
+    origin=(0, 0),
+    pixel_size=1,
+    bokeh=None,
+    distortion=None,
+    scales=None,
+):
     """Draw the mean of the samples into the bound frame buffer.
 
     Parameters
@@ -48,15 +72,22 @@ def resolve(fullscreen, total, weight, origin=(0, 0), pixel_size=1, bokeh=None, 
         Added to the mean.
     distortion : DistortionPlan or None
         Where the picture's pixels lie in the textures; None: they are those of the textures.
+    scales : GPUTexture or None
+        Instead of the weight: one over that of each channel, a texel a tile of
+        `sampling.tile_control.TILE` px. Not with distortion.
     """
     by_channel = isinstance(weight, tuple)
-    shader = compile_shader(_info(bokeh is not None, by_channel, distortion is not None))
+    tiled = scales is not None
+    shader = compile_shader(_info(bokeh is not None, by_channel, distortion is not None, tiled))
     shader.bind()
     shader.uniform_sampler("sum_tx", total)
     if bokeh is not None:
         shader.uniform_sampler("bokeh_tx", bokeh)
-    scale = tuple(1.0 / w for w in weight) if by_channel else 1.0 / weight
-    shader.uniform_float("scale", scale)
+    if tiled:
+        shader.uniform_sampler("scales_tx", scales)
+    else:
+        scale = tuple(1.0 / w for w in weight) if by_channel else 1.0 / weight
+        shader.uniform_float("scale", scale)
     shader.uniform_int("origin", origin)
     shader.uniform_int("pixel_size", pixel_size)
     if distortion is not None:

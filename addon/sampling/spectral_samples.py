@@ -49,7 +49,7 @@ class SpectralSamples:
     lens_indices: np.ndarray
 
 
-def wavelengths_for(aberration, count, seed=0, importance=True):
+def wavelengths_for(aberration, count, seed=0, importance=True, in_proportion=True):
     """Choose wavelength and colour of each sample.
 
     Parameters
@@ -60,6 +60,9 @@ def wavelengths_for(aberration, count, seed=0, importance=True):
         0 is the plain sequence; others rotate it.
     importance : bool
         False: wavelengths of the spectral mode are drawn evenly and only weighted, for comparisons.
+    in_proportion : bool
+        Each channel's weights sum to the number of samples. False leaves them as they are drawn, so
+        that they do not depend on it.
 
     Returns
     -------
@@ -71,7 +74,8 @@ def wavelengths_for(aberration, count, seed=0, importance=True):
     group, member = index // GROUP, index % GROUP
     if aberration.mode == "RGB":
         weights = np.where(np.arange(3) == member[:, None], 1.0, _EVEN_SHARE_RGB)
-        return SpectralSamples(np.array(RGB_WAVELENGTHS_NM)[member], normalized(weights), group)
+        weights = normalized(weights) if in_proportion else 3.0 * weights
+        return SpectralSamples(np.array(RGB_WAVELENGTHS_NM)[member], weights, group)
     density = channel_density(
         aberration.wavelength_range, aberration.equalizer, aberration.primaries, importance
     )
@@ -79,7 +83,8 @@ def wavelengths_for(aberration, count, seed=0, importance=True):
     # Modulo a third, base 11 fills a group's third evenly: each run of 33 samples is a grid.
     uniform = halton(0, -(-count // GROUP), (WAVELENGTH_BASE,), shift)[group, 0]
     wavelengths, weights = density.draw(np.mod(uniform + member / GROUP, 1.0))
-    return SpectralSamples(wavelengths, normalized(weights), group)
+    weights = normalized(weights) if in_proportion else weights
+    return SpectralSamples(wavelengths, weights, group)
 
 
 def normalized(weights):

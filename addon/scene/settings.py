@@ -73,6 +73,9 @@ def read_sampling(scene):
         lens_samples=settings.render_samples,
         seed=settings.seed,
         target_error=settings.render_error if settings.use_target_error else None,
+        least_samples=settings.render_min_samples,
+        most_samples=settings.render_max_samples,
+        time_limit=settings.render_time_limit or None,
         subsamples=settings.subsamples,
         reuse_grid=settings.sharing_cells if settings.use_sharing else 0,
         uses_levels=settings.use_levels,
@@ -89,6 +92,9 @@ def read_preview_sampling(scene):
         read_sampling(scene),
         lens_samples=settings.preview_samples,
         target_error=settings.preview_error if settings.use_target_error else None,
+        least_samples=settings.preview_min_samples,
+        most_samples=settings.preview_max_samples,
+        time_limit=settings.preview_time_limit or None,
         progressive=True,
     )
 
@@ -118,6 +124,7 @@ def read_passes(view_layer):
         ("Detail", own.use_pass_detail),
         ("Focus Matte", own.use_pass_focus_matte),
         ("Fringe", own.use_pass_fringe),
+        ("Sample Count", own.use_pass_sample_count),
     )
     names = ["Combined", *(name for name, wanted in switches if wanted)]
     # Two ranks a pass.

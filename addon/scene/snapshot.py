@@ -435,8 +435,12 @@ class Sampling:
     lens_samples : int
     seed : int
     target_error : float or None
-        What the adaptive method aims at, as 1 - SSIM; it then chooses the numbers below itself, and
-        `lens_samples`. None leaves them as they are.
+        What the adaptive method aims at, as 1 - SSIM: it then draws samples until the picture is
+        that good, and chooses what is below itself. None leaves it as it is.
+    least_samples, most_samples : int
+        Bounds of the lens samples with a target error.
+    time_limit : float or None
+        Seconds of drawing after which the picture is left as it is, whatever the method.
     subsamples : int
         Places on the lens that each lens sample stands for besides its own, on the average.
     reuse_grid : int
@@ -457,6 +461,9 @@ class Sampling:
     lens_samples: int = 128
     seed: int = 0
     target_error: float | None = None
+    least_samples: int = 1
+    most_samples: int = 4096
+    time_limit: float | None = None
     subsamples: int = 0
     reuse_grid: int = 2
     uses_levels: bool = True

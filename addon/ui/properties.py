@@ -41,13 +41,13 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
         default="ADAPTIVE",
     )
     use_target_error: BoolProperty(
-        name="Automatic",
-        description="Choose lens samples, subsamples and detail from the largest blur in the"
-        " picture and one number for quality",
+        name="Noise Threshold",
+        description="Draw samples until the picture is as good as one number for quality asks,"
+        " where they are needed; the error is measured while the picture is drawn",
         default=True,
     )
     render_error: FloatProperty(
-        name="Render",
+        name="Render Noise Threshold",
         description="How much the final render may differ from a perfect one, as 1 - SSIM: 0.02 is"
         " a draft, 0.01 looks clean, 0.002 is for large prints. It changes the noise, never the"
         " amount of blur",
@@ -59,7 +59,7 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
         step=0.1,
     )
     preview_error: FloatProperty(
-        name="Viewport",
+        name="Viewport Noise Threshold",
         description="How much the picture may differ from a perfect one when the viewport rests, as"
         " 1 - SSIM",
         default=0.03,
@@ -68,6 +68,58 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
         soft_max=0.1,
         precision=4,
         step=0.1,
+    )
+    render_min_samples: IntProperty(
+        name="Render Min Samples",
+        description="Lens samples that every part of the final render gets at least. More find"
+        " small and rare things that few samples miss",
+        default=16,
+        min=1,
+        max=MAX_SAMPLES,
+        soft_max=4096,
+    )
+    render_max_samples: IntProperty(
+        name="Render Max Samples",
+        description="Lens samples at which the final render stops even if it is above its noise"
+        " threshold",
+        default=4096,
+        min=1,
+        max=MAX_SAMPLES,
+    )
+    render_time_limit: FloatProperty(
+        name="Render Time Limit",
+        description="Seconds of drawing after which the final render takes what it has; 0 is no"
+        " limit. With a limit, the noise depends on how fast and how busy the machine is",
+        default=0.0,
+        min=0.0,
+        soft_max=3600.0,
+        subtype="TIME_ABSOLUTE",
+        unit="TIME_ABSOLUTE",
+    )
+    preview_min_samples: IntProperty(
+        name="Viewport Min Samples",
+        description="Lens samples that every part of the viewport gets at least",
+        default=16,
+        min=1,
+        max=MAX_SAMPLES,
+        soft_max=1024,
+    )
+    preview_max_samples: IntProperty(
+        name="Viewport Max Samples",
+        description="Lens samples at which the viewport rests even if it is above its noise"
+        " threshold",
+        default=1024,
+        min=1,
+        max=MAX_SAMPLES,
+    )
+    preview_time_limit: FloatProperty(
+        name="Viewport Time Limit",
+        description="Seconds of drawing after which the viewport rests; 0 is no limit",
+        default=0.0,
+        min=0.0,
+        soft_max=60.0,
+        subtype="TIME_ABSOLUTE",
+        unit="TIME_ABSOLUTE",
     )
     render_samples: IntProperty(
         name="Render",
@@ -182,6 +234,13 @@ class AplanatViewLayerSettings(bpy.types.PropertyGroup):
         name="Detail",
         description="Where the adaptive method saves work: level of detail (X), share of the lens"
         " samples that copy a drawing of the object (Y), and 1 where there is an object (Z)",
+        default=False,
+        update=_update_passes,
+    )
+    use_pass_sample_count: BoolProperty(
+        name="Sample Count",
+        description="Lens samples that each pixel got: with a noise threshold, more where the"
+        " picture needs them",
         default=False,
         update=_update_passes,
     )

@@ -2,7 +2,8 @@
 // else a free slot takes it; else the slot that counted least is handed over with its count, so
 // that a table's total stays the number of samples that hit something.
 // Inputs: mattes_tx (ids by channel; 0 is nothing; SUBPIXELS times as large as the tables); kinds;
-// channels (channel of each kind's id); columns, rows (weights of sub-pixels).
+// channels (channel of each kind's id); columns, rows (weights of sub-pixels). TILED: active_tx (1 for
+// the tiles of TILE pixels that the sample is drawn for, else 0).
 // Outputs: tables_img, layers of two slots (id, count, id, count), SLOT_PAIRS layers a kind.
 // Source: Friedman and Jones, SIGGRAPH 2015; replacement after Metwally et al., Efficient
 // computation of frequent and top-k elements in data streams, ICDT 2005 (space saving).
@@ -42,6 +43,11 @@ void main()
   if (any(greaterThanEqual(pixel, textureSize(mattes_tx, 0) / SUBPIXELS))) {
     return;
   }
+#ifdef TILED
+  if (texelFetch(active_tx, pixel / TILE, 0).x == 0.0) {
+    return;
+  }
+#endif
   for (int y = 0; y < SUBPIXELS; y++) {
     for (int x = 0; x < SUBPIXELS; x++) {
       float weight = subpixel_weight(ivec2(x, y), columns, rows);

@@ -1,13 +1,16 @@
 // Two ranks of a Cryptomatte: the ids of a pixel by falling coverage, the earlier slot first where
 // two are equal.
 // Inputs: tables_tx (see cryptomatte_comp); first_layer of the kind; rank of the first of the two;
-// scale (1 / samples).
+// scale (1 / samples; TILED: scales_tx, that of each tile of TILE pixels).
 // Outputs: id and coverage of a rank, and of the next; zeros where there is none.
 // Source: Friedman and Jones, SIGGRAPH 2015.
 
 void main()
 {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
+#ifdef TILED
+  float scale = texelFetch(scales_tx, pixel / TILE, 0).x;
+#endif
   vec2 slots[2 * SLOT_PAIRS];
   for (int i = 0; i < SLOT_PAIRS; i++) {
     vec4 pair = texelFetch(tables_tx, ivec3(pixel, first_layer + i), 0);

@@ -1,7 +1,7 @@
 // The picture: the sum of the samples over their weight, placed at an offset in the target,
 // each pixel as a square of pixel_size.
 // Inputs: sum_tx; with BOKEH also bokeh_tx, which is added; scale (1 / summed weight, or that of each
-// channel); origin (lower left corner in the target, px); pixel_size. DISTORTED: the textures are of a
+// channel; TILED: scales_tx, those of each tile of TILE pixels); origin (lower left corner in the target, px); pixel_size. DISTORTED: the textures are of a
 // raster without distortion, sampled where the picture's pixels lie in it; to_field, from_field,
 // model (see distortion_lib).
 // Outputs: premultiplied scene-linear colour. Source: methods 1, 13.
@@ -19,6 +19,9 @@ void main()
   out_color += distorted_sample(bokeh_tx, at);
 #endif
 #else
+#ifdef TILED
+  vec4 scale = texelFetch(scales_tx, texel / TILE, 0);
+#endif
   out_color = texelFetch(sum_tx, texel, 0) * scale;
 #ifdef BOKEH
   out_color += texelFetch(bokeh_tx, texel, 0);
