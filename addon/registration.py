@@ -21,6 +21,7 @@ from .ui import (
     overrides,
     panels,
     properties,
+    sampling_panel,
     sampling_presets,
 )
 
@@ -33,6 +34,7 @@ _MODULES = (
     blender_panels,
     sampling_presets,
     level_operators,
+    sampling_panel,
     panels,
     lens_operators,
     lens_import,

@@ -17,19 +17,17 @@ from .option_values import (
     positive_number,
     whole_number,
 )
+from .sampling_arguments import MAX_SAMPLES, add_sampling, check_sampling
 from .version import version
 
 # Bounds of Blender's own properties.
 MIN_SIDE, MAX_SIDE = 4, 65536
-MAX_SAMPLES = 65536
-MAX_SEED = 2**31 - 1
-MAX_FILTER_PX = 500.0
 MAX_FRAME = 1048574
 
 ENDINGS = (".exr", ".png")
 
 # argparse would take a negative number after these for an option.
-_MAY_BE_NEGATIVE = {"--frames", "--field-deg", "--planes-mm", "--rho"}
+_MAY_BE_NEGATIVE = {"--frames", "--level-bias", "--field-deg", "--planes-mm", "--rho"}
 
 # Of `bench --bokeh`.
 BOKEH_MEASURES = (
@@ -100,8 +98,7 @@ def _check_render(arguments):
         raise _not_yet(key, key)
     if arguments.layers is not None:
         raise _not_yet("--layers", "--layers")
-    if arguments.subsamples is not None and arguments.method == "reference":
-        raise InputError("--subsamples belongs to --method adaptive; the reference method has none")
+    check_sampling(arguments)
     if arguments.frame_step is not None and arguments.frames is None:
         raise InputError("--frame-step belongs to --frames; give the first and the last frame, too")
     several = arguments.frames is not None and arguments.frames[0] != arguments.frames[1]
@@ -196,27 +193,8 @@ def _add_render(commands):
     add("--camera", metavar="NAME", help="camera object to render from")
     add("--resolution", metavar="WxH", type=_resolution, help="in pixels, at 100 %%")
     add("--method", choices=("reference", "adaptive", "layered"), help="default: the scene's")
-    add(
-        "--samples",
-        metavar="N",
-        type=whole_number(1, MAX_SAMPLES),
-        help="lens samples; without it the adaptive method may choose them itself",
-    )
-    add(
-        "--subsamples",
-        metavar="S",
-        type=whole_number(0, 64),
-        help="adaptive method: places on the lens that a sample stands for besides its own",
-    )
     add("--layers", metavar="K", type=whole_number(1, 64), help=argparse.SUPPRESS)
-    add("--seed", metavar="N", type=whole_number(0, MAX_SEED), help="pattern of samples")
-    add("--filter", choices=("box", "blackman-harris"), help="pixel filter")
-    add(
-        "--filter-size",
-        metavar="PX",
-        type=positive_number(MAX_FILTER_PX),
-        help="width of the pixel filter, in pixels",
-    )
+    add_sampling(parser)
     add("--no-bokeh", action="store_true", help="without separate highlights")
     add("--no-chromatic", action="store_true", help="without chromatic aberration")
     add(

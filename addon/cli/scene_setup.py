@@ -13,6 +13,7 @@ from ..engine.render_engine import ENGINE_ID
 from ..errors import CameraError, FocusError, InputError
 from ..lens_io.library import Library
 from ..scene.lenses import shelf, user_folder
+from .sampling_arguments import apply_sampling
 
 # What a pixel takes at the same time, generously: targets of the device, read-back, Blender's
 # result and the picture file.
@@ -65,20 +66,7 @@ def apply_options(scene, arguments):
     if arguments.resolution:
         render.resolution_x, render.resolution_y = arguments.resolution
         render.resolution_percentage = 100
-    if arguments.method:
-        settings.method = arguments.method.upper()
-    if arguments.samples:
-        settings.render_samples = arguments.samples
-        settings.use_target_error = False
-    if arguments.subsamples is not None:
-        settings.subsamples = arguments.subsamples
-        settings.use_target_error = False
-    if arguments.seed is not None:
-        settings.seed = arguments.seed
-    if arguments.filter:
-        settings.pixel_filter = arguments.filter.upper().replace("-", "_")
-    if arguments.filter_size:
-        render.filter_size = arguments.filter_size
+    apply_sampling(settings, render, arguments)
     if arguments.camera:
         _use_camera(scene, arguments.camera)
     use_engine(scene)

@@ -37,13 +37,15 @@ def settings_in_force(scene, arguments=None):
     dof = data.dof
     focus = dof.focus_object
     lens, _ = read_real_lens(data)
+    automatic = own.method == "ADAPTIVE" and own.use_target_error
     return {
         "method": own.method.lower(),
-        "target_error": (
-            own.render_error if own.method == "ADAPTIVE" and own.use_target_error else None
-        ),
-        "samples": own.render_samples,
-        "subsamples": own.subsamples if own.method == "ADAPTIVE" else 0,
+        "target_error": own.render_error if automatic else None,
+        "min_samples": own.render_min_samples if automatic else None,
+        "max_samples": own.render_max_samples if automatic else None,
+        "time_limit_s": own.render_time_limit or None,
+        "samples": None if automatic else own.render_samples,
+        "subsamples": _subsamples(own, automatic),
         "share_drawings": own.sharing_cells if own.use_sharing else 0,
         "levels_of_detail": own.use_levels,
         "level_bias": own.level_bias,
@@ -170,6 +172,13 @@ def _chromatic(data, lens):
     }
 
 
+def _subsamples(own, automatic):
+    if own.method != "ADAPTIVE":
+        return 0
+    # With a noise threshold they follow from the blur; the work tells how many there were.
+    return None if automatic else own.subsamples
+
+
 def work(statistics):
     """Return a render's `RenderStatistics` as numbers for JSON."""
     found = statistics.highlights
@@ -178,6 +187,7 @@ def work(statistics):
         "lens_samples": statistics.lens_samples,
         "subsamples": statistics.subsamples,
         "subpixels": statistics.subpixels,
+        "noise": _noise(statistics.noise),
         "draw_calls": statistics.draw_calls,
         "meshes_decimated": statistics.decimations,
         "levels_replayed": statistics.replays,
@@ -201,18 +211,42 @@ def work(statistics):
     }
 
 
+def _noise(report):
+    if report is None:
+        return None
+    least, mean, most = report.samples
+    return {
+        "target": report.target,
+        "error": report.error,
+        "samples_least": least,
+        "samples_mean": mean,
+        "samples_most": most,
+        "tiles": report.tiles,
+        "tiles_above": report.above,
+    }
+
+
 def total_work(parts):
     """Add the work of several frames, key by key; of what is no sum, take the most."""
     total = {}
     for part in parts:
         for key, value in part.items():
-            if isinstance(value, dict):
+            if key == "noise":
+                # That of the frame that was left with the largest error.
+                worst = total.get(key)
+                if worst is None or _error(value) > _error(worst):
+                    total[key] = value
+            elif isinstance(value, dict):
                 total[key] = total_work([total.get(key, {}), value])
             elif key.endswith(("_bytes", "subpixels", "subsamples")):
                 total[key] = max(total.get(key, 0), value)
             else:
                 total[key] = total.get(key, 0) + value
     return total
+
+
+def _error(noise):
+    return (noise or {}).get("error") or 0.0
 
 
 def machine():

@@ -17,7 +17,7 @@ from ..scene.extract import SceneExtractor
 from .gpu_thread import gpu_of_render
 from .level_store import level_store
 from .levels import meshes_with_levels
-from .outcome import LayerPicture, PassPicture, note_highlights
+from .outcome import LayerPicture, PassPicture, note_highlights, note_sampling
 from .pacing import Pacer
 from .pipeline import FrameRenderer
 from .plan import plan_frame
@@ -87,6 +87,8 @@ def _render_view(engine, depsgraph, heard, extractor, view):
         finally:
             statistics.lens_samples += renderer.samples_done
             statistics.subsamples = max(statistics.subsamples, float(plan.subsample_counts.mean()))
+            statistics.note_noise(renderer.sampling)
+            note_sampling(depsgraph.scene, renderer.sampling)
             statistics.subpixels = max(statistics.subpixels, plan.subpixels)
             counts = renderer.counts
             statistics.draw_calls += counts.draw_calls
@@ -175,6 +177,8 @@ def _draw(engine, gpu, renderer, result, heard):
         with heard.statistics.timed("draw"):
             gpu.call(partial(pacer.advance, renderer))
         now = time.perf_counter()
+        if renderer.is_late(now - start):
+            renderer.stop()
         _show_progress(engine, heard, renderer, now - start)
         if now - shown > pause and not renderer.finished():
             fill_layer(result.layers[0], {"Combined": gpu.call(renderer.read_image)})
@@ -184,9 +188,11 @@ def _draw(engine, gpu, renderer, result, heard):
 
 
 def _show_progress(engine, heard, renderer, seconds):
-    done, total = renderer.samples_done, renderer.plan.samples
+    done, total = renderer.samples_done, renderer.samples_expected
     megabytes = (renderer.texture_bytes() + renderer.geometry_bytes()) / 2**20
     text = f"Sample {done}/{total} | {seconds:.1f} s | GPU {megabytes:.0f} MB"
+    if renderer.sampling.text:
+        text += f" | {renderer.sampling.text}"
     engine.update_progress(done / total)
     engine.update_stats("", text)
     if heard.progress is not None:

@@ -70,6 +70,8 @@ class FramePictures:
         tiles = weights.scales
         bokeh = targets["bokeh"] if self._plan.bokeh else None
         if not shows_marks(self._plan):
+            if tiles is not None:
+                targets.forget_framebuffers()
             self._resolve(*whole, origin, pixel_size, bokeh, tiles)
             return
         targets.forget_framebuffers()

@@ -15,7 +15,7 @@ import threading
 import time
 from collections import OrderedDict
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -52,6 +52,8 @@ class RenderStatistics:
     texture_bytes, geometry_bytes : int
         On the device, of the view layer that took most.
     device : str
+    noise : SamplingReport or None
+        Of the view layer that was left with the largest error.
     """
 
     seconds: dict[str, float] = field(default_factory=dict)
@@ -84,6 +86,12 @@ class RenderStatistics:
     texture_bytes: int = 0
     geometry_bytes: int = 0
     device: str = ""
+    noise: object = None
+
+    def note_noise(self, report):
+        """Take note of how far the sampling of a view layer has come."""
+        if self.noise is None or (report.error or 0.0) > (self.noise.error or 0.0):
+            self.noise = report
 
     @contextmanager
     def timed(self, stage):
@@ -188,10 +196,11 @@ class RenderOutcome:
 
 
 @dataclass(frozen=True)
-class _HighlightNote:
+class _PictureNote:
     counts: dict | None = None
     problems: tuple = ()
     fates: dict = field(default_factory=dict)
+    sampling: object = None
 
 
 # Of the last picture of each scene, by the scene's session number. The main thread (viewports,
@@ -214,10 +223,25 @@ def note_highlights(scene, counts, problems=(), fates=None):
     fates : dict of str to int or None
         As `FrameRenderer.fates` has them.
     """
-    note = _HighlightNote(dict(vars(counts)) if counts else None, problems, dict(fates or {}))
+    counts = dict(vars(counts)) if counts else None
+    _note(scene, counts=counts, problems=problems, fates=dict(fates or {}))
+
+
+def note_sampling(scene, report):
+    """Remember how far the sampling of a scene's picture has come, for the panel.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+    report : SamplingReport
+    """
+    _note(scene, sampling=report)
+
+
+def _note(scene, **changes):
     number = scene.original.session_uid
     with _lock:
-        _notes[number] = note
+        _notes[number] = replace(_notes.get(number, _PictureNote()), **changes)
         _notes.move_to_end(number)
         while len(_notes) > _MOST_NOTES:
             _notes.popitem(last=False)
@@ -226,6 +250,11 @@ def note_highlights(scene, counts, problems=(), fates=None):
 def last_highlights(scene):
     """Return what `note_highlights` was told last of a scene, as a dict, or None."""
     return _note_of(scene).counts
+
+
+def last_sampling(scene):
+    """Return what `note_sampling` was told last of a scene, or None."""
+    return _note_of(scene).sampling
 
 
 def last_fates(scene):
@@ -240,7 +269,7 @@ def last_problems(scene):
 
 def _note_of(scene):
     with _lock:
-        return _notes.get(scene.original.session_uid, _HighlightNote())
+        return _notes.get(scene.original.session_uid, _PictureNote())
 
 
 _listeners = []

@@ -245,6 +245,11 @@ class FrameRenderer:
             return self._tiles.done
         return self._stopped or self.samples_done >= self.plan.samples
 
+    def is_late(self, seconds):
+        """Whether drawing for so long is as long as the time limit allows."""
+        limit = self.plan.time_limit
+        return limit is not None and seconds >= limit and not self.sampled
+
     def stop(self):
         """Draw no further samples; what there is becomes the picture."""
         self._stopped = True

@@ -58,6 +58,13 @@ class SamplingReport:
     tiles: int = 1
     above: int = 0
 
+    @property
+    def text(self):
+        """The error for people; empty where none was asked for or none is known yet."""
+        if self.error is None:
+            return ""
+        return f"Error {self.error:.4f} of {self.target:.4f}"
+
 
 def weights_of(plan, samples):
     """Return the `FrameWeights` of a plan's first samples, the same everywhere."""

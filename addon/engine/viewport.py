@@ -22,7 +22,7 @@ from ..scene.view import read_view
 from .bokeh_marks import shows_marks
 from .level_store import level_store
 from .levels import meshes_with_levels
-from .outcome import note_highlights
+from .outcome import note_highlights, note_sampling
 from .pacing import Pacer
 from .pipeline import FrameRenderer
 from .plan import plan_frame
@@ -153,6 +153,7 @@ class Viewport:
         self._pacer = Pacer(DRAW_SECONDS)
         self._broken = False
         self._moved = 0.0
+        self._drawn_seconds = 0.0
         self._levels_version = 0
 
     def note_updates(self, depsgraph, space):
@@ -215,13 +216,16 @@ class Viewport:
             renderer = self._renderer
             if not renderer.finished():
                 self._refine(renderer)
+                note_sampling(depsgraph.scene, renderer.sampling)
                 note_highlights(
                     depsgraph.scene, renderer.highlights, renderer.report, renderer.fates
                 )
             x, y, width, height = view.rectangle
             with state.confined(x, y, width, height):
                 renderer.resolve((x, y), view.pixel_size)
-        self.text = f"Sample {renderer.samples_done}/{renderer.plan.samples}"
+        self.text = f"Sample {renderer.samples_done}/{renderer.samples_expected}"
+        if renderer.sampling.text:
+            self.text += f" | {renderer.sampling.text}"
         if renderer.bokeh_drafted:
             self.text += " | Draft of the bokeh"
         if shows_marks(renderer.plan):
@@ -238,9 +242,13 @@ class Viewport:
         return not renderer.finished() or done < total
 
     def _refine(self, renderer):
-        if renderer.samples_done < renderer.plan.samples:
+        if not renderer.sampled:
             first = renderer.samples_done == 0
+            start = time.perf_counter()
             self._pacer.advance(renderer)
+            self._drawn_seconds += time.perf_counter() - start
+            if renderer.is_late(self._drawn_seconds):
+                renderer.stop()
             if first:
                 # Answering the movement may have taken longer than the rest.
                 self._moved = time.perf_counter()
@@ -259,6 +267,7 @@ class Viewport:
             self._renderer.restart(self._plan(snapshot), snapshot, drafts=True)
 
     def _plan(self, snapshot):
+        self._drawn_seconds = 0.0
         plan = plan_frame(snapshot)
         self._scene.want_levels(snapshot.content, plan)
         self._levels_version = self._scene.buffers.levels_version

@@ -5,7 +5,6 @@ import bpy
 from ..engine.level_store import level_store
 from ..engine.render_engine import ENGINE_ID
 from .level_operators import APLANAT_OT_rebuild_levels
-from .sampling_presets import APLANAT_PT_sampling_presets
 
 _GEOMETRY = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
 
@@ -27,46 +26,6 @@ class EnginePanel:
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
         return self.layout.column()
-
-
-class APLANAT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
-    """How the lens and the pixels are sampled."""
-
-    bl_label = "Sampling"
-    bl_context = "render"
-
-    def draw_header_preset(self, _context):
-        """Draw the button of the presets."""
-        APLANAT_PT_sampling_presets.draw_panel_header(self.layout)
-
-    def draw(self, context):
-        """Draw the settings of the scene."""
-        settings = context.scene.aplanat
-        column = self.column()
-        column.prop(settings, "method")
-        adaptive = settings.method == "ADAPTIVE"
-        if adaptive:
-            column.prop(settings, "use_target_error")
-        if adaptive and settings.use_target_error:
-            errors = column.column(align=True)
-            errors.prop(settings, "preview_error", text="Viewport Error")
-            errors.prop(settings, "render_error", text="Render")
-        else:
-            samples = column.column(align=True)
-            samples.prop(settings, "preview_samples", text="Viewport Samples")
-            samples.prop(settings, "render_samples", text="Render")
-            if adaptive:
-                column.prop(settings, "subsamples")
-        if adaptive:
-            sharing = column.row(heading="Share Drawings")
-            sharing.prop(settings, "use_sharing", text="")
-            cells = sharing.row()
-            cells.active = settings.use_sharing
-            cells.prop(settings, "sharing_cells")
-        column.prop(settings, "seed")
-        pixel = column.column()
-        pixel.prop(settings, "pixel_filter")
-        pixel.prop(context.scene.render, "filter_size", text="Width")
 
 
 class APLANAT_RENDER_PT_level_of_detail(EnginePanel, bpy.types.Panel):
@@ -180,6 +139,7 @@ class APLANAT_VIEWLAYER_PT_data(EnginePanel, bpy.types.Panel):
         parts.prop(layer.aplanat, "use_pass_bokeh")
         diagnosis = column.column(heading="Diagnosis")
         diagnosis.prop(layer.aplanat, "use_pass_detail")
+        diagnosis.prop(layer.aplanat, "use_pass_sample_count")
 
 
 class APLANAT_VIEWLAYER_PT_cryptomatte(EnginePanel, bpy.types.Panel):
@@ -270,7 +230,6 @@ class APLANAT_WORLD_PT_whites(EnginePanel, bpy.types.Panel):
 
 
 CLASSES = (
-    APLANAT_RENDER_PT_sampling,
     APLANAT_RENDER_PT_level_of_detail,
     APLANAT_RENDER_PT_film,
     APLANAT_RENDER_PT_performance,

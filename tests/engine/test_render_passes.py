@@ -23,6 +23,7 @@ def view_layer(depth=6, **switches):
         use_pass_bokeh=switches.get("bokeh", False),
         use_pass_detail=switches.get("detail", False),
         use_pass_fringe=switches.get("fringe", False),
+        use_pass_sample_count=switches.get("sample_count", False),
     )
     return Record(pass_cryptomatte_depth=depth, aplanat=own, **values)
 
@@ -54,6 +55,7 @@ def test_every_name_that_can_be_asked_for_is_in_the_table():
             coc=True,
             focus_matte=True,
             fringe=True,
+            sample_count=True,
             cryptomatte_object=True,
             cryptomatte_material=True,
         )

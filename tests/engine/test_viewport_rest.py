@@ -18,6 +18,13 @@ class FakeRenderer:
     def advance(self, samples):
         self.samples_done = min(self.samples_done + samples, self.plan.samples)
 
+    @property
+    def sampled(self):
+        return self.samples_done >= self.plan.samples
+
+    def is_late(self, _seconds):
+        return False
+
     def wait(self):
         """Be done at once."""
 
