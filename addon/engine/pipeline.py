@@ -284,8 +284,6 @@ class FrameRenderer:
         if self.plan.chromatic:
             # More samples have wavelengths that reach a little further.
             self._field = _chromatic_resources(self.plan.chromatic)
-            if self._blur:
-                self._find_bounds()
 
     def wait(self):
         """Return when the device has drawn everything it was given."""
