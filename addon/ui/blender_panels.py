@@ -31,14 +31,11 @@ _LEFT_OUT = frozenset(
         "NODE_DATA_PT_light",
         "DATA_PT_preview",
         "DATA_PT_volume_render",
-        "DATA_PT_camera_stereoscopy",
         "OBJECT_PT_shading",
-        "RENDER_PT_stereoscopy",
-        "RENDER_PT_output_views",
     }
 )
-# Freestyle, light probes; of Simplify there is one in its place.
-_LEFT_OUT_WORDS = ("freestyle", "lightprobe", "RENDER_PT_simplify")
+# Light probes; of Simplify there is one in its place.
+_LEFT_OUT_WORDS = ("lightprobe", "RENDER_PT_simplify")
 
 
 def fitting_panels():

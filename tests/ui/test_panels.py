@@ -23,6 +23,9 @@ def engines(bpy, name):
         *("RENDER_PT_format", "RENDER_PT_output", "RENDER_PT_color_management"),
         *("APLANAT_RENDER_PT_simplify", "RENDER_PT_post_processing", "OBJECT_PT_visibility"),
         *("DATA_PT_context_mesh", "DATA_PT_uv_texture", "PARTICLE_PT_render"),
+        *("RENDER_PT_stereoscopy", "RENDER_PT_output_views", "DATA_PT_camera_stereoscopy"),
+        # Blender draws the lines, whatever the engine.
+        *("RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle"),
     ],
 )
 def test_blenders_panel_is_shown(aplanat_bpy, name):
@@ -32,8 +35,8 @@ def test_blenders_panel_is_shown(aplanat_bpy, name):
 @pytest.mark.parametrize(
     "name",
     [
-        *("RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "DATA_PT_lightprobe"),
-        *("RENDER_PT_eevee_sampling", "CYCLES_RENDER_PT_sampling", "RENDER_PT_stereoscopy"),
+        "DATA_PT_lightprobe",
+        *("RENDER_PT_eevee_sampling", "CYCLES_RENDER_PT_sampling"),
     ],
 )
 def test_panel_of_what_aplanat_lacks_is_not_shown(aplanat_bpy, name):
