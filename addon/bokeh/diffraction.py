@@ -22,6 +22,8 @@ Pellat-Finet, Fresnel diffraction and the fractional-order Fourier transform, Op
 1994. Ozaktas et al., Digital computation of the fractional Fourier transform, IEEE TSP 44(9), 1996.
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 from ..errors import InputError
@@ -137,7 +139,7 @@ def _by_matrix(iris, number, size, extent):
     # the finest fringes (1 / N wide at the far rim) are averaged over a texel.
     samples = int(np.ceil(max(_FEWEST_SAMPLES, 4.4 * number * (1.0 + extent))))
     parts = int(np.clip(np.ceil(4.0 * number * extent / size), 2, 8))
-    amplitude = iris_mask(iris.amplitude(), samples)
+    amplitude = _amplitude(iris, samples)
     step = 2.0 / samples
     x = (np.arange(samples) + 0.5) * step - 1.0
     u = (np.arange(parts * size) + 0.5) * (2.0 * extent / (parts * size)) - extent
@@ -146,29 +148,50 @@ def _by_matrix(iris, number, size, extent):
     return intensity.reshape(size, parts, size, parts).mean(axis=(1, 3))
 
 
-def _by_convolution(iris, number, size, extent):
+# All wavelengths and all defocuses of an opening start from the same drawing of it.
+@lru_cache(maxsize=4)
+def _amplitude(iris, samples):
+    return iris_mask(iris.amplitude(), samples)
+
+
+@lru_cache(maxsize=2)
+def _spectrum(iris):
     # Single precision: its rounding is far below the ripple of the window.
-    amplitude = iris_mask(iris.amplitude(), _WINDOW_SAMPLES, _WINDOW, 2).astype(np.complex64)
+    opening = iris.amplitude()
+    amplitude = np.zeros((_WINDOW_SAMPLES,) * 2, np.complex64)
+    # Nothing passes beyond the corners of a picture's square.
+    inner = int(np.ceil(_WINDOW_SAMPLES * np.sqrt(0.5) / _WINDOW)) * 2
+    reach = _WINDOW * inner / _WINDOW_SAMPLES
+    edge = (_WINDOW_SAMPLES - inner) // 2
+    amplitude[edge : edge + inner, edge : edge + inner] = iris_mask(opening, inner, reach, 2)
+    return np.fft.fft2(amplitude)
+
+
+def _by_convolution(iris, number, size, extent):
     frequency = np.fft.fftfreq(_WINDOW_SAMPLES, 2.0 * _WINDOW / _WINDOW_SAMPLES)
     chirp = np.exp(-1j * np.pi / number * frequency**2).astype(np.complex64)
-    spectrum = np.fft.fft2(amplitude)
-    spectrum *= chirp
-    spectrum *= chirp[:, None]
-    wave = np.fft.ifft2(spectrum)
-    return _resampled(wave.real.astype(float) ** 2 + wave.imag.astype(float) ** 2, size, extent)
+    # Only the rows and columns that are asked for are finished.
+    half = min(int(np.ceil(extent * _WINDOW_SAMPLES / (2.0 * _WINDOW))) + 1, _WINDOW_SAMPLES // 2)
+    inner = slice(_WINDOW_SAMPLES // 2 - half, _WINDOW_SAMPLES // 2 + half)
+    wave = np.fft.ifft(_spectrum(iris) * chirp[:, None], axis=0)[inner]
+    wave *= chirp
+    wave = np.fft.ifft(wave, axis=1)[:, inner]
+    intensity = wave.real.astype(float) ** 2 + wave.imag.astype(float) ** 2
+    return _resampled(intensity, size, extent)
 
 
 def _resampled(intensity, size, extent):
     """Exact means over texels of a picture whose samples are squares of constant value."""
     samples = intensity.shape[0]
-    edges = (np.linspace(-extent, extent, size + 1) + _WINDOW) * samples / (2.0 * _WINDOW)
+    pitch = 2.0 * _WINDOW / _WINDOW_SAMPLES
+    edges = np.linspace(-extent, extent, size + 1) / pitch + samples / 2.0
     edges = np.clip(edges, 0.0, samples)
     sums = np.zeros((samples + 1, samples))
     np.cumsum(intensity, axis=0, out=sums[1:])
     rows = _at_edges(sums, edges)
     columns = np.zeros((samples + 1, size))
     np.cumsum(np.diff(rows, axis=0).T, axis=0, out=columns[1:])
-    return np.diff(_at_edges(columns, edges), axis=0).T * (size * _WINDOW / extent / samples) ** 2
+    return np.diff(_at_edges(columns, edges), axis=0).T * (0.5 * size * pitch / extent) ** 2
 
 
 def _at_edges(sums, edges):

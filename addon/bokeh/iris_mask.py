@@ -237,14 +237,16 @@ def iris_mask(iris, size, extent=1.0, supersampling=4):
     extent : float
         The mask spans -extent to extent in units of the radius of the opening.
     supersampling : int
-        Each texel is the mean of this number squared of squares, within which the rim counts as
-        straight and square to the axes.
+        Each texel is the mean of this number squared of squares, within which the rim of blades
+        counts as straight and square to the axes. A picture has its own means and needs none.
 
     Returns
     -------
     ndarray of shape (size, size)
         Open share of each texel, 0 to 1.
     """
+    if isinstance(iris, PictureIris):
+        supersampling = 1
     fine = size * supersampling
     covered = iris.coverage(texel_centres(fine, extent), 2.0 * extent / fine)
     return covered.reshape(size, supersampling, size, supersampling).mean(axis=(1, 3))
