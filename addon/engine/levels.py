@@ -70,15 +70,12 @@ def world_corners(content, bounds):
     ndarray of shape (I, 8, 3)
     """
     world = content.instances.world.astype(np.float64)
-    corners = np.zeros((len(world), 8, 3))
+    ends = np.zeros((len(world), 2, 3))
     for group in content.groups:
-        rows = slice(group.first, group.first + group.count)
-        low, high = np.asarray(bounds[group.mesh], np.float64)
-        choice = np.array(np.meshgrid((0, 1), (0, 1), (0, 1), indexing="ij")).reshape(3, 8).T
-        box = np.where(choice == 0, low, high)
-        corners[rows] = np.einsum("iab,cb->ica", world[rows, :3, :3], box)
-        corners[rows] += world[rows, None, :3, 3]
-    return corners
+        ends[group.first : group.first + group.count] = bounds[group.mesh]
+    choice = np.array(np.meshgrid((0, 1), (0, 1), (0, 1), indexing="ij")).reshape(3, 8).T
+    boxes = np.where(choice == 0, ends[:, None, 0], ends[:, None, 1])
+    return boxes @ world[:, :3, :3].transpose(0, 2, 1) + world[:, None, :3, 3]
 
 
 def extents(corners, view, chromatic=None):

@@ -171,6 +171,11 @@ class SceneDrawing:
                 order[rows] = np.concatenate([kept, rows[~drawn[rows]]])
                 places = group.first + np.arange(len(kept))
             self._rows.append((places, lower[kept], change[kept]))
+        # The levels of all groups' rows together, and where each group's begin.
+        none = np.zeros(0)
+        self._row_levels = np.concatenate([none, *(low + part for _, low, part in self._rows)])
+        self._starts = np.cumsum([0, *(len(places) for places, _, _ in self._rows)]).tolist()
+        self._listed = {}
         self._table = self._buffers.instances
         self._place = np.arange(count)
         if not np.array_equal(order, self._place):
@@ -185,12 +190,18 @@ class SceneDrawing:
 
     def _list(self, draws, index):
         """List the draw calls for a sample, without what shares drawings."""
-        plan = self._plan
-        levels = [
-            level_for_sample(lower + change, *plan.in_round(index))
-            for _, lower, change in self._rows
-        ]
-        return [run for draw in draws for run in self._runs(draw, levels[draw.group] == draw.level)]
+        levels = level_for_sample(self._row_levels, *self._plan.in_round(index))
+        ends = zip(self._starts, self._starts[1:], strict=False)
+        of_group = [levels[first:end].tobytes() for first, end in ends]
+        listed = []
+        for draw in draws:
+            # Most samples draw a group's rows at the levels of another sample.
+            key = (id(draw), of_group[draw.group])
+            if key not in self._listed:
+                first, end = self._starts[draw.group : draw.group + 2]
+                self._listed[key] = self._runs(draw, levels[first:end] == draw.level)
+            listed += self._listed[key]
+        return listed
 
     def _runs(self, draw, chosen):
         places = self._rows[draw.group][0]

@@ -280,7 +280,7 @@ def build_glow_draws(content, buffers, target=COLOR):
 
 def _list_draws(content, buffers, target, glow, wanted=None):
     draws = []
-    shaders = {}
+    shaders, made = {}, {}
     # Where two surfaces lie at one depth, the first one drawn is seen: the order must be that of
     # the content, whenever its parts were read.
     materials, meshes = (
@@ -293,14 +293,14 @@ def _list_draws(content, buffers, target, glow, wanted=None):
             if wanted is not None and (number, slot) not in wanted:
                 continue
             material = content.materials[group.materials[slot]]
-            code = surface_code.generate(material.graph, mesh.attributes)
-            if glow and (group.holdout or not code.glows):
+            # Many groups, and all levels of one, are drawn alike.
+            widths = tuple((key, values.shape[1]) for key, values in mesh.attributes.items())
+            alike = (material.uid, widths, group.holdout, mesh.motion is not None)
+            if alike not in made:
+                made[alike] = _code_and_shader(material, mesh, group.holdout, target, glow)
+            code, shader = made[alike]
+            if shader is None:
                 continue
-            deforms = mesh.motion is not None
-            drawn = target if material.highlights else _whole(target)
-            shader = compile_shader(
-                surface_info(drawn, code, mesh.attributes, group.holdout, deforms, glow)
-            )
             order = shaders.setdefault(id(shader), len(shaders))
             constants, textures = None, ()
             transparent = code.transparent and not group.holdout
@@ -322,9 +322,7 @@ def _list_draws(content, buffers, target, glow, wanted=None):
                 transparent=transparent and shaded and not glow,
                 lighting=buffers.lighting if shaded and code.lit else (),
                 material_id=(
-                    material.cryptomatte_id
-                    if target.names_material and not group.holdout and not glow
-                    else None
+                    material.cryptomatte_id if target.names_material and not group.holdout else None
                 ),
                 group=number,
                 level=level,
@@ -334,6 +332,17 @@ def _list_draws(content, buffers, target, glow, wanted=None):
             draws.append((place, draw))
     draws.sort(key=lambda item: item[0])
     return [draw for _, draw in draws]
+
+
+def _code_and_shader(material, mesh, holdout, target, glow):
+    """Return a surface's code, and its shader or None where it is not drawn."""
+    code = surface_code.generate(material.graph, mesh.attributes)
+    if glow and (holdout or not code.glows):
+        return code, None
+    drawn = target if material.highlights else _whole(target)
+    deforms = mesh.motion is not None
+    info = surface_info(drawn, code, mesh.attributes, holdout, deforms, glow)
+    return code, compile_shader(info)
 
 
 def _levels_of_groups(content, buffers):
