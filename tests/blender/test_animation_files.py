@@ -5,6 +5,7 @@ import subprocess
 
 import imageio.v3 as iio
 import numpy as np
+import OpenEXR
 import pytest
 
 BUILD = """
@@ -40,6 +41,15 @@ for folder, kind in (("//multilayer/", None), ("//png/", "PNG")):
         node.format.media_type, node.format.file_format = "IMAGE", kind
     node.file_output_items.new("RGBA", "Image")
     tree.links.new(layers.outputs["Image"], node.inputs[0])
+scene.view_layers[0].use_pass_cryptomatte_object = True
+bpy.context.object.name = "Square"
+pick = tree.nodes.new("CompositorNodeCryptomatteV2")
+pick.source, pick.scene, pick.layer_name = "RENDER", scene, "ViewLayer.CryptoObject"
+pick.matte_id = "Square"
+node = tree.nodes.new("CompositorNodeOutputFile")
+node.directory, node.file_name = "//matte/", "node_"
+node.file_output_items.new("FLOAT", "Matte")
+tree.links.new(pick.outputs["Matte"], node.inputs[0])
 """
 
 
@@ -82,9 +92,14 @@ def test_the_command_leaves_the_files_that_blender_leaves(
         *(f"frames/main_{frame}_{eye}.png" for frame in frames for eye in "LR"),
         *(f"multilayer/node_{frame}_{eye}.exr" for frame in frames for eye in "LR"),
         *(f"png/node_Image{frame}_{eye}.png" for frame in frames for eye in "LR"),
+        *(f"matte/node_{frame}_{eye}.exr" for frame in frames for eye in "LR"),
     }
     for name in files_in(ours):
         if name.endswith(".png"):
             picture = iio.imread(ours / name)
             np.testing.assert_array_equal(picture, iio.imread(theirs / name))
             assert picture[..., :3].any()
+    with OpenEXR.File(str(ours / f"matte/node_{frames[-1]}_L.exr"), separate_channels=True) as file:
+        (matte,) = [channel.pixels for part in file.parts for channel in part.channels.values()]
+    # The square of side 2 at 5 m covers the middle of the left eye's picture, not its corner.
+    assert matte[12, 16] == 1.0 and matte[0, 0] == 0.0
