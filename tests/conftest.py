@@ -18,6 +18,12 @@ def pytest_addoption(parser):
         action="store_true",
         help="compare the shared scenes with their references at full sample counts (half an hour)",
     )
+    parser.addoption(
+        "--side-by-side-seconds",
+        type=float,
+        default=8.0,
+        help="how long a viewport and final renders work at once; from 240 on, leaks are measured",
+    )
 
 
 @pytest.fixture(scope="session")

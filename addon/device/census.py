@@ -3,13 +3,16 @@
 Blender's GPU types take neither weak references nor subclasses. So while a census is taken, it
 holds a reference to every object made through `addon.device`, and calls those dead that nobody else
 refers to: it then drops them, and the device frees them. Without a census in progress, nothing is
-recorded and nothing kept.
+recorded.
 """
 
-import sys
 from contextlib import contextmanager
 
+from . import keeping
+
 _in_progress = []
+
+_KEPT = {"texture", "framebuffer"}
 
 # Bytes of a texel.
 TEXEL_BYTES = {
@@ -32,17 +35,18 @@ class Census:
     def __init__(self):
         self._entries = []
 
-    def record(self, kind, thing, size):
+    def record(self, kind, holder, size):
         """Take an object in.
 
         Parameters
         ----------
         kind : str
-        thing : object
+        holder : list
+            With the object; it may be emptied when the object is gone.
         size : int
             In bytes.
         """
-        self._entries.append((kind, size, [thing]))
+        self._entries.append((kind, size, holder))
 
     def alive(self):
         """Return how many objects are alive, and how many bytes they hold.
@@ -55,7 +59,8 @@ class Census:
         """
         # Frame buffers and batches hold textures and buffers: repeat until nothing more dies.
         while True:
-            living = [entry for entry in self._entries if not _is_orphan(entry[2])]
+            keeping.let_go()
+            living = [entry for entry in self._entries if _is_alive(entry[2])]
             if len(living) == len(self._entries):
                 break
             self._entries = living
@@ -85,6 +90,8 @@ def taken():
 def record(kind, thing, size=0):
     """Tell the censuses in progress of a new object, and return it.
 
+    Textures and frame buffers are kept for the thread that draws; see `keeping`.
+
     Parameters
     ----------
     kind : str
@@ -96,8 +103,9 @@ def record(kind, thing, size=0):
     -------
     object
     """
+    holder = keeping.keep(thing) if kind in _KEPT else [thing] if _in_progress else None
     for census in _in_progress:
-        census.record(kind, thing, size)
+        census.record(kind, holder, size)
     return thing
 
 
@@ -111,11 +119,5 @@ def size_of_texture(texture):
     return texture_bytes(texture.width, texture.height, texture.format)
 
 
-def _is_orphan(holder):
-    return sys.getrefcount(holder[0]) <= _ALONE
-
-
-# What `sys.getrefcount` answers for an object that only a census holds: the interpreter decides how
-# many references the question itself makes.
-_ALONE = sys.maxsize
-_ALONE = next(sys.getrefcount(holder[0]) for holder in [[object()]])
+def _is_alive(holder):
+    return bool(holder) and not keeping.is_orphan(holder)

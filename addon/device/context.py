@@ -7,6 +7,7 @@ import time
 import warnings
 
 from ..errors import DeviceUnavailableError
+from . import keeping
 
 _ADVICE = (
     "install a graphics driver, or Mesa's software one with EGL"
@@ -36,6 +37,7 @@ def ensure_context():
         raise DeviceUnavailableError(f"no GPU context ({error}); {_ADVICE}") from error
     if backend in {"NONE", "UNKNOWN"}:
         raise DeviceUnavailableError(f"no GPU context (backend {backend}); {_ADVICE}")
+    keeping.own()
 
 
 def _has_backend():

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 
 from ..errors import DeviceLimitError
-from . import census
+from . import census, keeping
 from .context import max_texture_size
 
 
@@ -130,3 +130,4 @@ class Targets:
         self._framebuffers.clear()
         self.textures.clear()
         self.bytes = 0
+        keeping.let_go()

@@ -138,11 +138,10 @@ def _make_levels(engine, plan, snapshot, heard):
         with level_store().open() as levels:
             levels.request([content.meshes[uid] for uid in wanted], plan.least_triangles)
             try:
-                levels.finish(progress, engine.test_break)
+                return levels.finish(progress, engine.test_break)
             finally:
                 statistics.decimations += levels.work.decimations
                 statistics.replays += levels.work.replays
-            return {uid: levels.ready(uid) for uid in wanted}
 
 
 def _prepare(plan, snapshot, levels, statistics):

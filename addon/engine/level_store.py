@@ -412,6 +412,11 @@ class LevelHandle:
         cancelled : callable, optional
             Tells whether to give up.
 
+        Returns
+        -------
+        dict of int to tuple of MeshSnapshot
+            By uid, as `ready` returns them; there, also where all is rebuilt at this moment.
+
         Raises
         ------
         RenderCancelledError
@@ -423,7 +428,7 @@ class LevelHandle:
         store, client = self._store, self._client
         client.waits = True
         try:
-            while self._is_pending():
+            while (found := self._all_ready()) is None:
                 if cancelled is not None and cancelled():
                     with store._changed:
                         client.give_up()
@@ -437,19 +442,20 @@ class LevelHandle:
             client.waits = False
         if progress is not None:
             progress(*self.progress)
+        return found
 
-    def _is_pending(self):
-        """Whether a requested mesh lacks its levels; somebody is making them, then."""
+    def _all_ready(self):
+        """Return all levels, or None where some are missing; somebody is making them, then."""
         store, client = self._store, self._client
         with store._changed:
             store._enqueue(client)
             if client.queue or store._is_made_for(client):
-                return True
+                return None
             if client.errors:
                 error = next(iter(client.errors.values()))
                 client.errors.clear()
                 raise error
-            return False
+            return {uid: store._ready(client, uid) for uid in client.wanted}
 
     def close(self):
         """Want nothing any more; what is being made for this handle alone is given up."""

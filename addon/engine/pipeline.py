@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..device import geometry, readback
+from ..device import geometry, keeping, readback
 from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
 from ..passes import accumulate, background, chromatic, cryptomatte, surface
@@ -73,6 +73,7 @@ class FrameRenderer:
         leader : TileSampling or None
             Whose tiles are drawn, with `automatic` sampling of a picture beside another.
         """
+        keeping.let_go()
         self._stop_refining()
         self.plan = plan
         self.samples_done = 0
@@ -223,6 +224,7 @@ class FrameRenderer:
             ``surfaces``, ``sum``), it returns a context manager in which that is given
             to the device. Within ``bokeh``, also with those of `BokehStage.run`.
         """
+        keeping.let_go()
         self._targets.forget_framebuffers()
         end = self.samples_done + samples
         while self.samples_done < end and not self.sampled:
@@ -504,6 +506,7 @@ class FrameRenderer:
             self._plain.release()
         self._plain = self._buffers = self._drawing = self._blur = self._graded = None
         self._bokeh = self._whole = self._draft = self._occluders = self._pictures = None
+        keeping.let_go()
 
     def _release_targets(self):
         if self._targets is not None:

@@ -10,11 +10,13 @@ import weakref
 
 import bmesh
 import bpy
+import numpy as np
 
 ADDON = "bl_ext.user_default.aplanat"
 COLORS = ((0.9, 0.1, 0.1), (0.1, 0.8, 0.1), (0.8, 0.6, 0.3), (0.2, 0.3, 0.9), (0.7, 0.2, 0.8))
 
 events = []
+stirred = {"ticks": 0, "on": False}
 viewports = weakref.WeakSet()
 
 
@@ -148,9 +150,111 @@ def redraw(times, move=None):
             bpy.ops.wm.redraw_timer(type="DRAW", iterations=1)
 
 
+def build_crowd():
+    """Blurred things with levels of detail, lamps, a picture for an iris, and a dancer.
+
+    The dancer is shown by the viewport only, and is another mesh at every tick: the viewport always
+    asks for levels of detail that the final render knows nothing of.
+    """
+    build()
+    scene = bpy.context.scene
+    image = bpy.data.images.new("checks", 64, 64)
+    y, x = np.mgrid[0:64, 0:64]
+    pixels = np.ones((64, 64, 4), np.float32)
+    pixels[..., :3] = ((x // 8 + y // 8) % 2)[..., None] * np.float32([0.9, 0.6, 0.2])
+    image.pixels.foreach_set(pixels.ravel())
+    image.pack()
+    for i, name in ((0, "thing0"), (4, "thing4")):
+        thing = bpy.data.objects[name]
+        thing.modifiers.new("smooth", "SUBSURF")
+        thing.modifiers["smooth"].levels = thing.modifiers["smooth"].render_levels = 5
+        cast = thing.modifiers.new("cast", "CAST")
+        cast.factor = 0.5 + 0.1 * i
+    tree = bpy.data.materials["material4"].node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = image
+    coordinates = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(coordinates.outputs["UV"], node.inputs["Vector"])
+    emission = next(n for n in tree.nodes if n.type == "EMISSION")
+    tree.links.new(node.outputs["Color"], emission.inputs["Color"])
+    lamp = emissive("lamp", (1.0, 0.9, 0.7))
+    emission = next(n for n in lamp.node_tree.nodes if n.type == "EMISSION")
+    emission.inputs["Strength"].default_value = 30.0
+    for i in range(3):
+        mesh = bpy.data.meshes.new("lamp")
+        shape = bmesh.new()
+        bmesh.ops.create_icosphere(shape, subdivisions=1, radius=0.06)
+        shape.to_mesh(mesh)
+        shape.free()
+        mesh.materials.append(lamp)
+        thing = bpy.data.objects.new(f"lamp{i}", mesh)
+        thing.location = (2.0 * (i - 1), 6.0, 2.0)
+        scene.collection.objects.link(thing)
+    iris = bpy.data.images.new("iris", 32, 32)
+    y, x = np.mgrid[0:32, 0:32] - 15.5
+    pixels = np.ones((32, 32, 4), np.float32)
+    pixels[..., :3] = (np.hypot(x, y) < 15.0)[..., None] * (0.5 + (np.hypot(x, y) > 9.0)[..., None])
+    iris.pixels.foreach_set(pixels.ravel())
+    iris.pack()
+    bokeh = scene.camera.data.aplanat.bokeh
+    bokeh.use, bokeh.iris_image = True, iris
+    mesh = bpy.data.meshes.new("dancer")
+    shape = bmesh.new()
+    bmesh.ops.create_uvsphere(shape, u_segments=96, v_segments=48, radius=0.8)
+    shape.to_mesh(mesh)
+    shape.free()
+    mesh.materials.append(bpy.data.materials["material1"])
+    dancer = bpy.data.objects.new("dancer", mesh)
+    dancer.location, dancer.hide_render = (-1.0, -4.0, 1.2), True
+    scene.collection.objects.link(dancer)
+    settings = scene.aplanat
+    settings.method, settings.use_target_error = "ADAPTIVE", False
+    settings.render_samples = settings.preview_samples = 12
+    settings.least_triangles, settings.subsamples = 64, 2
+    # The window stays as it is, and the 3D view in it.
+    bpy.context.preferences.view.render_display_type = "NONE"
+
+
+def stir():
+    """Change what the viewport shows, and nothing of what is rendered; a timer."""
+    if stirred["on"]:
+        stirred["ticks"] += 1
+        tick = stirred["ticks"]
+        space = area().spaces.active
+        space.region_3d.view_camera_zoom = 10.0 + (tick % 7)
+        dancer = bpy.data.objects["dancer"]
+        mesh = dancer.data
+        positions = np.empty(3 * len(mesh.vertices), np.float32)
+        mesh.vertices.foreach_get("co", positions)
+        positions = positions.reshape(-1, 3)
+        positions *= 0.8 / np.linalg.norm(positions, axis=1, keepdims=True)
+        positions *= 1.0 + 0.1 * np.sin(5.0 * positions[:, 2:] + tick)
+        mesh.vertices.foreach_set("co", positions.ravel())
+        mesh.update()
+        dancer.location.x = -1.0 + 0.1 * (tick % 5)
+        area().tag_redraw()
+    return 0.1
+
+
+def look():
+    """What is told of the shared state, and what this process takes."""
+    store = module("engine.level_store").level_store()
+    return {
+        "megabytes": rss(),
+        "handles": len(store._clients),
+        "progress": store.progress,
+        "busy": store.busy,
+        "simplified": store.work.decimations,
+        "ticks": stirred["ticks"],
+        "waiting": module("engine.gpu_thread")._jobs.qsize(),
+        "listeners": len(module("engine.outcome")._listeners),
+    }
+
+
 def enabled():
     return ADDON in bpy.context.preferences.addons and ADDON in sys.modules
 
 
 watch_viewports()
 watch_renders()
+bpy.app.timers.register(stir, persistent=True)

@@ -1,0 +1,76 @@
+"""Textures and frame buffers, kept until the thread that draws lets them go.
+
+Python drops an object wherever its last reference goes, and collects cycles in whichever thread
+happens to allocate. A texture that is freed in a thread without a graphics context leaves its
+number in Blender's list of what is bound; the next texture with that number then counts as bound
+when it is not, and reads as 0. So everything of that kind is held here, and what nobody else refers
+to is dropped by the thread that draws.
+"""
+
+import atexit
+import sys
+import threading
+
+_held = []
+_owner = None
+
+
+def own():
+    """Make this thread the one that draws, and drops what is not needed any more."""
+    global _owner
+    _owner = threading.get_ident()
+
+
+def keep(thing):
+    """Hold an object until `let_go` finds that nobody else does.
+
+    Parameters
+    ----------
+    thing : object
+
+    Returns
+    -------
+    list
+        With the object, and empty when it has been let go.
+    """
+    holder = [thing]
+    _held.append(holder)
+    return holder
+
+
+def let_go():
+    """Drop what nobody else refers to; in another thread than the one that draws, do nothing."""
+    if threading.get_ident() != _owner:
+        return
+    # Frame buffers hold textures: repeat until nothing more goes.
+    count = -1
+    while count != len(_held):
+        count = len(_held)
+        for holder in _held:
+            if is_orphan(holder):
+                holder.clear()
+        _held[:] = [holder for holder in _held if holder]
+
+
+def is_orphan(holder):
+    """Whether only a holder refers to its object.
+
+    Parameters
+    ----------
+    holder : list
+        With one object.
+
+    Returns
+    -------
+    bool
+    """
+    return sys.getrefcount(holder[0]) <= _ALONE
+
+
+# What `sys.getrefcount` answers for an object that only a holder holds: the interpreter decides how
+# many references the question itself makes.
+_ALONE = sys.maxsize
+_ALONE = next(sys.getrefcount(holder[0]) for holder in [[object()]])
+
+# The device goes before Python does when the process ends; nothing of it may outlive it.
+atexit.register(_held.clear)
