@@ -16,7 +16,7 @@ _HARM_OF_ALL = 7500.0
 # Rounds of pairwise merging.
 _PAIRS = 3
 
-# POINT: up to so many, each is a source of its own. Beyond, faint ones are merged, the more the
+# AUTO: up to so many, each is a source of its own. Beyond, faint ones are merged, the more the
 # more there are: where so many discs overlap, none shows its edge. Cells are long, because discs of
 # all depths overlap; merges that do no harm may change while the camera turns.
 POINT_BUDGET = 10000
@@ -53,7 +53,7 @@ def similarity_of(settings, count):
             min(_HARM, _HARM_OF_ALL / max(count, 1)) * similar**2,
             pairs,
         )
-    if count <= POINT_BUDGET:
+    if settings.model == "POINT" or count <= POINT_BUDGET:
         return None
     harm = min(_POINT_HARM * (count / POINT_BUDGET - 1.0), _POINT_MOST_HARM)
     return Similarity(_POINT_LEVELS, _POINT_CELL, _POINT_EXTENT, harm, length=_POINT_LENGTH)

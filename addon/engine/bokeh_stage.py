@@ -112,6 +112,7 @@ class BokehStage:
         self.fates = {}
         self.report = ()
         self.bytes = 0
+        self._unpaired = 0
 
     def run(self, fullscreen, targets, frame_view, stage=nullcontext):
         """Peel, extract and splat.
@@ -214,8 +215,11 @@ class BokehStage:
             lens = (focus, float(plan.orthographic), plan.coc_scale, 0.0)
             pixel = 2.0 / (plan.projection[1, 1] * plan.height)
             parameters = clusters.cluster_params(similarity, plan.view, lens, pixel)
-            lists, count = clusters.cluster(sources, count, uniform_buffer(parameters), similarity)
+            parameters = uniform_buffer(parameters)
+            lists, count, unpaired = clusters.cluster(sources, count, parameters, similarity)
             held.append(lists)
+            if unpaired:
+                self._unpaired = unpaired
             sources = (lists["a"], lists["b"])
             rounds -= 1
             if rounds == 0 or count <= _DRAFT_SOURCES:
@@ -223,6 +227,15 @@ class BokehStage:
             similarity = _bolder(similarity)
         self.counts.clustered = count
         return sources, count
+
+    def _told_of_merging(self):
+        if not self._unpaired:
+            return ()
+        return (
+            f"bokeh: {self._unpaired} clusters are more than the {clusters.MOST_PAIRED} that Merge"
+            " All compares with one another; neighbours were merged instead (raise Levels or"
+            " Similarity)",
+        )
 
     def _hide(self, sources, count, held):
         """Find what hides the sources from the lens, as `Visibility`."""
@@ -247,7 +260,7 @@ class BokehStage:
         if visibility.counts.method == "SPLAT":
             rays = (visibility.layers, visibility.opacity, visibility.states, visibility.parameters)
         look = make_look(self._plan, self._field)
-        self.report = look.report
+        self.report = (*look.report, *self._told_of_merging())
         with target.bind():
             splat.splat(
                 geometry.square_batch(),

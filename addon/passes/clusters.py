@@ -208,6 +208,9 @@ def cluster(sources, count, parameters, similarity):
         With ``a`` and ``b``, the new list, in the order of the old one.
     count : int
         How many are left.
+    unpaired : int
+        How many were too many to be compared with one another; 0 where that was done, or not asked
+        for.
     """
     rows = -(-count // COLUMNS)
     slots = 1 << int(2 * count - 1).bit_length()
@@ -228,11 +231,12 @@ def cluster(sources, count, parameters, similarity):
         steps = [
             (level, shift) for level in range(1, similarity.levels + 1) for shift in (0.0, 0.5)
         ]
-        cells = len(steps)
+        cells, unpaired = len(steps), 0
         # None stands for pairs.
         steps += [(similarity.levels, None)] * similarity.pairs
         for done in range(len(steps)):
             if done == cells and run.number() > MOST_PAIRED:
+                unpaired = run.number()
                 steps[done:] = [steps[0]] * similarity.pairs
             level, shift = steps[done]
             target = lists[(len(steps) - done) % 2]
@@ -240,7 +244,7 @@ def cluster(sources, count, parameters, similarity):
             run.merge(sources, target)
             sources = target
         # Also waits until the device has read the tables.
-        return out, run.number()
+        return out, run.number(), unpaired
 
 
 def soften(sources, count, visibility, soft):

@@ -306,8 +306,9 @@ class BokehSettings:
         Radiance above which light counts as a highlight, of the largest channel.
     gain : float
         Multiplies the highlights; 1 keeps the picture's energy.
-    model : {'POINT', 'CLUSTERED'}
-        A highlight for every pixel, or similar ones merged.
+    model : {'AUTO', 'POINT', 'CLUSTERED'}
+        A highlight for every pixel, as long as there are not very many; for every pixel in any
+        case; or similar ones merged.
     cluster_levels : int
         How often neighbours are merged at most; each level halves the resolution.
     similarity : float
@@ -343,7 +344,7 @@ class BokehSettings:
 
     threshold: float = 1.0
     gain: float = 1.0
-    model: str = "POINT"
+    model: str = "AUTO"
     cluster_levels: int = 4
     similarity: float = 1.0
     global_merge: bool = False

@@ -50,7 +50,13 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
         name="Sources",
         description="What a disc is drawn for",
         items=(
-            ("POINT", "Points", "Each pixel of a highlight: exact"),
+            (
+                "AUTO",
+                "Automatic",
+                "Each pixel of a highlight. Beyond 10,000 of them faint ones that lie close"
+                " together are one, where that changes nothing that can be seen",
+            ),
+            ("POINT", "Points", "Each pixel of a highlight, however many there are: exact"),
             (
                 "CLUSTERED",
                 "Clusters",
@@ -58,7 +64,7 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
                 " large or many",
             ),
         ),
-        default="POINT",
+        default="AUTO",
         **_SHARED,
     )
     cluster_levels: IntProperty(
@@ -84,7 +90,8 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
     use_global_merge: BoolProperty(
         name="Merge All",
         description="Merge clusters that are alike wherever they lie in the picture, so that they"
-        " keep together while the camera moves",
+        " keep together while the camera moves. Up to 8192 clusters are compared with one another;"
+        " where more are left, neighbours are merged instead, and the report says so",
         default=False,
         **_SHARED,
     )
@@ -107,7 +114,8 @@ class AplanatBokehSettings(bpy.types.PropertyGroup):
             (
                 "SPLAT",
                 "Per Pixel",
-                "Cast the rays while a disc is drawn, one a pixel; for very many highlights",
+                "Cast the rays while a disc is drawn, one a pixel, nine where it stands for merged"
+                " highlights; for very many highlights",
             ),
         ),
         default="AUTO",

@@ -9,7 +9,38 @@
 #include "lib/visibility_lib.glsl"
 #include "lib/bokeh_look_lib.glsl"
 #ifdef IN_SPLAT
-#include "lib/source_lib.glsl"
+#include "lib/occluder_blur_lib.glsl"
+
+// Parts along the square that a merged source stands for, a ray each.
+#define PARTS 3
+// Sources that are smaller, px, cast one ray.
+#define LEAST_EXTENT 1.01
+
+// The parts of a merged source see what hides them shifted, and their discs are shifted, too: a ray
+// from each, to the place on the lens that its own disc has here. The mean over them is the blur of
+// lib/occluder_blur_lib.glsl.
+float seen_from_parts(Source source, float extent, float nearest, vec2 lens)
+{
+  vec2 reach = source_reach(visibility_buf);
+  vec4 focused = vec4(visibility_buf.colors.w, visibility_buf.lens.yzw);
+  float coc = coc_radius_px(source.cone.depth, focused);
+  int side = (extent > LEAST_EXTENT && abs(coc) > 0.1) ? PARTS : 1;
+  float sum = 0.0;
+  for (int part = 0; part < side * side; part++) {
+    vec2 offset = ((vec2(part % side, part / side) + 0.5) / float(side) - 0.5) * extent;
+    vec2 place = (side > 1) ? lens - offset / coc * vec2(splat_buf.opening.x, 1.0) : lens;
+    // Its own disc does not reach farther than the opening.
+    place /= max(length(place), 1.0);
+    sum += visibility_cast(layers_tx,
+                           opacity_tx,
+                           source.place + offset * visibility_buf.raster.z,
+                           source.depth,
+                           source.limit,
+                           nearest,
+                           place * reach);
+  }
+  return sum / float(side * side);
+}
 #endif
 
 // Share of the light that reaches a place on the lens, in units of half the opening.
@@ -21,14 +52,9 @@ float seen_from(vec2 lens)
 #ifdef IN_SPLAT
   if (v_tile.w == SOURCE_IN_SPLAT) {
     ivec2 texel = list_texel(v_source);
-    Source source = source_of(texelFetch(sources_a_tx, texel, 0), visibility_buf);
-    return visibility_cast(layers_tx,
-                           opacity_tx,
-                           source.place,
-                           source.depth,
-                           source.limit,
-                           texelFetch(states_tx, texel, 0).x,
-                           lens * source_reach(visibility_buf));
+    vec4 a = texelFetch(sources_a_tx, texel, 0);
+    float nearest = texelFetch(states_tx, texel, 0).x;
+    return seen_from_parts(source_of(a, visibility_buf), a.w, nearest, lens);
   }
 #endif
   return 1.0;

@@ -6,6 +6,7 @@ from addon.scene.snapshot import BokehSettings
 
 def test_points_are_left_alone_up_to_a_budget():
     assert similarity_of(BokehSettings(), POINT_BUDGET) is None
+    assert similarity_of(BokehSettings(model="POINT"), 100 * POINT_BUDGET) is None
 
 
 def test_beyond_the_budget_merging_sets_in_smoothly():
