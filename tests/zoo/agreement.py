@@ -64,7 +64,6 @@ _PLAIN_LOOKS = {
     "dust": 0.0,
     "diffraction": 0.0,
     "onion": 0.0,
-    "amplification": 0.0,
 }
 
 
