@@ -17,10 +17,6 @@ import numpy as np
 # that a blurred silhouette keeps its shape; but what varies from vertex to vertex is blurred by the
 # triangles, too, and that blur should be small beside the lens'.
 LEAST_ALLOWANCE = 0.5
-# Colours take more the more they vary: an allowance of 1.5 at this standard deviation (that of
-# matte colours with soft highlights), 2 more for twice as much.
-_ALLOWANCE, _CONTRAST = 1.5, 0.25
-_MOST_ALLOWANCE = 4.5
 # Highlights are found at full detail and taken out of the samples as those are drawn: where colours
 # or light are blurred from vertex to vertex, more or less would be taken out than is splatted. On a
 # ball that mirrors lamps 1.5 more left 0.06 % of the picture's light, 3 less than rounding.
@@ -140,22 +136,51 @@ def coc_ends(near, far, plan, inverse_focus=None):
     return radii.min(axis=(0, 1)), radii.max(axis=(0, 1))
 
 
-def color_allowance(contrast):
-    """Return by how many levels a mesh is drawn finer because its vertex colours vary.
+def blur_for_levels(mesh, *levels):
+    """Return the blur from which on each level of detail of a mesh may be drawn.
 
     Parameters
     ----------
-    contrast : float
-        `MeshSnapshot.color_contrast`.
+    mesh : MeshSnapshot
+        Full detail.
+    *levels : MeshLevel
+        From level 1 up.
 
     Returns
     -------
-    float
+    ndarray of shape (L,)
+        Rising; as a level of detail, by the size of triangles alone: see `choose_levels`.
     """
-    if contrast <= 0.0:
-        return LEAST_ALLOWANCE
-    wanted = _ALLOWANCE + 2.0 * float(np.log2(contrast / _CONTRAST))
-    return min(max(wanted, LEAST_ALLOWANCE), _MOST_ALLOWANCE)
+    low, high = np.asarray(mesh.bounds, np.float64)
+    radius = np.linalg.norm(high - low) / 2.0
+    triangle = np.pi * radius**2 / max(_FACING_SHARE * len(mesh.triangles), 1e-9)
+    wanted = []
+    for number, level in enumerate(levels, 1):
+        measured = np.pi / 4.0 * level.errors.blur**2 / max(triangle, 1e-300)
+        wanted.append(max(number + LEAST_ALLOWANCE, np.log2(max(measured, 1e-300))))
+    return np.maximum.accumulate(wanted) if wanted else np.zeros(0)
+
+
+def allowed_levels(chosen, wanted):
+    """Return the levels whose errors the blur hides.
+
+    Parameters
+    ----------
+    chosen : ndarray of shape (I,)
+        Levels by the size of triangles alone.
+    wanted : ndarray of shape (L,)
+        See `blur_for_levels`.
+
+    Returns
+    -------
+    ndarray of shape (I,)
+        From 0 to L. Between the blurs for two levels, both are drawn.
+    """
+    if len(wanted) == 0:
+        return np.zeros(len(chosen))
+    # Levels that ask for the same blur follow one another at once.
+    steps = np.append(wanted[0] - 1.0, wanted) + 1e-6 * np.arange(len(wanted) + 1)
+    return np.interp(chosen, steps, np.arange(len(wanted) + 1.0))
 
 
 def choose_levels(seen, triangles, plan, bias=0.0):
@@ -173,7 +198,8 @@ def choose_levels(seen, triangles, plan, bias=0.0):
     Returns
     -------
     ndarray of shape (I,)
-        Not negative; 0 where a part is in focus or behind the camera.
+        By the size of triangles alone; not negative, 0 where a part is in focus or behind the
+        camera.
     """
     front = (seen.nearest > 0.0) | plan.orthographic
     depths = (np.where(front, depth, 1.0) for depth in (seen.nearest, seen.farthest))
@@ -279,7 +305,7 @@ def level_for_sample(levels, sample, samples):
 
 
 def allowances(content, plan):
-    """Return by how many levels every instance is drawn finer for the sake of its light.
+    """Return by how many levels every instance is drawn finer for the sake of its highlights.
 
     Parameters
     ----------
@@ -293,10 +319,8 @@ def allowances(content, plan):
     found = np.zeros(len(content.instances.world))
     uneven = plan.bokeh.uneven if plan.bokeh else ()
     for number, group in enumerate(content.groups):
-        allowance = color_allowance(content.meshes[group.mesh].color_contrast)
         if number in uneven:
-            allowance += _HIGHLIGHT_ALLOWANCE
-        found[group.first : group.first + group.count] = allowance
+            found[group.first : group.first + group.count] = _HIGHLIGHT_ALLOWANCE
     return found
 
 
@@ -323,7 +347,8 @@ def meshes_with_levels(content, plan):
     full = np.zeros(len(seen.radius))
     for group, mesh in zip(content.groups, meshes, strict=True):
         full[group.first : group.first + group.count] = len(mesh.triangles)
-    chosen = choose_levels(seen, full, plan, plan.level_bias + allowances(content, plan))
+    bias = plan.level_bias + LEAST_ALLOWANCE + allowances(content, plan)
+    chosen = choose_levels(seen, full, plan, bias)
     coarser = (chosen > 0.0) | may_grade(seen, full, plan)
     wanted = {
         mesh.uid

@@ -14,7 +14,15 @@ from ..device.textures import texture_2d
 from ..passes import surface
 from . import culling
 from .graded_drawings import GradedDrawings
-from .levels import allowances, choose_levels, extents, level_for_sample, world_corners
+from .levels import (
+    allowances,
+    allowed_levels,
+    blur_for_levels,
+    choose_levels,
+    extents,
+    level_for_sample,
+    world_corners,
+)
 from .scene_buffers import instance_texels
 from .shared_drawings import SharedDrawings
 
@@ -81,6 +89,10 @@ class SceneDrawing:
             self._group_of[group.first : group.first + group.count] = number
         self._triangles = [
             [level.triangles for level in buffers.mesh_levels(group.mesh)]
+            for group in content.groups
+        ]
+        self._blur_for_levels = [
+            blur_for_levels(*buffers.level_meshes(content.meshes[group.mesh]))
             for group in content.groups
         ]
         self._by_level = _by_level(self._draws)
@@ -151,7 +163,11 @@ class SceneDrawing:
             return np.zeros(len(self._corners))
         full = np.array([counts[0] for counts in self._triangles], float)[self._group_of]
         bias = plan.level_bias + allowances(self._content, plan)
-        return np.minimum(choose_levels(seen, full, plan, bias), deepest)
+        chosen = choose_levels(seen, full, plan, bias)
+        for number, group in enumerate(self._content.groups):
+            rows = slice(group.first, group.first + group.count)
+            chosen[rows] = allowed_levels(chosen[rows], self._blur_for_levels[number])
+        return np.minimum(chosen, deepest)
 
     def _order_rows(self):
         """Put rows in an order in which those of one level are neighbours, where levels differ."""

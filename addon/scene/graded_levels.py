@@ -8,7 +8,8 @@ outlines of what merged, without folds across them.
 
 How much blur a place needs is known before there is a view. The triangles round it must be smaller
 than the blur; and because a triangle's colours are linear, what the colour at its corner stands out
-from them is spread over its area, and must be faint in that of the blur.
+from them is spread over its area, and must be faint in that of the blur. What a level moves,
+textures above all, must be small in the blur, too.
 """
 
 import numpy as np
@@ -187,7 +188,10 @@ def _needed_blur(mesh, places):
         if key.startswith("color:"):
             for channel in values[:, :3].T:
                 np.maximum(contrast, _standing_out(channel, places, corners, uses), out=contrast)
-    return areas * np.maximum(contrast / _FAINT, 1.0)
+    # What has moved, textures with it, shows under less blur than the places' mean asks for; half
+    # of a triangle's area is seen at an average angle.
+    moves = np.pi / 2.0 * mesh.errors.blur_of_moves**2
+    return areas * np.maximum(contrast / _FAINT, max(moves / max(mesh.triangle_area, 1e-300), 1.0))
 
 
 def _standing_out(values, places, corners, uses):

@@ -17,6 +17,7 @@ Journal 79, 1974: steps of a fit that keep the sign and the total.
 import numpy as np
 
 from .level_collapses import facets
+from .level_errors import ErrorMeter, LevelErrors, edge_length, moved_by_pairs
 from .level_parts import mixed
 from .level_projection import vertex_areas
 
@@ -46,14 +47,17 @@ def carry(step, positions):
 
     Returns
     -------
-    dict of str to ndarray of shape (W, k)
+    attributes : dict of str to ndarray of shape (W, k)
         float32.
+    errors : LevelErrors
+        Against the level before.
     """
     mesh = step.mesh
-    if not mesh.attributes:
-        return {}
+    if not mesh.attributes or len(positions) == 0:
+        errors = LevelErrors(moved_by_pairs(step) * edge_length(step))
+        return {key: old[:0] for key, old in mesh.attributes.items()}, errors
     result = {}
-    fit = _Fit(step, positions)
+    fit, meter = _Fit(step, positions), ErrorMeter(step, positions)
     for key, old in mesh.attributes.items():
         if key.startswith("uv:"):
             values = fit.inside(old)
@@ -62,8 +66,9 @@ def carry(step, positions):
         if key == "normal":
             values = _upright_facets(values, positions, step)
             values = fit.leaning(_unit(values), old)
+        meter.add(key, values, old)
         result[key] = np.ascontiguousarray(values, np.float32)
-    return result
+    return result, meter.found()
 
 
 class _Fit:
@@ -100,8 +105,8 @@ class _Fit:
         result = np.empty((self._count, values.shape[1]))
         for channel, every in zip(result.T, values.T, strict=True):
             every = every.astype(np.float64)
-            least = every.min(initial=np.inf)
-            if self._count == 0 or least == every.max():
+            least = every.min()
+            if least == every.max():
                 channel[:] = least
                 continue
             positive = least >= 0.0 and not direction

@@ -183,6 +183,8 @@ def grown(surface, pairs):
     -------
     places : ndarray of shape (K,)
     points : ndarray of shape (K, 3)
+    moves : float
+        Squared moves of the parts' centres, by twice their areas.
     """
     count = surface.part_count
     _, of_face = small_parts(surface)
@@ -214,7 +216,11 @@ def grown(surface, pairs):
     )
     wanted = growth * area[pairs.stays]
     offset *= np.sqrt(wanted / np.maximum(found, 1e-300))[own, None]
-    return places, target[own] + offset
+    moves = sum(
+        float((area[part] * np.square(target - center[part]).sum(axis=1)).sum())
+        for part in (pairs.goes, pairs.stays)
+    )
+    return places, target[own] + offset, moves
 
 
 def mixed(surface, mesh, pairs, values):

@@ -36,6 +36,9 @@ class Step:
     pairs : Pairs or None
     parts : ndarray of shape (G,)
         Of the new places.
+    pair_moves : float
+        Squared moves of the centres of parts that became one, by twice their areas; with pairs
+        only.
     points : ndarray of shape (G, 3)
         The new places.
     """
@@ -51,7 +54,7 @@ class Step:
         points = merged_places(surface, groups)
         fixed = np.zeros(len(points), bool)
         if self.pairs is not None:
-            places, where = grown(surface, self.pairs)
+            places, where, self.pair_moves = grown(surface, self.pairs)
             points[groups[places]] = where
             fixed[groups[places]] = True
         faces = vertex_places[triangles]

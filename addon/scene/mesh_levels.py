@@ -26,6 +26,7 @@ from .level_collapses import (
     stable_order,
     weld,
 )
+from .level_errors import LevelErrors
 from .level_seams import following_seams, seam_edges
 from .level_step import Step
 from .snapshot import MeshSnapshot, next_uid
@@ -57,10 +58,13 @@ class MeshLevel(MeshSnapshot):
     merged : ndarray of shape (V,)
         int32; the vertex of this level that each of those became; -1 where nothing is left at its
         place.
+    errors : LevelErrors
+        Against full detail.
     """
 
     places: np.ndarray | None = None
     merged: np.ndarray | None = None
+    errors: LevelErrors = LevelErrors()
 
 
 def available():
@@ -151,7 +155,8 @@ def _merge(mesh, surface, halving):
     step = Step(mesh, surface, halving.groups, vertex_of, vertex_places, triangles)
     points = step.points
     positions = np.ascontiguousarray(points[vertex_places], np.float32)
-    attributes = carry(step, positions)
+    attributes, errors = carry(step, positions)
+    before = mesh.errors if isinstance(mesh, MeshLevel) else LevelErrors()
     # A side of a seam that has shrunk to nothing continues as another of its place.
     vertex_at = np.full(len(points), -1, np.int32)
     vertex_at[vertex_places] = np.arange(len(vertex_places), dtype=np.int32)
@@ -163,6 +168,7 @@ def _merge(mesh, surface, halving):
         slots_of(mesh.slots, kept),
         attributes,
         places=halving.places,
+        errors=before + errors,
         merged=np.where(vertex_of >= 0, vertex_of, vertex_at[place]).astype(np.int32),
     )
     following = _without_gaps(vertex_places)

@@ -63,12 +63,6 @@ class MeshSnapshot:
     rest: np.ndarray | None = None
 
     @cached_property
-    def color_contrast(self):
-        """Standard deviation of the vertex colours, of the channel that varies most; 0 without."""
-        colors = [v[:, :3] for k, v in self.attributes.items() if k.startswith("color:")]
-        return max((float(c.std(axis=0).max()) for c in colors if len(c)), default=0.0)
-
-    @cached_property
     def triangle_area(self):
         """Mean area of the triangles, in squared units of the object."""
         a, b, c = (self.positions[self.triangles[:, i]].astype(np.float64) for i in range(3))

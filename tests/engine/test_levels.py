@@ -8,7 +8,9 @@ import pytest
 from addon.engine import levels
 from addon.engine.plan import plan_frame
 from addon.sampling.thin_lens import ThinLens
-from addon.scene.snapshot import Sampling
+from addon.scene.level_errors import LevelErrors
+from addon.scene.mesh_levels import MeshLevel
+from addon.scene.snapshot import MeshSnapshot, Sampling
 
 from .test_plan import snapshot
 
@@ -99,9 +101,42 @@ def test_both_levels_share_the_lens_evenly():
         assert np.linalg.norm(center) < 0.1 * 0.1
 
 
-def test_colours_that_vary_more_are_drawn_finer():
-    allowed = [levels.color_allowance(contrast) for contrast in (0.0, 0.1, 0.25, 0.5, 1.0, 9.0)]
-    assert allowed == sorted(allowed)
-    assert allowed[0] == levels.LEAST_ALLOWANCE
-    assert allowed[3] - allowed[2] == pytest.approx(2.0)
-    assert allowed[-1] == allowed[-2]
+def mesh_and_levels(*errors):
+    """A mesh of 4096 triangles and levels of it with given errors."""
+    positions = np.float32([[-1, -1, -1], [1, 1, 1], [1, -1, 1]])
+    triangles = np.tile(np.int32([[0, 1, 2]]), (4096, 1))
+    mesh = MeshSnapshot(1, "mesh", positions, triangles, ((0, 0, 4096),))
+    made = [MeshLevel(2, "mesh", positions, triangles, ((0, 0, 4096),), errors=e) for e in errors]
+    return (mesh, *made)
+
+
+def test_levels_without_errors_follow_the_size_of_their_triangles():
+    wanted = levels.blur_for_levels(*mesh_and_levels(*[LevelErrors()] * 3))
+    assert wanted == pytest.approx([1.5, 2.5, 3.5])
+    chosen = levels.allowed_levels(np.array([0.0, 0.5, 1.0, 1.5, 2.0, 3.5, 9.0]), wanted)
+    assert chosen == pytest.approx([0.0, 0.0, 0.5, 1.0, 1.5, 3.0, 3.0], abs=1e-5)
+
+
+def test_a_level_waits_for_the_blur_that_hides_its_errors():
+    calm, wild = LevelErrors(), LevelErrors(color=0.015**2)
+    assert wild.blur == pytest.approx(1.0)
+    wanted = levels.blur_for_levels(*mesh_and_levels(calm, wild, wild))
+    # A circle of diameter 1 against triangles that fill the sphere round the box.
+    needed = np.log2(np.pi / 4.0 / (np.pi * 3.0 / (0.5 * 4096)))
+    assert wanted == pytest.approx([1.5, needed, needed])
+    chosen = levels.allowed_levels(np.array([1.5, needed - 0.01, needed + 0.01]), wanted)
+    assert chosen[0] == pytest.approx(1.0, abs=1e-4)
+    assert 1.9 < chosen[1] < 2.0
+    assert chosen[2] == pytest.approx(3.0, abs=1e-4)
+
+
+def test_more_blur_never_draws_a_finer_level():
+    errors = [LevelErrors(1e-9 * 4.0**n, 1e-7 * 9.0**n) for n in range(6)]
+    wanted = levels.blur_for_levels(*mesh_and_levels(*errors))
+    chosen = levels.allowed_levels(np.linspace(0.0, 20.0, 200), wanted)
+    assert (np.diff(chosen) >= 0.0).all()
+    assert chosen[-1] == 6.0
+
+
+def test_without_levels_everything_is_drawn_in_full_detail():
+    assert (levels.allowed_levels(np.array([0.0, 7.0]), np.zeros(0)) == 0.0).all()
