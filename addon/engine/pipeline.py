@@ -13,18 +13,18 @@ import numpy as np
 from ..device import geometry, keeping, readback
 from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
-from ..passes import accumulate, background, chromatic, cryptomatte, surface
-from ..sampling.chromatic import LEAST_SCALE
-from ..sampling.tile_control import TILE
-from . import render_passes
+from ..passes import background, chromatic, cryptomatte, surface
+from . import render_passes, sample_sums
 from .bokeh_plan import draft_of
 from .bokeh_stage import BokehStage, highlight_buffer
 from .bokeh_visibility import SceneOccluders
 from .frame_pictures import FramePictures
 from .plan import extended
+from .readable_frame import ReadableFrame
 from .scene_drawing import DrawingCounts, SceneDrawing
 from .subsampling import SubsampleBlur
-from .tile_sampling import SamplingReport, TileSampling, weights_of
+from .tile_sampling import TileSampling
+from .view_resources import chromatic_resources, view_params
 
 # Samples that may wait in the device's queue: the queue's memory, too, is bounded.
 _SAMPLES_IN_FLIGHT = 32
@@ -32,7 +32,7 @@ _SAMPLES_IN_FLIGHT = 32
 _QUICK = 0.03
 
 
-class FrameRenderer:
+class FrameRenderer(ReadableFrame):
     """Renders a frame progressively.
 
     Parameters
@@ -96,11 +96,11 @@ class FrameRenderer:
             self._content, self._target, self._levels = snapshot.content, target, levels
             self._drawing = SceneDrawing(snapshot.content, self._buffers, target, self._graded)
             self._occluders = SceneOccluders(snapshot.content, self._buffers)
-        self._field = _chromatic_resources(plan.chromatic) if plan.chromatic else None
+        self._field = chromatic_resources(plan.chromatic) if plan.chromatic else None
         wavelengths = self._wavelength if plan.chromatic else None
         self._drawing.aim(plan, wavelengths, self._highlights)
-        self._view = uniform_buffer(_view_params(plan))
-        self._pixels = uniform_buffer(_view_params(replace(plan, subpixels=1)))
+        self._view = uniform_buffer(view_params(plan))
+        self._pixels = uniform_buffer(view_params(replace(plan, subpixels=1)))
         world = snapshot.content.world
         self._background = (0.0,) * 4 if snapshot.film.transparent else (*world.color, 1.0)
         self._shows_image = bool(world.image) and not snapshot.film.transparent
@@ -285,7 +285,7 @@ class FrameRenderer:
                 self._targets.add(spec)
         if self.plan.chromatic:
             # More samples have wavelengths that reach a little further.
-            self._field = _chromatic_resources(self.plan.chromatic)
+            self._field = chromatic_resources(self.plan.chromatic)
 
     def wait(self):
         """Return when the device has drawn everything it was given."""
@@ -356,32 +356,18 @@ class FrameRenderer:
         self._drawing.counts.draw_calls += 1
 
     def _add_sample(self, index):
-        plan, targets = self.plan, self._targets
-        weights = plan.subpixel_weights[index]
-        batch = self._tiles.batch if self._tiles else self._fullscreen
-        with targets.framebuffer("sum").bind():
-            if self._blur:
-                self._blur.add(batch, targets, index)
-            else:
-                tint = self._wavelength(index).tint if plan.chromatic else None
-                accumulate.accumulate(batch, targets["sample"], weights, tint)
-        # The mattes are those of the sample's own place, with the weight of all it stands for.
-        places = np.array([[1.0 + plan.subsample_counts[index]], [1.0]])
-        if plan.chromatic:
-            # As its alpha.
-            places[0] *= plan.chromatic.weights[index, 3]
-        if "focus_sum" in targets:
-            with targets.framebuffer("focus_sum").bind():
-                accumulate.accumulate_focus(batch, targets["mattes"], weights * places)
-        if self._cryptomattes:
-            cryptomatte.count(
-                targets["mattes"],
-                targets["tables"],
-                self._cryptomattes,
-                weights * places,
-                self._tiles and self._tiles.active,
-            )
-        self._drawing.counts.draw_calls += 1 + ("focus_sum" in targets)
+        tiles = self._tiles
+        batch = tiles.batch if tiles else self._fullscreen
+        self._drawing.counts.draw_calls += sample_sums.add(
+            batch,
+            self._targets,
+            self.plan,
+            index,
+            self._wavelength(index),
+            self._blur,
+            self._cryptomattes,
+            tiles and tiles.active,
+        )
 
     def _empty_focus(self):
         sharp = self.plan.sharp_radius
@@ -390,101 +376,6 @@ class FrameRenderer:
     def finished(self):
         """Whether every sample has been rendered, and the whole bokeh."""
         return self.sampled and not self.bokeh_drafted
-
-    @property
-    def samples_expected(self):
-        """About how many samples the frame takes; exact where that is known."""
-        if self._tiles:
-            return self._tiles.expected(self.samples_done)
-        return self.samples_done if self._stopped else self.plan.samples
-
-    @property
-    def sampling(self):
-        """How far sampling has come, as `SamplingReport`."""
-        done = self.samples_done
-        if self._tiles:
-            return self._tiles.report(self.plan, done)
-        return SamplingReport(None, None, (done, float(done), done))
-
-    @property
-    def _weights(self):
-        if self._tiles:
-            return self._tiles.weights(self.plan, self.samples_done)
-        return weights_of(self.plan, self.samples_done)
-
-    def _sample_counts(self):
-        if self._tiles:
-            return self._tiles.counts(self.plan, self.samples_done)
-        tiles = (-(-side // TILE) for side in (self.plan.height, self.plan.width))
-        return np.full(tuple(tiles), self.samples_done)
-
-    def resolve(self, origin=(0, 0), pixel_size=1):
-        """Draw the picture so far into the bound frame buffer.
-
-        Parameters
-        ----------
-        origin : tuple of 2 int
-            Where its lower left corner goes.
-        pixel_size : int
-            Side of the square that shows one pixel.
-        """
-        self._pictures.resolve(self._weights, origin, pixel_size)
-
-    def read_image(self):
-        """Return the picture so far, shape (height, width, 4), bottom row first."""
-        self._targets.forget_framebuffers()
-        return self._pictures.read_shown(self._weights)
-
-    def pass_groups(self):
-        """Return the plan's passes in groups that are best read together.
-
-        Returns
-        -------
-        list of tuple of str
-        """
-        together = render_passes.made_by(self.plan.passes, "DATA")
-        groups = [(name,) for name in self.plan.passes if name not in together]
-        return [*groups, together] if together else groups
-
-    def read_passes(self, names=None):
-        """Return passes of the plan, from the samples so far.
-
-        Parameters
-        ----------
-        names : sequence of str, optional
-            Default: all.
-
-        Returns
-        -------
-        dict of str to ndarray of shape (height, width, channels)
-            float32, bottom row first, by name, in the order of `names`.
-        """
-        names = self.plan.passes if names is None else names
-        self._targets.forget_framebuffers()
-        made, weights = self._pictures, self._weights
-        pictures = made.read_data(render_passes.made_by(names, "DATA"))
-        for name in names:
-            if name == "Combined":
-                pictures[name] = made.read_shown(weights)
-            elif name == "Defocus":
-                pictures[name] = made.read_defocus(weights)
-            elif name == "Bokeh":
-                pictures[name] = made.read_bokeh()
-            elif name == "Focus Matte":
-                pictures[name] = made.read_focus_matte(weights)
-            elif name == "Fringe":
-                pictures[name] = self._read_fringe(weights)
-            elif name == "Sample Count":
-                pictures[name] = made.read_sample_count(self._sample_counts())
-            elif name not in pictures:
-                pictures[name] = made.read_cryptomatte(name, weights)
-        return {name: pictures[name] for name in names}
-
-    def _read_fringe(self, weights):
-        picture = self._pictures.read_combined(weights)[..., :3]
-        if self._plain is None:
-            return np.zeros_like(picture, order="C")
-        return picture - self._plain._pictures.read_combined(self._plain._weights)[..., :3]
 
     def texture_bytes(self):
         """Return how many bytes targets, images and instances hold on the device."""
@@ -512,31 +403,3 @@ class FrameRenderer:
         if self._targets is not None:
             self._targets.release()
             self._targets = None
-
-
-def _chromatic_resources(plan):
-    strengths = plan.lateral_strengths
-    return chromatic.resources(
-        table=plan.table,
-        radius=plan.radius,
-        parallel=plan.parallel,
-        focus=(
-            plan.inverse_focus,
-            1.0 / plan.focal_length,
-            plan.least_inverse_focus,
-            LEAST_SCALE,
-        ),
-        raster=plan.raster,
-        extremes=(plan.focal_errors.min(), plan.focal_errors.max(), np.abs(strengths).max()),
-        typical=plan.typical_errors,
-    )
-
-
-def _view_params(plan):
-    return surface.VIEW_PARAMS.pack(
-        view=plan.view,
-        view_inverse=np.linalg.inv(plan.view),
-        projection=plan.projection,
-        lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
-        film=(plan.width * plan.subpixels, plan.height * plan.subpixels, *plan.origin),
-    )

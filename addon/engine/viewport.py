@@ -246,7 +246,9 @@ class Viewport:
             first = renderer.samples_done == 0
             start = time.perf_counter()
             self._pacer.advance(renderer)
-            self._drawn_seconds += time.perf_counter() - start
+            if not first:
+                # The first sample also compiles.
+                self._drawn_seconds += time.perf_counter() - start
             if renderer.is_late(self._drawn_seconds):
                 renderer.stop()
             if first:

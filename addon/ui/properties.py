@@ -88,7 +88,7 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
     )
     render_time_limit: FloatProperty(
         name="Render Time Limit",
-        description="Seconds of drawing after which the final render takes what it has; 0 is no"
+        description="Seconds of drawing, after the first sample, at which sampling stops; 0 is no"
         " limit. With a limit, the noise depends on how fast and how busy the machine is",
         default=0.0,
         min=0.0,
@@ -114,7 +114,7 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
     )
     preview_time_limit: FloatProperty(
         name="Viewport Time Limit",
-        description="Seconds of drawing after which the viewport rests; 0 is no limit",
+        description="Seconds of drawing, after the first sample, at which it rests; 0 is no limit",
         default=0.0,
         min=0.0,
         soft_max=60.0,
