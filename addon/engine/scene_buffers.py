@@ -12,7 +12,7 @@ from ..device.census import size_of_texture
 from ..device.geometry import MeshBuffers
 from ..device.textures import image_texture, texture_2d
 from ..device.uniforms import uniform_buffer
-from ..passes import environment, light_table
+from ..passes import environment, environment_bake, light_table
 from ..scene.graded_levels import MergeTree
 from .occluders import ShapeCache
 
@@ -116,11 +116,11 @@ class SceneBuffers:
             self._lights = content.lights
             self.uploads["light_tables"] += 1
         world = content.world
-        known = self._world and (self._world.image, self._world.amplification)
-        if known != (world.image, world.amplification):
+        known = self._world and (self._world.image, self._world.amplification, self._world.graph)
+        if known != (world.image, world.amplification, world.graph):
             self._levels = self.environment_image = None
             if world.image:
-                self._compute_environment(content.images[world.image], world)
+                self._compute_environment(content.images, world)
                 yield
         if self._world != world:
             self.environment_buffer = environment.environment_buffer(world)
@@ -134,10 +134,16 @@ class SceneBuffers:
             ("ggx_tx", table_of_ggx),
         )
 
-    def _compute_environment(self, image, world):
-        pixels = environment.world_pixels(image, world)
+    def _compute_environment(self, images, world):
+        image = images[world.image]
+        if world.graph is None:
+            pixels = image.linear_colors()
+        else:
+            pixels = environment_bake.bake(world.graph, images, self.images)
+        pixels = environment.world_pixels(pixels, world)
         self._levels = environment.prefilter(pixels)
-        if image.srgb or image.pixels.dtype == np.uint8 or world.amplification:
+        changed = world.graph is not None or world.amplification
+        if image.srgb or image.pixels.dtype == np.uint8 or changed:
             opaque = np.ones((*pixels.shape[:2], 1), np.float32)
             self.environment_image = texture_2d(np.concatenate([pixels, opaque], axis=2))
         else:

@@ -46,12 +46,13 @@ _PREFILTER = ShaderInfo(
 )
 
 
-def world_pixels(image, world):
+def world_pixels(pixels, world):
     """Return what a world shows of an image, without its colour factor.
 
     Parameters
     ----------
-    image : ImageSnapshot
+    pixels : ndarray of shape (height, width, 3)
+        Scene linear.
     world : World
 
     Returns
@@ -59,7 +60,6 @@ def world_pixels(image, world):
     ndarray of shape (height, width, 3)
         Scene linear, float32, finite.
     """
-    pixels = image.linear_colors()
     if not world.amplification:
         return pixels
     amplified = amplify(pixels, np.float32(world.amplification), world.luminance)

@@ -157,6 +157,16 @@ def _mapping(node, writer):
     return {"Vector": ("vec3", writer.let("vec3", f"mapping_{kind.lower()}({arguments})"))}
 
 
+@generates("environment_texture")
+def _environment_texture(node, writer):
+    rows = ", ".join(writer.value(node.input(axis), "vec3") for axis in "XYZ")
+    texel = writer.let("vec4", f"environment_sample({writer.image(node.image)}, {rows})")
+    color = f"{texel}.rgb"
+    if node.setting("encoding") == "srgb":
+        color = writer.let("vec3", f"srgb_to_linear({color})")
+    return {"Color": ("color", color)}
+
+
 @generates("image_texture")
 def _image_texture(node, writer):
     uv = f"({writer.value(node.input('Vector'), 'vec3')}).xy"

@@ -260,6 +260,9 @@ class World:
         How much brighter white is taken to be in an image that holds nothing brighter.
     luminance : tuple of 3 float
         Weights that tell how white a texel is.
+    graph : SurfaceGraph or None
+        Nodes that make the image from one or more: it is the image that they give, and `image` is
+        one of theirs. None: the image as it is.
     """
 
     color: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -267,6 +270,7 @@ class World:
     rotation: tuple[tuple[float, float, float], ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
     amplification: float = 0.0
     luminance: tuple[float, float, float] = REC709_LUMINANCE
+    graph: SurfaceGraph | None = None
 
 
 @dataclass(frozen=True)

@@ -73,7 +73,10 @@ class TreeReader:
 
     def surface(self, output):
         """Return the graph of an output node's Surface socket."""
-        link = self.closure(output, "Surface", ())
+        return self.graph(self.closure(output, "Surface", ()))
+
+    def graph(self, link):
+        """Return the nodes so far as a graph with this closure as its surface."""
         return SurfaceGraph(tuple(self.nodes), link, color_spaces.luminance_weights())
 
     def note(self, text):

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from . import color_spaces
+from . import color_spaces, material_nodes, value_nodes
 from .material_nodes import euler_matrix, mapping_matrix
 from .node_tree import source_of
 from .snapshot import World
-from .surface_graph import LARGEST_RADIANCE, MISSING_IMAGE_COLOR
-from .tree_reader import constant, constant_number, numbers_of
+from .surface_graph import LARGEST_RADIANCE, MISSING_IMAGE_COLOR, Constant, Link
+from .tree_reader import TreeReader, constant, constant_number, numbers_of
 
 # How far a Mapping may be from a rotation.
 _ROTATION_TOLERANCE = 1e-4
@@ -61,7 +61,7 @@ class _WorldReader:
             node, groups = _first_background(node, groups)
             if node is None:
                 return World()
-        color, image, rotation = self._color(node, groups)
+        color, image, rotation, graph = self._color(node, groups)
         strength = self._number(node.inputs["Strength"], groups)
         light = tuple(c * strength for c in color)
         # Cycles drops such channels, too.
@@ -71,7 +71,7 @@ class _WorldReader:
         # White is the image's, however strongly it shines.
         amplification = amplification if image else 0.0
         luminance = color_spaces.luminance_weights()
-        return World(light, image, rotation, amplification, luminance)
+        return World(light, image, rotation, amplification, luminance, graph)
 
     def _number(self, socket, groups):
         source, _ = source_of(socket, groups)
@@ -98,16 +98,47 @@ class _WorldReader:
         nothing = World()
         if not source.is_output:
             self._note_nan(source)
-            return constant(source).value, 0, nothing.rotation
+            return constant(source).value, 0, nothing.rotation, None
         kind = source.node.type
         if kind in {"RGB", "VALUE"}:
             self._note_nan(source)
             values = constant(source).value
-            return values * 3 if len(values) == 1 else values, 0, nothing.rotation
+            return values * 3 if len(values) == 1 else values, 0, nothing.rotation, None
         if kind == "TEX_ENVIRONMENT":
-            return self._environment(source.node, inner)
+            return (*self._environment(source.node, inner), None)
+        if kind in value_nodes.READERS:
+            computed = self._computed(node, groups)
+            if computed is not None:
+                return computed
         self.note(f"node '{source.node.bl_label}' is not read; its socket's value is used")
-        return constant(socket).value, 0, nothing.rotation
+        return constant(socket).value, 0, nothing.rotation, None
+
+    def _computed(self, node, groups):
+        """Return what nodes make of images; None without an image that can be read."""
+        readers = {
+            **{kind: material_nodes.READERS[kind] for kind in ("RGB", "VALUE")},
+            **value_nodes.READERS,
+            "TEX_ENVIRONMENT": self._read_environment,
+        }
+        reader = TreeReader(f"world '{self._name}'", self._images, readers)
+        color = reader.value(node, "Color", groups)
+        images = [found.image for found in reader.nodes if found.image]
+        if not images:
+            return None
+        self._notes += reader.report
+        glow = reader.add("emission", [("Color", color), ("Strength", Constant((1.0,)))])
+        graph = reader.graph(Link(glow, "Emission"))
+        return (1.0, 1.0, 1.0), images[0], World().rotation, graph
+
+    def _read_environment(self, reader, node, groups):
+        use = reader.use_image(node) if node.image else None
+        if use is None:
+            return {"Color": Constant(MISSING_IMAGE_COLOR)}
+        self._note_environment(node, use)
+        rows = zip("XYZ", self._rotation(node, groups), strict=True)
+        inputs = [(axis, Constant(row)) for axis, row in rows]
+        settings = (("encoding", "srgb" if use.srgb else ""),)
+        return reader.add("environment_texture", inputs, settings, use.uid)
 
     def _environment(self, node, groups):
         rotation = World().rotation
@@ -116,11 +147,14 @@ class _WorldReader:
         use = self._images.read(node.image, node.image_user)
         if use is None:
             return MISSING_IMAGE_COLOR, 0, rotation
+        self._note_environment(node, use)
+        return (1.0, 1.0, 1.0), use.uid, self._rotation(node, groups)
+
+    def _note_environment(self, node, use):
         if node.projection != "EQUIRECTANGULAR":
             self.note("a mirror ball is drawn as an equirectangular image")
         if use.associated:
             self.note("the alpha of an environment image is not read")
-        return (1.0, 1.0, 1.0), use.uid, self._rotation(node, groups)
 
     def _rotation(self, node, groups):
         identity = World().rotation
