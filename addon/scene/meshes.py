@@ -89,9 +89,12 @@ def read_mesh(mesh, keys, owner, base=None):
         if not np.isfinite(values).all():
             notes.append(
                 f"object '{owner}': attribute '{key}' of mesh '{mesh.name}' has values that are"
-                " not finite; drawn as 0"
+                " not finite; drawn as 0 in the faces that have them"
             )
-            values = np.nan_to_num(values, copy=False, nan=0.0, posinf=0.0, neginf=0.0)
+            if kind == "normal":
+                values[~np.isfinite(values)] = 0.0
+            else:
+                values, domain = _without_infinite(mesh, values, domain, corner_vertices), "CORNER"
         (vertex_values if domain == "POINT" else corner_values)[key] = values
     if flat:
         split = split_all(corner_vertices)
@@ -282,6 +285,23 @@ def _read_attribute(mesh, attribute, kind):
         values = np.repeat(values, _polygon_sizes(mesh), axis=0)
         domain = "CORNER"
     return values, domain
+
+
+def _without_infinite(mesh, values, domain, corner_vertices):
+    """Return values of corners that are 0 all over a face where one of its own is not finite.
+
+    Each component by itself: what lies between such a corner and another one is not finite either,
+    and Cycles draws it as 0.
+    """
+    if domain == "POINT":
+        values = np.take(values, corner_vertices, axis=0)
+    sizes = _polygon_sizes(mesh)
+    polygon = np.repeat(np.arange(len(sizes)), sizes)
+    corner, component = np.nonzero(~np.isfinite(values))
+    lost = np.zeros((len(sizes), values.shape[1]), bool)
+    lost[polygon[corner], component] = True
+    values[lost[polygon]] = 0.0
+    return values
 
 
 def _polygon_sizes(mesh):

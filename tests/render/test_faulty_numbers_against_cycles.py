@@ -232,3 +232,25 @@ def test_a_surface_without_material_is_blenders_default(bpy, assigned):
     card.data.materials.append(principled)
     again, _ = both(scene, 1)
     assert np.array_equal(ours, again)
+
+
+@pytest.mark.parametrize("domain", ["POINT", "CORNER"])
+def test_a_channel_of_a_color_attribute_is_none_all_over_a_face_with_a_faulty_corner(
+    bpy, told, domain
+):
+    scene, card, tree = card_scene(bpy, 12)
+    mesh = card.data
+    mesh.clear_geometry()
+    # Two triangles; the diagonal passes between the pixels' middles.
+    mesh.from_pydata(
+        [(-1.13, -1, 0), (1, -1, 0), (1, 1.09, 0), (-1, 1, 0)], [], [(0, 1, 2), (0, 2, 3)]
+    )
+    colors = np.tile(np.float32([0.5, 0.4, 0.3, 1.0]), (4 if domain == "POINT" else 6, 1))
+    # The second vertex, which only the first triangle has.
+    colors[1, 0] = NAN
+    mesh.attributes.new("Col", "FLOAT_COLOR", domain).data.foreach_set("color", colors.ravel())
+    tree.emission(tree.node("VertexColor", layer_name="Col").outputs["Color"])
+    ours, cycles = both(scene)
+    assert np.abs(ours - cycles).max() < EXACT
+    assert set(np.round(ours[..., 0], 4).ravel().tolist()) == {0.0, 0.5}
+    assert any("attribute 'color:Col'" in line for line in told)
