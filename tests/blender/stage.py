@@ -183,12 +183,12 @@ def build_crowd():
     for i in range(3):
         mesh = bpy.data.meshes.new("lamp")
         shape = bmesh.new()
-        bmesh.ops.create_icosphere(shape, subdivisions=1, radius=0.06)
+        bmesh.ops.create_icosphere(shape, subdivisions=1, radius=0.4)
         shape.to_mesh(mesh)
         shape.free()
         mesh.materials.append(lamp)
         thing = bpy.data.objects.new(f"lamp{i}", mesh)
-        thing.location = (2.0 * (i - 1), 6.0, 2.0)
+        thing.location = (6.0 * (i - 1), 60.0, 8.0)
         scene.collection.objects.link(thing)
     iris = bpy.data.images.new("iris", 32, 32)
     y, x = np.mgrid[0:32, 0:32] - 15.5
@@ -211,6 +211,7 @@ def build_crowd():
     settings.method, settings.use_target_error = "ADAPTIVE", False
     settings.render_samples = settings.preview_samples = 12
     settings.least_triangles, settings.subsamples = 64, 2
+    scene.render.preview_pixel_size = "4"
     # The window stays as it is, and the 3D view in it.
     bpy.context.preferences.view.render_display_type = "NONE"
 
