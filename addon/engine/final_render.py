@@ -58,7 +58,9 @@ def render_view_layer(engine, depsgraph, heard):
     if bpy.app.background:
         # Nothing has drawn yet, and what the device holds is asked before.
         context.ensure_context()
-    extractor = SceneExtractor(largest_image=context.max_texture_size())
+    extractor = SceneExtractor(
+        largest_image=context.max_texture_size(), in_main_thread=partial(_in_main_thread, engine)
+    )
     for view in views_of(engine, depsgraph.scene):
         if view is not None:
             view.activate()
@@ -119,6 +121,12 @@ def _show_report(engine, heard, lines):
         if without_count(line) not in _reported:
             engine.report({"WARNING"}, line)
             _reported.add(without_count(line))
+
+
+def _in_main_thread(engine, work):
+    """Return what a function returns in the thread that may choose the frames of movies."""
+    with gpu_of_render(engine.test_break, 0.0, bpy.app.background) as gpu:
+        return gpu.call(work)
 
 
 def _open_device():

@@ -45,11 +45,13 @@ class SceneExtractor:
         The 3D view whose local view and collections apply.
     largest_image : int or None
         Texels along a side that the device can hold.
+    in_main_thread : callable or None
+        As for `scene.images.ImageReader`; for an extractor that is used in another thread.
     """
 
-    def __init__(self, space=None, largest_image=None):
+    def __init__(self, space=None, largest_image=None, in_main_thread=None):
         self._space = space
-        self._materials = MaterialReader(largest_image)
+        self._materials = MaterialReader(largest_image, in_main_thread)
         self._known = {}
         # Read before, but the source may have changed: compared with what is read next.
         self._doubtful = []

@@ -3,6 +3,7 @@
 import os
 import threading
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -51,6 +52,10 @@ class ImageReader:
     is_told : bool
         `note_change` is called when an image is painted on. Otherwise one that is not saved is read
         and compared in every round, as nothing else tells.
+    in_main_thread : callable or None
+        Has the main thread carry out a function and returns what that returns; for a reader that is
+        used in another thread. Only there the frame of a movie can be chosen, which is one for all
+        who read the image.
 
     Attributes
     ----------
@@ -59,11 +64,12 @@ class ImageReader:
     report : list of str
     """
 
-    def __init__(self, largest=None, is_told=False):
+    def __init__(self, largest=None, is_told=False, in_main_thread=None):
         self.images = {}
         self.report = []
         self._largest = largest
         self._is_told = is_told
+        self._in_main_thread = in_main_thread
         self._entries = {}
         self._seen = {}
         self._repaints = {}
@@ -146,17 +152,17 @@ class ImageReader:
         """Return pixels, whether they are as the file stores them, and notes."""
         if image.source == "SEQUENCE" and not image.packed_file and image_user is not None:
             return load_file(image.filepath_from_user(image_user=image_user)), True, []
-        notes = []
-        if image.source in _ANIMATED:
-            if threading.current_thread() is threading.main_thread():
-                # The only way to choose the frame; it needs the thread that may draw.
-                image.gl_load(frame=frame)
-            else:
-                notes.append(
-                    "the frame of a movie cannot be chosen while the user interface renders; the"
-                    " frame shown last is used (render in the background)"
-                )
-        return read_pixels(image), False, notes
+        if image.source not in _ANIMATED:
+            return read_pixels(image), False, []
+        if threading.current_thread() is threading.main_thread():
+            return _read_frame(image, frame), False, []
+        if self._in_main_thread is not None:
+            return self._in_main_thread(partial(_read_frame, image, frame)), False, []
+        return (
+            read_pixels(image),
+            False,
+            ["the frame of a movie cannot be chosen here; the frame shown last is used"],
+        )
 
     def _fitting(self, pixels, notes):
         """Return pixels that the device can hold."""
@@ -169,6 +175,13 @@ class ImageReader:
             f" ({self._largest} a side); it is drawn in {small.shape[1]} x {small.shape[0]}"
         )
         return small
+
+
+def _read_frame(image, frame):
+    """Read a frame of a movie; nobody else in the main thread chooses another one meanwhile."""
+    # The only way to choose the frame; it needs the thread that may draw.
+    image.gl_load(frame=frame)
+    return read_pixels(image)
 
 
 def _signature(image, image_user, frame):

@@ -24,6 +24,8 @@ class MaterialReader:
     ----------
     largest_image : int or None
         Texels along a side that the device can hold.
+    in_main_thread : callable or None
+        As for `ImageReader`.
 
     Attributes
     ----------
@@ -34,8 +36,8 @@ class MaterialReader:
         What is not drawn, and what is drawn instead, one line each.
     """
 
-    def __init__(self, largest_image=None):
-        self.image_reader = ImageReader(largest_image, is_told=True)
+    def __init__(self, largest_image=None, in_main_thread=None):
+        self.image_reader = ImageReader(largest_image, True, in_main_thread)
         self._known = {}
         self.begin()
 

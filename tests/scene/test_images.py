@@ -1,9 +1,13 @@
 """Images are read once for as long as they do not change, as Cycles decodes them."""
 
+import threading
+from types import SimpleNamespace
+
 import numpy as np
 import OpenEXR
 import pytest
 
+from addon.scene import images
 from addon.scene.extract import SceneExtractor
 from addon.scene.image_pixels import encode_srgb, reduced, without_infinite
 from addon.scene.images import ImageReader
@@ -139,3 +143,33 @@ def test_an_image_too_large_for_the_device_is_reduced_and_told(bpy):
         "image 'large': its 12 x 8 pixels are more than the graphics device holds (6 a side);"
         " it is drawn in 6 x 4"
     )
+
+
+def test_a_movie_is_read_in_the_main_thread_from_a_thread_that_renders(monkeypatch):
+    done = []
+    movie = SimpleNamespace(
+        source="MOVIE", packed_file=None, gl_load=lambda frame: done.append(frame)
+    )
+    monkeypatch.setattr(images, "read_pixels", lambda image: done.append("read"))
+
+    def in_main_thread(work):
+        done.append("asked")
+        result = work()
+        done.append("answered")
+        return result
+
+    def read(reader):
+        thread = threading.Thread(target=lambda: notes.append(reader._pixels(movie, None, 7)[2]))
+        thread.start()
+        thread.join()
+
+    notes = []
+    read(ImageReader(in_main_thread=in_main_thread))
+    # Choosing the frame and reading it are one piece of work: nobody chooses another between.
+    assert done == ["asked", 7, "read", "answered"] and notes == [[]]
+    done.clear()
+    read(ImageReader())
+    assert done == ["read"] and "movie" in notes[1][0]
+    done.clear()
+    ImageReader()._pixels(movie, None, 3)
+    assert done == [3, "read"]

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from addon.scene.extract import SceneExtractor
 from addon.scene.meshes import read_mesh, used_slots
 from tests import scene_builders as scenes
 
@@ -190,3 +191,37 @@ def test_a_mesh_without_faces_is_empty(bpy, vertices):
 def test_degenerate_faces_are_no_error(bpy):
     data = scenes.mesh(bpy, "degenerate", [(0, 0, 0)] * 3, [(0, 1, 2)])
     assert len(read_mesh(data, {"normal"}, "o").snapshot.triangles) == 1
+
+
+def test_a_mesh_that_shape_keys_deform_tells_how_it_is_at_rest_in_every_frame(empty_scene):
+    import bpy
+
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8)
+    thing = bpy.context.object
+    thing.shape_key_add(name="Basis")
+    key = thing.shape_key_add(name="long")
+    for point in key.data:
+        point.co.z *= 2.0
+    for frame, value in ((1, 0.0), (3, 1.0)):
+        key.value = value
+        key.keyframe_insert("value", frame=frame)
+    rests = []
+    for frame in (3, 2):
+        empty_scene.frame_set(frame)
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        (mesh,) = SceneExtractor().extract_content(depsgraph).meshes.values()
+        assert np.abs(mesh.positions[:, 2]).max() == pytest.approx(2.0 if frame == 3 else 1.5)
+        assert np.abs(mesh.rest[:, 2]).max() == pytest.approx(1.0)
+        rests.append(mesh.rest.tobytes())
+    assert rests[0] == rests[1]
+
+
+def test_what_nothing_deforms_and_what_has_other_faces_than_its_base_has_no_rest(empty_scene):
+    import bpy
+
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.context.object.modifiers.new("smooth", "SUBSURF").levels = 2
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    meshes = SceneExtractor().extract_content(depsgraph).meshes.values()
+    assert [mesh.rest for mesh in meshes] == [None, None]
