@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..sampling.pixel_filter import filter_support
 from ..sampling.rounds import first_look
 from ..sampling.spectral_samples import GROUP
 from .bokeh_plan import plan_bokeh
@@ -49,7 +50,7 @@ def region_projection(projection, film):
     return crop @ projection
 
 
-def subpixels(content, width, height):
+def subpixels(content, width, height, support=1.0):
     """Choose how finely a lens sample is rasterised.
 
     Where triangles are smaller than pixels, one place a pixel sees one triangle of many, and the
@@ -61,6 +62,8 @@ def subpixels(content, width, height):
     content : SceneContent
     width, height : int
         Of the rendered region, in pixels.
+    support : float
+        Width of the pixel filter, in pixels: what lies outside of it would be drawn for nothing.
 
     Returns
     -------
@@ -69,6 +72,7 @@ def subpixels(content, width, height):
     """
     triangles = sum(len(content.meshes[g.mesh].triangles) * g.count for g in content.groups)
     wanted = min(int(np.ceil(np.sqrt(triangles / (width * height)))), _MOST_SUBPIXELS)
+    wanted = int(wanted * min(support, 1.0))
     affordable = min(
         int(np.sqrt(_LARGEST_RASTER / (width * height))), _LONGEST_RASTER // max(width, height)
     )
@@ -174,6 +178,7 @@ def _plan(snapshot, sampling, automatic=None):
     aberration = camera.chromatic
     if aberration is not None and not aberration.lateral and (lens is None or not aberration.axial):
         aberration = None
+    support = filter_support(film.filter_kind, film.filter_size_px)
     source = SampleSource(
         lens=lens,
         aberration=aberration,
@@ -181,7 +186,7 @@ def _plan(snapshot, sampling, automatic=None):
         filter_kind=film.filter_kind,
         filter_size_px=film.filter_size_px,
         # Subsamples and levels of detail take the place of a finer raster.
-        subpixels=1 if adaptive else subpixels(snapshot.content, width, height),
+        subpixels=1 if adaptive else subpixels(snapshot.content, width, height, support),
         seed=sampling.seed,
         progressive=sampling.progressive,
         endless=automatic is not None,

@@ -83,6 +83,46 @@ def shrink(pixels, largest):
     return pixels
 
 
+def squared(pixels, least=1):
+    """Give an image whose texels are long and narrow more rows or columns, interpolated.
+
+    Lobes are averaged over texels as if these were about square, and over directions to their
+    middles: a strip of one row would light only what looks at the horizon.
+
+    Parameters
+    ----------
+    pixels : ndarray of shape (height, width, 3)
+    least : int
+        Columns that the result has at least; half as many rows.
+
+    Returns
+    -------
+    ndarray of shape (h, w, 3)
+        The image itself where neither side is too short.
+    """
+    height, width = pixels.shape[:2]
+    rows = max(height, width // 2, least // 2)
+    columns = max(width, min(2 * height, _LARGEST_SOURCE), least)
+    # Less than twice as long as they are wide are left alone: a step would blur them unevenly.
+    if rows >= 2 * height:
+        pixels = _interpolated(pixels, rows, 0, wraps=False)
+    if columns >= 2 * width:
+        pixels = _interpolated(pixels, columns, 1, wraps=True)
+    return pixels
+
+
+def _interpolated(pixels, count, axis, wraps):
+    """Interpolate an axis linearly at `count` places; it repeats, or ends at the poles."""
+    size = pixels.shape[axis]
+    places = (np.arange(count) + 0.5) * (size / count) - 0.5
+    low = np.floor(places).astype(int)
+    share = (places - low).astype(np.float32)
+    share = share[:, None, None] if axis == 0 else share[:, None]
+    ends = [index % size if wraps else np.clip(index, 0, size - 1) for index in (low, low + 1)]
+    first, second = (np.take(pixels, index, axis=axis) for index in ends)
+    return first * (1.0 - share) + second * share
+
+
 def _halve(pixels):
     height, width = pixels.shape[:2]
     # An odd last row or column is given to its neighbour; a single one stays.
@@ -175,8 +215,9 @@ def prefilter(pixels):
     GPUTexture
         `LEVELS` octahedral maps in a row, and one of the diffuse light.
     """
-    level = shrink(pixels, _LARGEST_SOURCE)
-    textures = {"small_tx": _opaque_texture(shrink(level, _SMALL_SOURCE))}
+    level = squared(shrink(pixels, _LARGEST_SOURCE))
+    small = squared(shrink(level, _SMALL_SOURCE), _SMALL_SOURCE)
+    textures = {"small_tx": _opaque_texture(small)}
     for i in range(_PYRAMID):
         textures[f"level_{i}_tx"] = _opaque_texture(level)
         level = _halve(level)

@@ -120,7 +120,7 @@ def _pixel(fragments, scene, raster, row, column):
     sources, left = [], blurred
     while left.any():
         last = len(sources) == _MOST - 1
-        group = left & (coc < (np.inf if last else coc[left].min() + _COC_TOLERANCE))
+        group = left if last else left & (coc < coc[left].min() + _COC_TOLERANCE)
         each = (places[group], light[group], depth[group], share[group])
         sources.append(_source(*each, raster, np.array(scene.shape[::-1])))
         left = left & ~group

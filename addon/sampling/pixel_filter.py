@@ -61,6 +61,11 @@ def filter_density(offset, kind, size_px):
     return blackman_harris(np.asarray(offset) / width) / (_COEFFICIENTS[0] * width)
 
 
+def filter_support(kind, size_px):
+    """Return how wide a pixel filter is, from one end to the other, in pixels."""
+    return size_px if kind == "BOX" else 2.0 * size_px
+
+
 def subpixel_centers(count):
     """Return where `count` sub-pixels lie along a pixel, from its centre, in pixels."""
     return (np.arange(count) + 0.5) / count - 0.5

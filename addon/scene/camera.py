@@ -49,7 +49,7 @@ def read_camera(depsgraph, camera, film, view=None):
     )
     projection = np.array(projection, np.float64)
     if view is None:
-        world = camera.matrix_world.normalized()
+        world = camera_place(camera)
     else:
         world = view.place(camera).normalized()
         _shift(projection, data, render, film, view.shift_x(camera) - data.shift_x)
@@ -99,6 +99,23 @@ def _shift(projection, data, render, film, shift_x):
         projection[0, 3] -= moved
     else:
         projection[0, 2] += moved
+
+
+def camera_place(camera):
+    """Return a camera's place and orientation, without its scale and that of its parents.
+
+    Raises
+    ------
+    CameraError
+        If it is scaled to nothing along an axis, so that it looks nowhere.
+    """
+    place = camera.matrix_world.normalized()
+    if abs(place.determinant()) < 1e-6:
+        raise CameraError(
+            f"camera '{camera.name}' or one of its parents has a scale of 0 and looks nowhere; set"
+            " the scale to 1 (Object > Apply > Scale, or the scale of the parent)"
+        )
+    return place
 
 
 def evaluated_camera(depsgraph, camera):
@@ -190,7 +207,7 @@ def _focus_depth(depsgraph, camera, world):
     matrix = target.matrix_world
     if dof.focus_subtarget and target.pose and dof.focus_subtarget in target.pose.bones:
         matrix = matrix @ target.pose.bones[dof.focus_subtarget].matrix
-    world = camera.matrix_world.normalized() if world is None else world
+    world = camera_place(camera) if world is None else world
     place = world.inverted() @ matrix.translation
     return -place.z
 

@@ -10,6 +10,9 @@ from .snapshot import Film, Sampling
 # 16384 squared: the largest texture of today's graphics devices; 4 GB a target.
 MAX_PIXELS = 2**28
 
+# In pixels, of Cycles' own filter setting.
+_LEAST_FILTER_SIZE = 0.01
+
 
 def read_film(scene):
     """Return the raster of a scene's final render, rounded as Blender does.
@@ -56,8 +59,16 @@ def read_film(scene):
         region,
         render.film_transparent,
         scene.aplanat.pixel_filter,
-        render.filter_size,
+        filter_size(render),
     )
+
+
+def filter_size(render):
+    """Return the size of the pixel filter: as Cycles, not below a hundredth of a pixel.
+
+    Blender's own setting goes down to 0, which leaves a filter no area to divide by.
+    """
+    return max(render.filter_size, _LEAST_FILTER_SIZE)
 
 
 def _pixel(fraction, size):

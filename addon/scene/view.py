@@ -8,6 +8,7 @@ from .bokeh import corner_tangent, read_bokeh
 from .camera import camera_report, evaluated_camera, read_lens
 from .chromatic import read_chromatic
 from .lenses import read_real_lens
+from .settings import filter_size
 from .snapshot import Camera, Film
 
 
@@ -92,7 +93,7 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
         part,
         render.film_transparent,
         scene.aplanat.pixel_filter,
-        render.filter_size,
+        filter_size(render),
     )
     orthographic = window[3, 3] != 0.0
     camera = Camera(
