@@ -1,203 +1,30 @@
 """Every pass compiles in every variant, and takes all that it declares and nothing else.
 
-The variants come from the passes themselves: `device.shader_variants`, the infos and the surface
-targets that their modules hold. What was left out by the compiler (which that is differs between
-drivers) is passed over; a name that was never declared fails everywhere.
+What was left out by the compiler (which that is differs between drivers) is passed over; a name
+that was never declared fails everywhere.
 """
 
 import ast
-import importlib
-import pkgutil
-from itertools import combinations, product
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import addon
-from addon import passes
-from addon.device import geometry, shader_variants, shaders
+from addon.device import shader_variants, shaders
 from addon.device.shaders import ShaderInfo, compile_shader, dispatch
-from addon.device.targets import Targets, TargetSpec
 from addon.device.uniforms import uniform_buffer
 from addon.errors import ShaderResourceError
-from addon.passes import data, surface, surface_code
-from addon.scene.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
+from tests.every_shader import every_info, give, make_texture, resources_of, try_every_shader
 
 pytestmark = pytest.mark.usefixtures("gpu_context")
 
-_MODULES = [
-    importlib.import_module(f"{passes.__name__}.{found.name}")
-    for found in pkgutil.iter_modules(passes.__path__)
-]
-
-
-def fixed_infos():
-    """Infos that a module holds, singly."""
-    for module in _MODULES:
-        for name, value in vars(module).items():
-            if isinstance(value, ShaderInfo):
-                yield f"{module.__name__}.{name}", value
-
-
-def surface_targets():
-    """Every target of surfaces, as modules hold them and as the pipeline changes them."""
-    for module in _MODULES:
-        for name, value in vars(module).items():
-            if isinstance(value, surface.SurfaceTarget):
-                yield f"{module.__name__}.{name}", value
-    for target in (surface.COLOR, surface.COLOR_AND_MATTES):
-        for splits, disperses in ((True, False), (False, True), (True, True)):
-            made = surface.without_highlights(target) if splits else target
-            made = surface.in_wavelengths(made) if disperses else made
-            yield f"color {splits=} {disperses=}", made
-    for number in range(3):
-        for names in combinations(("Vector", "Detail"), number):
-            yield f"data {names}", data.target(names)
-
-
-def _node(kind, settings=(), **inputs):
-    given = (
-        (name.replace("_", " "), value if isinstance(value, Link) else Constant(value))
-        for name, value in inputs.items()
-    )
-    return ShaderNode(kind, tuple(given), settings)
-
-
-_GLOW = _node("emission", Color=(1.0, 1.0, 1.0), Strength=(2.0,))
-_CLEAR = _node("transparent", Color=(1.0, 1.0, 1.0))
-
-
-def _pair(kind):
-    shaders_in = (("Shader", Link(0, "BSDF")), ("Shader_001", Link(1, "Emission")))
-    if kind == "mix_shader":
-        shaders_in = (("Fac", Constant((0.5,))), *shaders_in)
-    return SurfaceGraph((_CLEAR, _GLOW, ShaderNode(kind, shaders_in)), Link(2, "Shader"))
-
-
-def _principled(**more):
-    principled = _node(
-        "principled",
-        **{
-            "Base Color": (1.0, 1.0, 1.0),
-            "Metallic": (0.0,),
-            "Roughness": (0.5,),
-            "IOR": (1.5,),
-            "Specular IOR Level": (0.5,),
-            "Specular Tint": (1.0, 1.0, 1.0),
-            "Emission Color": (1.0, 1.0, 1.0),
-            "Emission Strength": (1.0,),
-        },
-        **more,
-    )
-    return SurfaceGraph((principled,), Link(0, "BSDF"))
-
-
-_COLOURS = _node("color_attribute", (("name", "Col"),))
-_LIT_BY_ATTRIBUTE = SurfaceGraph(
-    (_COLOURS, _node("diffuse", Color=Link(0, "Color"))), Link(1, "BSDF")
-)
-# Shapes of materials that differ in what their shaders read: light, opacity, attributes.
-GRAPHS = {
-    "nothing": SurfaceGraph(),
-    "emission": SurfaceGraph((_GLOW,), Link(0, "Emission")),
-    "transparent": SurfaceGraph((_CLEAR,), Link(0, "BSDF")),
-    "mixed": _pair("mix_shader"),
-    "added": _pair("add_shader"),
-    "lit": _principled(),
-    "lit and transparent": _principled(Alpha=(0.5,)),
-    "attribute": _LIT_BY_ATTRIBUTE,
-}
-# With and without what a mesh may lack.
-MESHES = {
-    "bare": {},
-    "whole": {"normal": np.zeros((3, 3)), "color:Col": np.zeros((3, 4))},
-}
-
-
-def surface_infos():
-    """Infos of every surface target for every kind of surface."""
-    for (target_name, target), (graph_name, graph), (mesh_name, mesh) in product(
-        surface_targets(), GRAPHS.items(), MESHES.items()
-    ):
-        code = surface_code.generate(graph, mesh)
-        for holdout, deforms, glow in product((False, True), repeat=3):
-            if glow and (holdout or not code.glows):
-                continue
-            label = f"{target_name}, {graph_name}, {mesh_name}, {holdout=}, {deforms=}, {glow=}"
-            yield label, surface.surface_info(target, code, mesh, holdout, deforms, glow)
-
-
-def every_info():
-    """All of them once, by what they are made of."""
-    found = {}
-    for label, info in (*shader_variants.every_info(), *fixed_infos(), *surface_infos()):
-        found.setdefault(info, label)
-    return found
-
-
-def give(shader, kind, name, texture_of):
-    """Bind something that fits to a declared resource."""
-    if kind == "block":
-        shader.uniform_block(name, texture_of(name))
-    elif kind == "sampler":
-        shader.uniform_sampler(name, texture_of(name))
-    elif kind == "image":
-        shader.image(name, texture_of(name))
-    else:
-        glsl = texture_of(name)
-        size = {"VEC2": 2, "VEC3": 3, "VEC4": 4, "IVEC2": 2, "IVEC4": 4}.get(glsl, 1)
-        value = (0,) * size if size > 1 else 0
-        whole = glsl.startswith("I")
-        (shader.uniform_int if whole else shader.uniform_float)(
-            name, value if whole or size > 1 else 0.0
-        )
-
-
-def make_texture(kind, texel_format):
-    import gpu
-
-    layers = {"layers": 2} if kind.endswith("ARRAY") else {}
-    return gpu.types.GPUTexture((8, 8), format=texel_format, **layers)
-
-
-def resources_of(info):
-    """Kinds and names that a shader was declared with, and what to give it or a GLSL type."""
-    textures = {}
-    for kind, name in info.samplers:
-        textures[name] = make_texture(kind, "R32UI" if kind.startswith("UINT") else "RGBA32F")
-    for texel_format, kind, name, _ in info.images:
-        textures[name] = make_texture(kind, texel_format)
-    constants = {name: kind for kind, name, *_ in info.push_constants}
-    blocks = {name: uniform_buffer(bytes(1 << 14)) for _, name in info.uniforms}
-    found = [("block", name) for name in blocks]
-    found += [("sampler", name) for _, name in info.samplers]
-    found += [("image", image[2]) for image in info.images]
-    found += [("constant", name) for name in constants]
-    return found, (textures | blocks | constants).__getitem__
-
 
 def test_every_shader_takes_everything_that_it_declares():
-    infos = every_info()
+    tried, failures = try_every_shader()
+    assert failures == []
     # The enumeration does not run dry unnoticed.
-    assert len(infos) > 150
-    batch = geometry.fullscreen_batch()
-    with Targets(8, 8, [TargetSpec("color", "RGBA32F")]) as targets:
-        for info, label in infos.items():
-            try:
-                shader = compile_shader(info)
-                names, texture_of = resources_of(info)
-                shader.bind()
-                for kind, name in names:
-                    give(shader, kind, name, texture_of)
-                shader.check_given()
-                if info.compute:
-                    dispatch(shader, 1, 1)
-                elif len(info.outputs) == 1 and info.attributes == (("VEC2", "pos"),):
-                    with targets.framebuffer("color").bind():
-                        shader.draw(batch)
-            except Exception as error:
-                raise AssertionError(f"{label}: {error}") from error
+    assert tried > 150
 
 
 def test_a_shader_that_misses_anything_that_it_reads_refuses_to_draw():
