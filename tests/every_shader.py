@@ -15,7 +15,7 @@ from addon.device import geometry, shader_variants
 from addon.device.shaders import ShaderInfo, compile_shader, dispatch
 from addon.device.targets import Targets, TargetSpec
 from addon.device.uniforms import uniform_buffer
-from addon.passes import data, surface, surface_code
+from addon.passes import data, environment_bake, surface, surface_code
 from addon.scene.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 
 _MODULES = [
@@ -120,10 +120,26 @@ def surface_infos():
             yield label, surface.surface_info(target, code, mesh, holdout, deforms, glow)
 
 
+def world_infos():
+    """Infos of worlds that are computed as one image: of one image, and of an encoded one."""
+    for settings in ((), (("encoding", "srgb"),)):
+        axes = {axis: Constant((1.0, 0.0, 0.0)) for axis in "XYZ"}
+        image = ShaderNode("environment_texture", tuple(axes.items()), settings, image=1)
+        light = _node("emission", Color=Link(0, "Color"), Strength=(1.0,))
+        graph = SurfaceGraph((image, light), Link(1, "Emission"))
+        code = surface_code.generate(graph, ())
+        yield f"world {settings}", environment_bake._info(code)
+
+
 def every_info():
     """All of them once, by what they are made of."""
     found = {}
-    for label, info in (*shader_variants.every_info(), *fixed_infos(), *surface_infos()):
+    for label, info in (
+        *shader_variants.every_info(),
+        *fixed_infos(),
+        *surface_infos(),
+        *world_infos(),
+    ):
         found.setdefault(info, label)
     return found
 
