@@ -17,10 +17,9 @@ from .level_collapses import borders, connected, facets
 # How far a place may move at most, in roots of the area round it. Corrections are far smaller; this
 # keeps a tangle of triangles from being turned inside out.
 _MOST_MOVE = 0.3
-# A loop whose outline is longer than this many times what the growth of its vector area tells is
-# too crumpled to be corrected.
+# Growth of a loop's vector area as it is widened, over the length of its outline: a flat one has 1.
+# One of less is too crumpled to be corrected.
 _LEAST_FLATNESS = 0.3
-
 # Of the surface that a part has gained at the same volume, its silhouette has this share: measured
 # on bodies of several hundred facets with limbs.
 _SILHOUETTE_SHARE = 0.55
@@ -79,8 +78,8 @@ class Shape:
         old = self._groups[old]
         loop = connected(old, self._count)
         # Loops that have met count as one.
-        loop = connected(np.concatenate([old, new, np.stack([np.arange(self._count), loop], 1)]),
-                         self._count)  # fmt: skip
+        roots = np.stack([np.arange(self._count), loop], axis=1)
+        loop = connected(np.concatenate([old, new, roots]), self._count)
         wanted = _vector_area(self._surface.points, self._surface.borders[0], loop[old[:, 0]],
                               self._count)  # fmt: skip
         found = _vector_area(points, new, loop[new[:, 0]], self._count)

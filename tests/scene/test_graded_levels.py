@@ -9,6 +9,7 @@ from addon.scene.graded_levels import MergeTree
 from addon.scene.level_collapses import weld
 from addon.scene.mesh_levels import replay, simplify
 
+from .test_level_invariants import mean, needles
 from .test_mesh_levels import areas, assert_sound, cube_sphere, mesh_of
 
 
@@ -183,3 +184,16 @@ def test_loose_and_broken_triangles_do_no_harm():
     assert np.isfinite(graded.positions).all()
     assert graded.triangles.max() == len(graded.positions) - 1
     assert len(graded.triangles) < 0.8 * len(broken.triangles)
+
+
+def test_needles_that_go_two_by_two_keep_their_area_where_parts_are_graded():
+    mesh = needles(3000)
+    tree = MergeTree(mesh, simplify(mesh, 500)[0])
+    counts = []
+    for blur in (0.0, 1.0, 2.0, 4.0, 1e3):
+        graded = tree.grade(np.full(len(mesh.positions), blur))
+        assert areas(graded).sum() == pytest.approx(areas(mesh).sum(), rel=1e-4)
+        assert mean(graded, "color:") == pytest.approx(mean(mesh, "color:"), rel=1e-3)
+        counts.append(len(graded.triangles))
+    assert counts[0] == len(mesh.triangles)
+    assert counts[-1] < 0.2 * counts[0]

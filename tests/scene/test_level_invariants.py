@@ -322,3 +322,27 @@ def test_which_places_merge_depends_on_the_shape_and_its_seams_alone():
     for a, b in zip(shared, halvings, strict=True):
         assert np.array_equal(a.groups, b.groups)
         assert np.array_equal(a.seams, b.seams)
+
+
+def test_what_a_level_shows_exactly_needs_no_blur():
+    # A flat sheet whose texture and colours are linear in place.
+    def place(u, v):
+        return np.stack([u, v, 0.0 * u], axis=1)
+
+    positions, triangles, uv = grid(32, place)
+    color = np.stack([uv[:, 0], uv[:, 1], 0.5 + 0.5 * uv[:, 0], np.ones(len(uv))], axis=1)
+    linear = mesh_of(positions, triangles, **{"uv:": uv, "color:": color})
+    stripes = np.where(np.sin(40.0 * uv[:, :1]) > 0.0, 1.0, 0.0) * np.ones(4)
+    striped = mesh_of(positions, triangles, **{"color:": stripes})
+    for plain, rich in zip(simplify(linear, 250)[0], simplify(striped, 250)[0], strict=True):
+        edge = np.sqrt(areas(plain).mean())
+        # Less than the triangles themselves; what is left lies at the outline.
+        assert plain.errors.blur < 1.5 * edge
+        assert rich.errors.blur > 4.0 * edge
+
+
+def test_errors_grow_from_level_to_level(made):
+    for build in (ball, limbs, leaf):
+        blurs = [level.errors.blur for level in made(build)[1]]
+        assert blurs == sorted(blurs)
+        assert blurs[0] > 0.0
