@@ -40,6 +40,7 @@ _SCENE_TRADES = {
     "level_bias": lambda value: max(value, 0.0),
     "render_error": lambda value: min(value, 0.01),
     "render_samples": lambda value: max(value, 64),
+    "render_max_samples": lambda value: max(value, 128),
     "sharing_cells": lambda value: max(value, 2),
     "subsamples": lambda value: min(value, 4),
     "least_triangles": lambda value: max(value, 256),

@@ -12,10 +12,12 @@ MOST = {
     "subsamples": 24,
     # An error: below it a picture takes thousands of samples.
     "render_error": None,
-    "min_samples": 64,
-    "max_samples": 256,
+    "render_min_samples": 64,
+    "render_max_samples": 256,
+    # What it cuts off depends on the machine.
+    "render_time_limit": 0.0,
 }
-LEAST = {"render_error": 0.02, "target_error": 0.02}
+LEAST = {"render_error": 0.02}
 
 
 def draw_settings(rng, group, prefix=""):
