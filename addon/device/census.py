@@ -25,6 +25,7 @@ TEXEL_BYTES = {
     "R8": 1,
     "R32UI": 4,
     "RG32UI": 8,
+    "RGBA32UI": 16,
     "DEPTH_COMPONENT32F": 4,
 }
 

@@ -13,6 +13,7 @@ from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
 from ..passes import background, highlights, peel, surface
 from .bokeh_search import tiles_of
+from .lamp_areas import NO_AREAS, LampAreas, lamp_areas
 
 # Fragments that there is room for at first, for each texel, and at least and at most; where there
 # are more than that in a tile, it is divided.
@@ -35,6 +36,8 @@ class _Search:
     subpixels : int
     views : list of (tuple of 2 float, int)
         Place on the lens, m, and the region that it stands for.
+    areas : LampAreas
+        Of the instances with those surfaces, as far as they are counted.
     """
 
     surfaces: frozenset
@@ -42,6 +45,7 @@ class _Search:
     part: tuple[int, int, int, int]
     subpixels: int
     views: list
+    areas: LampAreas = NO_AREAS
 
 
 class HighlightSearch:
@@ -102,7 +106,7 @@ class HighlightSearch:
             room = int(np.clip(_ROOM * texels, _LEAST_ROOM, _MOST_ROOM))
             specs = [TargetSpec("scene", "DEPTH_COMPONENT32F", scale=fine)]
             with Targets(width, height, specs) as raster:
-                lists = highlights.FragmentLists(width, height, fine, room)
+                lists = self._lists(width, height, fine, room)
                 try:
                     for tile in tiles:
                         for view in search.views:
@@ -117,7 +121,10 @@ class HighlightSearch:
         views = list(zip(places, range(1, len(places) + 1), strict=True))
         alone = [((0.0, 0.0), 0)]
         steady = bokeh.shining - bokeh.mirroring
-        searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone)]
+        areas = lamp_areas(
+            self._drawing.content, steady, self._plan.view, bokeh.projection, bokeh.whole[2:]
+        )
+        searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone, areas)]
         if bokeh.mirroring:
             several = views if len(views) > 1 else alone
             fine = bokeh.mirroring_subpixels
@@ -125,6 +132,10 @@ class HighlightSearch:
         if bokeh.world:
             searches.append(_Search(frozenset(), True, bokeh.whole, bokeh.world_subpixels, alone))
         return searches
+
+    def _lists(self, width, height, subpixels, capacity):
+        instances = len(self._drawing.content.instances.world)
+        return highlights.FragmentLists(width, height, subpixels, capacity, instances)
 
     def _draws(self, search):
         """Return the draws of what is searched and of what else may be in front."""
@@ -141,7 +152,8 @@ class HighlightSearch:
         """List what a tile shows from a place on the lens; returns the lists to go on with."""
         params = uniform_buffer(self._raster_params(tile, raster, search.subpixels))
         lens, region = view
-        lists.clear()
+        instances = len(self._drawing.content.instances.world)
+        lists.clear(search.areas.in_tile(tile, search.subpixels, instances))
         framebuffer = raster.framebuffer(depth="scene")
         size = (tile[2] * search.subpixels, tile[3] * search.subpixels)
         with framebuffer.bind(), state.scissored(0, 0, *size):
@@ -151,9 +163,7 @@ class HighlightSearch:
         if number > lists.capacity:
             if number <= _MOST_ROOM:
                 lists.release()
-                lists = highlights.FragmentLists(
-                    raster.width, raster.height, search.subpixels, number
-                )
+                lists = self._lists(raster.width, raster.height, search.subpixels, number)
                 return self._list(search, tile, view, draws, raster, lists, fullscreen)
             parts = _halves(tile)
             if len(parts) > 1:

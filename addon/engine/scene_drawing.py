@@ -310,6 +310,11 @@ class SceneDrawing:
             resources = {"highlights": self._highlights, "wavelength": self._wavelengths(index)}
             surface.draw_glows(listed, view, self._table, lens_sample, **resources)
 
+    @property
+    def content(self):
+        """The `SceneContent` that it draws."""
+        return self._content
+
     def specs(self):
         """Return the targets that drawing needs beside the sample's."""
         return self._shared.specs()

@@ -45,8 +45,11 @@ APPEND_IMAGES = (
     (*_NUMBERS, "heads_img", ("READ", "WRITE")),
     (*_NUMBERS, "tiles_img", ("WRITE",)),
     ("RGBA32F", "FLOAT_2D", "light_img", ("WRITE",)),
-    ("RG32UI", "UINT_2D", "nodes_img", ("WRITE",)),
+    ("RGBA32UI", "UINT_2D", "nodes_img", ("WRITE",)),
 )
+# And of one that counts the texels of instances.
+COUNT_IMAGES = ((*_NUMBERS, "hits_img", ("READ", "WRITE")),)
+COUNT_SAMPLERS = (("FLOAT_2D", "areas_tx"),)
 APPEND_CONSTANTS = (("INT", "capacity"), ("INT", "tile_texels"))
 APPEND_DEFINES = _DEFINES
 
@@ -62,7 +65,9 @@ _FINISH = ShaderInfo(
 
 @variants(world=(False, True), in_wavelengths=(False, True))
 def _order_info(world, in_wavelengths):
-    samplers = [("UINT_2D", "nodes_tx")] + [("FLOAT_2D", "scene_tx")] * (not world)
+    samplers = [("UINT_2D", "nodes_tx")]
+    if not world:
+        samplers += [("FLOAT_2D", "scene_tx"), ("FLOAT_2D", "areas_tx"), ("UINT_2D", "hits_tx")]
     constants = [("INT", "number")] + [("INT", "layers")] * (not world)
     constants += [("VEC4", "lens_view")] * in_wavelengths
     info = ShaderInfo(
@@ -145,9 +150,11 @@ class FragmentLists:
     subpixels : int
     capacity : int
         Fragments that there is room for; rounded up to whole rows.
+    instances : int
+        Rows of the instance table.
     """
 
-    def __init__(self, width, height, subpixels, capacity):
+    def __init__(self, width, height, subpixels, capacity, instances=1):
         rows = -(-capacity // COLUMNS)
         self.capacity = rows * COLUMNS
         self._tile_texels = TILE * subpixels
@@ -160,22 +167,43 @@ class FragmentLists:
                 TargetSpec("used", "R32UI", size=(1, 1)),
                 TargetSpec("tiles", "R32UI", size=side),
                 TargetSpec("light", "RGBA32F"),
-                TargetSpec("nodes", "RG32UI"),
+                TargetSpec("nodes", "RGBA32UI"),
                 TargetSpec("order", "R32UI"),
                 TargetSpec("sharp", "R32UI", size=(2, 1)),
+                TargetSpec("hits", "R32UI", size=(COLUMNS, max(1, -(-instances // COLUMNS)))),
             ],
         )
+        self._areas = None
 
-    def clear(self):
-        """Empty the lists."""
-        for name in ("heads", "used", "tiles"):
+    def clear(self, areas=()):
+        """Empty the lists.
+
+        Parameters
+        ----------
+        areas : sequence of float
+            Of each row of the instance table, in texels: the light that is found of it is brought
+            to that area; 0 leaves it as it is.
+        """
+        for name in ("heads", "used", "tiles", "hits"):
             self.targets[name].clear(format="UINT", value=(0,))
+        table = np.zeros(self.targets["hits"].width * self.targets["hits"].height, np.float32)
+        table[: len(areas)] = areas
+        self._areas = texture_2d(table.reshape(-1, COLUMNS, 1), "R32F")
 
     def bindings(self):
         """Return what a shader binds that appends: names and textures or numbers."""
         names = [name for _, _, name, _ in APPEND_IMAGES]
         images = [(name, self.targets[name.removesuffix("_img")]) for name in names]
         return (*images, ("capacity", self.capacity), ("tile_texels", self._tile_texels))
+
+    def counting(self):
+        """Return what a shader binds besides that counts the texels of instances."""
+        return (("hits_img", self.targets["hits"]), ("areas_tx", self._areas))
+
+    @property
+    def areas(self):
+        """The areas that it was cleared with, as a texture."""
+        return self._areas
 
     def read(self):
         """Wait for the device.
@@ -227,6 +255,8 @@ def order(raster, lists, number, scene=None):
     shader.uniform_int("number", number)
     if scene is not None:
         shader.uniform_sampler("scene_tx", scene)
+        shader.uniform_sampler("areas_tx", lists.areas)
+        shader.uniform_sampler("hits_tx", lists.targets["hits"])
         shader.uniform_int("layers", raster.layers)
     _dispatch(shader, -(-number // _THREADS))
 

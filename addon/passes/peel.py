@@ -26,7 +26,8 @@ HIGHLIGHTS = surface.SurfaceTarget(
     (),
     # Without it, for a surface whose light is never splatted, only its depth is left.
     defines=(surface.SPLIT,),
-    images=highlights.APPEND_IMAGES,
+    samplers=highlights.COUNT_SAMPLERS,
+    images=highlights.APPEND_IMAGES + highlights.COUNT_IMAGES,
     push_constants=highlights.APPEND_CONSTANTS,
     values=highlights.APPEND_DEFINES,
     splits=True,
@@ -84,4 +85,5 @@ def list_highlights(draws, view_buffer, instances, lens, lists, split):
     """
     state.opaque()
     sample = (*lens, 0.0, 0.0)
-    surface.draw_sample(draws, view_buffer, instances, sample, 0, lists.bindings(), split)
+    bindings = (*lists.bindings(), *lists.counting())
+    surface.draw_sample(draws, view_buffer, instances, sample, 0, bindings, split)

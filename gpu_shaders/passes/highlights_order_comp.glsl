@@ -3,7 +3,8 @@
 // is in front: what hides them from which part of the lens is found later.
 // A thread for each fragment; that of a texel's last one does the texel.
 // Inputs: nodes_tx, heads_img, light_img (see highlights_append); scene_tx (window depth of the
-// nearest opaque surface); view_buf (of the raster), highlight_buf; number (of fragments); layers
+// nearest opaque surface); areas_tx and hits_tx (of each instance: area in the raster, 0 where it is
+// not known, and number of its texels there); view_buf (of the raster), highlight_buf; number (of fragments); layers
 // (that are kept of a texel). WORLD: the world at infinity, nothing in front. CHROMATIC: chromatic_buf,
 // field_tx (field table) and lens_view (xy: place on the lens that the raster was seen from, m).
 // Outputs: heads_img (first of a texel, with IN_ORDER), order_img (next of each); light_img: light that
@@ -66,6 +67,19 @@ Fragment next_behind(uint first, Fragment front, float scene)
     number = node.y;
   }
   return best;
+}
+#endif
+
+#ifndef WORLD
+// What the light of an instance's texels is to be multiplied by, so that they have its area.
+float area_per_hit(uint instance)
+{
+  if (instance == 0u) {
+    return 1.0;
+  }
+  float area = texelFetch(areas_tx, list_texel(instance - 1u), 0).x;
+  uint hits = texelFetch(hits_tx, list_texel(instance - 1u), 0).x;
+  return (area > 0.0 && hits > 0u) ? area / float(hits) : 1.0;
 }
 #endif
 
@@ -142,7 +156,11 @@ void main()
   imageStore(heads_img, texel, uvec4(start | IN_ORDER));
   for (uint kept = start; kept != 0u;) {
     ivec2 place = list_texel(kept - 1u);
-    imageStore(light_img, place, splatted(imageLoad(light_img, place), texel));
+    vec4 light = imageLoad(light_img, place);
+#ifndef WORLD
+    light.rgb *= area_per_hit(texelFetch(nodes_tx, place, 0).z);
+#endif
+    imageStore(light_img, place, splatted(light, texel));
     kept = imageLoad(order_img, place).x;
   }
 }

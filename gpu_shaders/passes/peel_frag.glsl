@@ -4,10 +4,11 @@
 // front makes it miss any, and the depth of what is opaque.
 // Otherwise: the depth of the nearest opaque surface.
 // Inputs: varyings of surface_vert; view_buf; OCCLUDERS: front_tx (depth of the layer before);
-// highlights: highlight_buf, and what highlights_append needs; what the generated surface_closure()
+// highlights: highlight_buf, areas_tx (of instances whose texels are counted; else 0) and what
+// highlights_append needs; what the generated surface_closure()
 // reads.
 // Outputs: opacity (a); or lists of fragments: light above the threshold that would reach the eye
-// through nothing else.
+// through nothing else, and hits_img (texels of each instance, whatever hides them).
 // Source: Everitt, Interactive order-independent transparency, 2001; Yang et al., Real-time
 // concurrent linked list construction on the GPU, EGSR 2010; methods 9.
 #include "lib/highlight_lib.glsl"
@@ -44,6 +45,9 @@ void main()
 
 void main()
 {
+  if (texelFetch(areas_tx, list_texel(uint(instance_row)), 0).x > 0.0) {
+    imageAtomicAdd(hits_img, list_texel(uint(instance_row)), 1u);
+  }
   Closure closure = surface_closure();
   float opacity = 1.0;
   vec2 split = vec2(highlight_buf.split.x, highlight_buf.split.z);
@@ -58,7 +62,8 @@ void main()
 #endif
 #endif
   if (max(light.r, max(light.g, light.b)) > 0.0) {
-    append_fragment(ivec2(gl_FragCoord.xy), light, gl_FragCoord.z, opacity >= OPAQUE_FROM);
+    append_fragment(ivec2(gl_FragCoord.xy), light, gl_FragCoord.z, opacity >= OPAQUE_FROM,
+                    uint(instance_row) + 1u);
   }
 #ifdef TRANSPARENT
   if (opacity < OPAQUE_FROM) {

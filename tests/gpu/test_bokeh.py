@@ -78,7 +78,7 @@ void main()
   }
   vec4 color = texelFetch(color_tx, texel, 0);
   if (max(color.r, max(color.g, color.b)) > 0.0) {
-    append_fragment(texel, color.rgb, texelFetch(depth_tx, texel, 0).x, color.a > 0.5);
+    append_fragment(texel, color.rgb, texelFetch(depth_tx, texel, 0).x, color.a > 0.5, 0u);
   }
 }
 """
