@@ -121,9 +121,10 @@ class HighlightSearch:
         views = list(zip(places, range(1, len(places) + 1), strict=True))
         alone = [((0.0, 0.0), 0)]
         steady = bokeh.shining - bokeh.mirroring
-        areas = lamp_areas(
-            self._drawing.content, steady, self._plan.view, bokeh.projection, bokeh.whole[2:]
-        )
+        areas = NO_AREAS
+        if not bokeh.draft:
+            content, size = self._drawing.content, bokeh.whole[2:]
+            areas = lamp_areas(content, steady, self._plan.view, bokeh.projection, size)
         searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone, areas)]
         if bokeh.mirroring:
             several = views if len(views) > 1 else alone

@@ -17,7 +17,9 @@ _LEAST_THICKNESS = 2.0
 _LONGEST = 1024.0
 # Triangles that are measured, those of the first lamps; of more lamps than have so many, the errors
 # of the counts cancel in the sum.
-_MOST_TRIANGLES = 1 << 20
+_MOST_TRIANGLES = 1 << 21
+# Triangles that are measured at once, for the memory that it takes.
+_AT_ONCE = 1 << 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +91,8 @@ def lamp_areas(content, surfaces, view, projection, size):
     LampAreas
         Of those that lie between the near and the far plane.
     """
-    budget, found = _MOST_TRIANGLES, []
+    budget, found = _MOST_TRIANGLES, [NO_AREAS]
+    to_clip = np.asarray(projection, float) @ view
     for number in sorted({number for number, _ in surfaces}):
         group = content.groups[number]
         mesh = content.meshes[group.mesh]
@@ -99,26 +102,32 @@ def lamp_areas(content, surfaces, view, projection, size):
             if (number, slot) in surfaces
         ]
         triangles = np.concatenate([np.zeros((0, 3), int), *parts])
-        if len(triangles) == 0:
+        measured = min(group.count, budget // max(len(triangles), 1))
+        if len(triangles) == 0 or measured == 0:
             continue
-        measured = min(group.count, budget // len(triangles))
         budget -= measured * len(triangles)
         used, corners = np.unique(triangles, return_inverse=True)
         points = np.column_stack([mesh.positions[used], np.ones(len(used))])
-        for row in range(group.first, group.first + measured):
-            world = content.instances.world[row].astype(np.float64)
-            clip = points @ (projection @ view @ world).T
-            if (clip[:, 3] <= 0.0).any() or (np.abs(clip[:, 2]) > clip[:, 3]).any():
-                continue
-            places = (clip[:, :2] / clip[:, 3:] * 0.5 + 0.5) * size
-            a, b, c = (places[corners.reshape(-1, 3)[:, i]] for i in range(3))
-            (ux, uy), (vx, vy) = (b - a).T, (c - a).T
-            area = 0.5 * np.abs(ux * vy - uy * vx).sum()
-            found.append((row, area, places.min(axis=0), places.max(axis=0)))
-    rows, areas, lower, upper = zip(*found, strict=True) if found else ((), (), (), ())
+        at_once = max(1, _AT_ONCE // len(triangles))
+        for first in range(0, measured, at_once):
+            rows = group.first + np.arange(first, min(first + at_once, measured))
+            clip = np.einsum("rab,vb->rva", to_clip @ content.instances.world[rows], points)
+            found.append(_areas_of(rows, clip, corners.reshape(-1, 3), size))
     return LampAreas(
-        np.array(rows, int),
-        np.array(areas),
-        np.array(lower).reshape(-1, 2),
-        np.array(upper).reshape(-1, 2),
+        *(
+            np.concatenate([getattr(part, name) for part in found])
+            for name in ("rows", "areas", "lower", "upper")
+        )
     )
+
+
+def _areas_of(rows, clip, triangles, size):
+    """Measure instances by the corners of their triangles in clip space, shape (R, V, 4)."""
+    w = clip[..., 3]
+    whole = ((w > 0.0) & (np.abs(clip[..., 2]) <= w)).all(axis=1)
+    rows, clip = rows[whole], clip[whole]
+    places = (clip[..., :2] / clip[..., 3:] * 0.5 + 0.5) * size
+    a, b, c = (places[:, triangles[:, i]] for i in range(3))
+    u, v = b - a, c - a
+    areas = 0.5 * np.abs(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]).sum(axis=1)
+    return LampAreas(rows, areas, places.min(axis=1), places.max(axis=1))
