@@ -102,17 +102,31 @@ class HighlightSearch:
                 continue
             _, _, width, height = tiles[0]
             fine = search.subpixels
-            texels = width * height * fine**2
-            room = int(np.clip(_ROOM * texels, _LEAST_ROOM, _MOST_ROOM))
             specs = [TargetSpec("scene", "DEPTH_COMPONENT32F", scale=fine)]
             with Targets(width, height, specs) as raster:
-                lists = self._lists(width, height, fine, room)
-                try:
-                    for tile in tiles:
-                        for view in search.views:
-                            lists = self._list(search, tile, view, draws, raster, lists, fullscreen)
-                finally:
-                    lists.release()
+                self._list_tiles(search, tiles, draws, raster, fullscreen)
+
+    def _list_tiles(self, search, tiles, draws, raster, fullscreen):
+        fine = search.subpixels
+        room = int(np.clip(_ROOM * raster.width * raster.height * fine**2, _LEAST_ROOM, _MOST_ROOM))
+        lists = highlights.FragmentLists(raster.width, raster.height, fine, room)
+        areas = search.areas.in_tile(search.part, fine, len(self._drawing.content.instances.world))
+        counts = highlights.TexelCounts(areas)
+        # Where a tile's edge cuts a lamp, its texels are counted before any of its light is listed.
+        cut = search.areas.any_cut(tiles, fine, areas)
+        try:
+            for tile in tiles if cut else ():
+                lists.clear()
+                self._draw(
+                    search, tile, search.views[0], draws, raster, (lists, counts, True), fullscreen
+                )
+            for tile in tiles:
+                for view in search.views:
+                    held = (lists, counts, not cut)
+                    lists = self._list(search, tile, view, draws, raster, held, fullscreen)
+        finally:
+            lists.release()
+            counts.release()
 
     def _searches(self):
         """Return what is searched in which way: what looks the same from anywhere, and the rest."""
@@ -134,10 +148,6 @@ class HighlightSearch:
             searches.append(_Search(frozenset(), True, bokeh.whole, bokeh.world_subpixels, alone))
         return searches
 
-    def _lists(self, width, height, subpixels, capacity):
-        instances = len(self._drawing.content.instances.world)
-        return highlights.FragmentLists(width, height, subpixels, capacity, instances)
-
     def _draws(self, search):
         """Return the draws of what is searched and of what else may be in front."""
         if search.world:
@@ -149,27 +159,37 @@ class HighlightSearch:
         others = drawing.surfaces() - search.surfaces
         return drawing.full_detail_draws(peel.OPAQUE, others), shining
 
-    def _list(self, search, tile, view, draws, raster, lists, fullscreen):
-        """List what a tile shows from a place on the lens; returns the lists to go on with."""
+    def _draw(self, search, tile, view, draws, raster, held, fullscreen):
+        """Draw what a tile shows from a place on the lens into lists; returns its `ViewParams`."""
         params = uniform_buffer(self._raster_params(tile, raster, search.subpixels))
-        lens, region = view
-        instances = len(self._drawing.content.instances.world)
-        lists.clear(search.areas.in_tile(tile, search.subpixels, instances))
         framebuffer = raster.framebuffer(depth="scene")
         size = (tile[2] * search.subpixels, tile[3] * search.subpixels)
         with framebuffer.bind(), state.scissored(0, 0, *size):
             framebuffer.clear(depth=1.0)
-            self._append(search, draws, params, lens, lists, fullscreen)
+            self._append(search, draws, params, view[0], held, fullscreen)
+        return params
+
+    def _list(self, search, tile, view, draws, raster, held, fullscreen):
+        """List what a tile shows from a place on the lens; returns the lists to go on with."""
+        lists, counts, _ = held
+        lens, region = view
+        lists.clear()
+        params = self._draw(search, tile, view, draws, raster, held, fullscreen)
         number, shining = lists.read()
         if number > lists.capacity:
+            # Drawn again, nothing is counted again.
             if number <= _MOST_ROOM:
                 lists.release()
-                lists = self._lists(raster.width, raster.height, search.subpixels, number)
-                return self._list(search, tile, view, draws, raster, lists, fullscreen)
+                lists = highlights.FragmentLists(
+                    raster.width, raster.height, search.subpixels, number
+                )
+                held = (lists, counts, False)
+                return self._list(search, tile, view, draws, raster, held, fullscreen)
             parts = _halves(tile)
             if len(parts) > 1:
                 for part in parts:
-                    lists = self._list(search, part, view, draws, raster, lists, fullscreen)
+                    held = (lists, counts, False)
+                    lists = self._list(search, part, view, draws, raster, held, fullscreen)
                 return lists
         self.bytes = max(self.bytes, raster.bytes + lists.targets.bytes)
         if number == 0:
@@ -179,21 +199,24 @@ class HighlightSearch:
             params, self._split, search.subpixels, layers, lens, region, self._field
         )
         scene = None if search.world else raster["scene"]
-        highlights.order(seen, lists, min(number, lists.capacity), scene)
+        highlights.order(seen, lists, min(number, lists.capacity), scene, counts)
         count, sharp = highlights.emit(seen, lists, shining, self._sources, self.count)
         self.count += count
         self.sharp += sharp
         return lists
 
-    def _append(self, search, draws, params, lens, lists, fullscreen):
+    def _append(self, search, draws, params, lens, held, fullscreen):
         buffers = self._buffers
+        lists, counts, counting = held
         if search.world:
             world = (buffers.environment_buffer, buffers.environment_image)
             background.list_highlights(fullscreen, params, *world, self._split, lists)
             return
         others, shining = draws
         peel.draw_opaque(others, params, buffers.instances, lens)
-        peel.list_highlights(shining, params, buffers.instances, lens, lists, self._split)
+        peel.list_highlights(
+            shining, params, buffers.instances, lens, lists, self._split, counts, counting
+        )
         for draw in (*others, *shining):
             self._drawing.counts.draw_calls += 1
             self._drawing.counts.triangles += draw.triangles * draw.count

@@ -69,6 +69,21 @@ class LampAreas:
         found[self.rows[used]] = areas[used]
         return found
 
+    def any_cut(self, tiles, subpixels, areas):
+        """Return whether a tile's edge cuts any instance that is counted.
+
+        Parameters
+        ----------
+        tiles : list of tuple of 4 int
+        subpixels : int
+        areas : ndarray of shape (count,)
+            Of those that are counted; 0 of others.
+        """
+        if len(tiles) == 1 or not areas.any():
+            return False
+        found = sum(self.in_tile(tile, subpixels, len(areas)) > 0.0 for tile in tiles)
+        return bool((found[areas > 0.0] == 0).any())
+
 
 NO_AREAS = LampAreas(np.zeros(0, int), np.zeros(0), np.zeros((0, 2)), np.zeros((0, 2)))
 

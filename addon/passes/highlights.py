@@ -140,6 +140,39 @@ class SearchedRaster:
     field: tuple | None = None
 
 
+class TexelCounts:
+    """How many texels of a raster instances have, beside the area that they have there.
+
+    Parameters
+    ----------
+    areas : sequence of float
+        Of each row of the instance table, in texels: the light that is found of it is brought to
+        that area; 0 leaves it as it is.
+    """
+
+    def __init__(self, areas=()):
+        rows = max(1, -(-len(areas) // COLUMNS))
+        table = np.zeros((rows, COLUMNS, 1), np.float32)
+        table.reshape(-1)[: len(areas)] = areas
+        self.areas = texture_2d(table, "R32F")
+        self._none = texture_2d(np.zeros_like(table), "R32F")
+        self._targets = Targets(COLUMNS, rows, [TargetSpec("hits", "R32UI")])
+        self.hits.clear(format="UINT", value=(0,))
+
+    @property
+    def hits(self):
+        """Texels of each row of the instance table, as a texture."""
+        return self._targets["hits"]
+
+    def bindings(self, counting):
+        """Return what a shader binds that counts; nothing is added unless `counting`."""
+        return (("hits_img", self.hits), ("areas_tx", self.areas if counting else self._none))
+
+    def release(self):
+        """Give the textures back to the device."""
+        self._targets.release()
+
+
 class FragmentLists:
     """The fragments of a raster that are brighter than the threshold, texel by texel.
 
@@ -150,11 +183,9 @@ class FragmentLists:
     subpixels : int
     capacity : int
         Fragments that there is room for; rounded up to whole rows.
-    instances : int
-        Rows of the instance table.
     """
 
-    def __init__(self, width, height, subpixels, capacity, instances=1):
+    def __init__(self, width, height, subpixels, capacity):
         rows = -(-capacity // COLUMNS)
         self.capacity = rows * COLUMNS
         self._tile_texels = TILE * subpixels
@@ -170,40 +201,19 @@ class FragmentLists:
                 TargetSpec("nodes", "RGBA32UI"),
                 TargetSpec("order", "R32UI"),
                 TargetSpec("sharp", "R32UI", size=(2, 1)),
-                TargetSpec("hits", "R32UI", size=(COLUMNS, max(1, -(-instances // COLUMNS)))),
             ],
         )
-        self._areas = None
 
-    def clear(self, areas=()):
-        """Empty the lists.
-
-        Parameters
-        ----------
-        areas : sequence of float
-            Of each row of the instance table, in texels: the light that is found of it is brought
-            to that area; 0 leaves it as it is.
-        """
-        for name in ("heads", "used", "tiles", "hits"):
+    def clear(self):
+        """Empty the lists."""
+        for name in ("heads", "used", "tiles"):
             self.targets[name].clear(format="UINT", value=(0,))
-        table = np.zeros(self.targets["hits"].width * self.targets["hits"].height, np.float32)
-        table[: len(areas)] = areas
-        self._areas = texture_2d(table.reshape(-1, COLUMNS, 1), "R32F")
 
     def bindings(self):
         """Return what a shader binds that appends: names and textures or numbers."""
         names = [name for _, _, name, _ in APPEND_IMAGES]
         images = [(name, self.targets[name.removesuffix("_img")]) for name in names]
         return (*images, ("capacity", self.capacity), ("tile_texels", self._tile_texels))
-
-    def counting(self):
-        """Return what a shader binds besides that counts the texels of instances."""
-        return (("hits_img", self.targets["hits"]), ("areas_tx", self._areas))
-
-    @property
-    def areas(self):
-        """The areas that it was cleared with, as a texture."""
-        return self._areas
 
     def read(self):
         """Wait for the device.
@@ -229,7 +239,7 @@ class FragmentLists:
         self.targets.release()
 
 
-def order(raster, lists, number, scene=None):
+def order(raster, lists, number, scene=None, counts=None):
     """Put the fragments of each texel in order, without what nothing of the lens sees.
 
     Parameters
@@ -240,7 +250,10 @@ def order(raster, lists, number, scene=None):
         Of fragments.
     scene : GPUTexture or None
         Window depth of the nearest opaque surface; None: the fragments are the world's.
+    counts : TexelCounts, optional
+        Of the instances, complete for what the raster shows; not used for the world.
     """
+    counts = counts or TexelCounts()
     shader = compile_shader(_order_info(scene is None, raster.field is not None))
     shader.bind()
     if raster.field is not None:
@@ -255,8 +268,8 @@ def order(raster, lists, number, scene=None):
     shader.uniform_int("number", number)
     if scene is not None:
         shader.uniform_sampler("scene_tx", scene)
-        shader.uniform_sampler("areas_tx", lists.areas)
-        shader.uniform_sampler("hits_tx", lists.targets["hits"])
+        shader.uniform_sampler("areas_tx", counts.areas)
+        shader.uniform_sampler("hits_tx", counts.hits)
         shader.uniform_int("layers", raster.layers)
     _dispatch(shader, -(-number // _THREADS))
 

@@ -69,7 +69,7 @@ def draw_opaque(draws, view_buffer, instances, lens):
     surface.draw_sample(draws, view_buffer, instances, (*lens, 0.0, 0.0), 0)
 
 
-def list_highlights(draws, view_buffer, instances, lens, lists, split):
+def list_highlights(draws, view_buffer, instances, lens, lists, split, counts, counting):
     """Append to lists what is brighter than the threshold; draws the depth of what is opaque.
 
     Parameters
@@ -82,8 +82,11 @@ def list_highlights(draws, view_buffer, instances, lens, lists, split):
         Cleared.
     split : GPUUniformBuf
         `HighlightParams`.
+    counts : highlights.TexelCounts
+    counting : bool
+        The texels that are drawn are added to them.
     """
     state.opaque()
     sample = (*lens, 0.0, 0.0)
-    bindings = (*lists.bindings(), *lists.counting())
+    bindings = (*lists.bindings(), *counts.bindings(counting))
     surface.draw_sample(draws, view_buffer, instances, sample, 0, bindings, split)

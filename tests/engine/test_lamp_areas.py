@@ -65,5 +65,8 @@ def test_a_tile_counts_what_lies_in_it_and_cannot_be_missed():
     assert areas.tolist() == [pytest.approx(found.areas[0] * 64.0), 0.0, 0.0]
     # Cut by the tile's edge; thinner than two texels; longer than a thousand.
     assert not found.in_tile((x + 1, y, 20, 20), 8, 3).any()
+    assert found.any_cut([(x, y, 1, 20), (x + 1, y, 19, 20)], 8, areas)
+    assert not found.any_cut([tile, (x + 20, y, 20, 20)], 8, areas)
+    assert not found.any_cut([tile], 8, areas)
     assert not found.in_tile(tile, 1, 3).any()
     assert not found.in_tile(tile, 512, 3).any()
