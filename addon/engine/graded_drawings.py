@@ -23,9 +23,9 @@ _DRAWING_IN_SOFTWARE = 3e-7
 # What may be given up any time, as the picture of a view that moves, is drawn at full detail until
 # the samples have cost as much as a graded mesh, but for so many at least.
 _LEAST_SAMPLES_BEFORE = 4
-# Triangles left, over those of full detail, where that is not known yet.
+# Triangles left, over those of full detail, where finding out would take too long.
 _USUAL_SHARE = 0.5
-# Of the graded meshes on the device, together.
+# Of the graded meshes on the device, together, as estimated.
 _BYTES = 512 << 20
 
 
@@ -117,11 +117,16 @@ class GradedDrawings:
         """
         for key in self._made.keys() - self._keys.values():
             del self._made[key]
+        room = _BYTES
         for row, found in self._candidates.items():
             count, share = len(found.mesh.triangles), self._shares[row]
             if self._pays(count, share, drawings(row, self._plan.samples)):
+                # What is there from an earlier frame changes neither what is graded nor since when.
+                room -= int(self._buffers.meshes[found.mesh.uid].bytes * share)
+                if room < 0:
+                    break
                 first = 0
-                if self._plan.progressive and self._keys[row] not in self._made:
+                if self._plan.progressive:
                     paid = _MAKING / (self._drawing * (1.0 - share))
                     first = max(_LEAST_SAMPLES_BEFORE, int(np.ceil(paid)))
                 self.rows[row] = first
@@ -144,8 +149,6 @@ class GradedDrawings:
             return None
         key = self._keys[row]
         if key not in self._made:
-            if self.bytes > _BYTES:
-                return None
             found = self._candidates[row]
             tree = self._buffers.merge_tree(found.mesh.uid)
             self._made[key] = MeshBuffers(tree.grade(self._limits(found)))
@@ -157,10 +160,9 @@ class GradedDrawings:
         return sum(mesh.bytes for mesh in self._made.values())
 
     def _share(self, found):
-        uid = found.mesh.uid
-        if self._plan.progressive and not self._buffers.has_merge_tree(uid):
+        if self._plan.progressive:
             return _USUAL_SHARE
-        tree = self._buffers.merge_tree(uid)
+        tree = self._buffers.merge_tree(found.mesh.uid)
         return tree.share(self._limits(found, tree.probes))
 
     def _limits(self, found, vertices=slice(None)):

@@ -173,10 +173,6 @@ class SceneBuffers:
         self._merge_trees.pop(uid, None)
         self.levels_version += 1
 
-    def has_merge_tree(self, uid):
-        """Return whether `merge_tree` returns at once."""
-        return uid in self._merge_trees
-
     def merge_tree(self, uid):
         """Return the `MergeTree` of a mesh whose levels are here, made at its first use."""
         tree = self._merge_trees.get(uid)
