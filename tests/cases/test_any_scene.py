@@ -5,6 +5,8 @@ import pytest
 
 from tests.pictures import energy_ratio, render_cycles
 
+pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
+
 # Pixels along the side of the lamp and the flames: 0.1 wide, 9 away, 50 mm on a 36 mm sensor.
 _LAMP_PIXELS = (0.1 / 9.0 * 50.0 / 36.0 * 160.0) ** 2
 
