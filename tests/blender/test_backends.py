@@ -88,8 +88,65 @@ def surfaces_blend(aplanat_bpy, tmp_path_factory):
     return path
 
 
+@pytest.fixture(scope="session")
+def nodes_blend(aplanat_bpy, tmp_path_factory):
+    """Every operation and blend mode in chains, and a world of nodes."""
+    from addon.passes.surface_values import MATH, VECTOR_MATH, VECTOR_NUMBERS
+
+    bpy = aplanat_bpy
+    scene = surface_scenes.sphere_scene(bpy, [("Emission", {})] * 4)
+    balls = [obj for obj in scene.objects if obj.type == "MESH"]
+    trees = [surface_scenes.Tree(ball.active_material.node_tree) for ball in balls]
+    for tree in trees:
+        tree.output = next(n for n in tree.tree.nodes if n.type == "OUTPUT_MATERIAL")
+    picture = surface_scenes.image(bpy, "picture", surface_scenes.random_pixels(4))
+
+    def texture(tree):
+        uv = tree.node("TexCoord").outputs["UV"]
+        return tree.node("TexImage", {"Vector": uv}, image=picture).outputs["Color"]
+
+    total = texture(trees[0])
+    for operation in MATH:
+        inputs = {"Value": texture(trees[0]), "Value_001": 0.7, "Value_002": 0.3}
+        value = trees[0].node("Math", inputs, operation=operation, use_clamp=True).outputs[0]
+        total = trees[0].node("Math", {"Value": total, "Value_001": value}).outputs[0]
+    trees[0].emission((0.03, 0.02, 0.01), total)
+    total = texture(trees[1])
+    for operation in (*VECTOR_MATH, *VECTOR_NUMBERS):
+        inputs = {"Vector": texture(trees[1]), "Vector_001": (0.4, 0.3, 0.9)}
+        node = trees[1].node("VectorMath", inputs, operation=operation)
+        value = node.outputs["Value" if operation in VECTOR_NUMBERS else "Vector"]
+        total = trees[1].node("VectorMath", {"Vector": total, "Vector_001": value}).outputs[0]
+    trees[1].emission(total, 0.03)
+    color = texture(trees[2])
+    mix = trees[2].node("Mix", data_type="RGBA")
+    for blend in [item.identifier for item in mix.bl_rna.properties["blend_type"].enum_items]:
+        inputs = {"Factor_Float": 0.3, "A_Color": color, "B_Color": texture(trees[2])}
+        mix = trees[2].node("Mix", inputs, data_type="RGBA", blend_type=blend)
+        color = next(s for s in mix.outputs if s.identifier == "Result_Color")
+    trees[2].emission(color)
+    color = texture(trees[3])
+    for kind in ("HueSaturation", "Gamma", "BrightContrast", "Invert", "RGBCurve"):
+        color = trees[3].node(kind, {"Color": color}).outputs[0]
+    parts = trees[3].node("SeparateColor", {"Color": color}, mode="HSL")
+    inputs = {"Red": parts.outputs[0], "Green": parts.outputs[1], "Blue": parts.outputs[2]}
+    joined = trees[3].node("CombineColor", inputs, mode="HSV").outputs[0]
+    ramp = trees[3].node("ValToRGB", {"Fac": trees[3].node("Clamp", {"Value": joined}).outputs[0]})
+    mapped = trees[3].node("MapRange", {"Value": joined}, interpolation_type="SMOOTHERSTEP")
+    trees[3].emission(ramp.outputs[0], mapped.outputs[0])
+    world = surface_scenes.world_image(bpy, None).node_tree
+    sky = surface_scenes.Tree(world, "ShaderNodeOutputWorld")
+    found = sky.node("TexEnvironment", image=picture)
+    turned = sky.node("HueSaturation", {"Hue": 0.7, "Color": found.outputs[0]})
+    background = next(n for n in world.nodes if n.type == "BACKGROUND")
+    world.links.new(turned.outputs[0], background.inputs["Color"])
+    path = tmp_path_factory.mktemp("nodes") / "nodes.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    return path
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["demo", "toys", "toys_lit", "surfaces"])
+@pytest.mark.parametrize("scene", ["demo", "toys", "toys_lit", "surfaces", "nodes"])
 def test_vulkan_agrees_with_opengl(scene, blender, request, tmp_path):
     blend = request.getfixturevalue(f"{scene}_blend")
     pictures = {}
