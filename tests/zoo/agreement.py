@@ -12,6 +12,7 @@ pictures tells is small against the bar, or the difference is larger than the ba
 """
 
 import tempfile
+import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
@@ -27,10 +28,13 @@ LOOK_BAR = 0.02
 _QUIET = 0.25
 # A scene fails by more than chance brings one of a few thousand scenes, at four numbers each.
 _CHANCE = 1e-5
-# Pictures of each method: two give a spread, and sixteen are as much as a check can afford.
-_FEWEST, MOST = 2, 16
-# Of the reference pictures at first.
-_REFERENCE_SAMPLES = 64
+# Pictures of the scene's own method: two give a spread, and eight are what a check can afford.
+_FEWEST, MOST = 2, 8
+# Processor time of a comparison, in seconds; see `compare`.
+PATIENCE = 20.0
+# Of the reference method fewer are needed, because their samples grow, too: at first, at most.
+_MOST_REFERENCES = 4
+_REFERENCE_SAMPLES = (64, 256)
 # Light below this, in a picture's mean, is black on every display and lost in single precision.
 _DARK = 1e-6
 
@@ -86,7 +90,7 @@ class Agreement:
     measured: dict = field(default_factory=dict)
 
 
-def compare(scene, render, first, most=MOST):
+def compare(scene, render, first, most=MOST, patience=PATIENCE):
     """Compare the method that a scene asks for with the reference method.
 
     Parameters
@@ -98,7 +102,9 @@ def compare(scene, render, first, most=MOST):
     first : dict of (str, str) to ndarray
         What the scene itself rendered to.
     most : int
-        Pictures of each method; a scene that is undecided then is not failed, but told.
+        Pictures of the scene's own method; a scene that is undecided then is not failed, but told.
+    patience : float
+        Seconds of processor time after which a scene that is undecided is left so.
 
     Returns
     -------
@@ -108,16 +114,20 @@ def compare(scene, render, first, most=MOST):
         own = _Estimate(scene, render, _set_seed)
         if not changed:
             own.add(first)
-        count, samples = _FEWEST, _REFERENCE_SAMPLES
+        count, samples = _FEWEST, _REFERENCE_SAMPLES[0]
+        end = time.process_time() + patience
         while True:
             own.fill(count)
             # Of more samples each, too: their noise falls faster that way than by averaging.
             reference = _Estimate(scene, render, partial(_render_reference, samples=samples))
-            reference.fill(count)
+            reference.fill(min(count, _MOST_REFERENCES))
             found = _judge(scene, own, reference)
-            if found.fault or not found.measured["undecided"] or 2 * count > most:
+            settled = found.fault or not found.measured["undecided"]
+            # The next round takes about twice as long as all before.
+            late = end - time.process_time() < 2.0 * (time.process_time() - end + patience)
+            if settled or 2 * count > most or late:
                 return found
-            count, samples = 2 * count, 2 * samples
+            count, samples = 2 * count, min(2 * samples, _REFERENCE_SAMPLES[1])
 
 
 class _Estimate:
@@ -238,10 +248,14 @@ def _judge_energy(ours, theirs, measured):
         return ""
     scale = np.maximum(np.abs(reference), _DARK)
     difference = (means[0].mean(axis=0) - reference) / scale
-    variance = sum(m.var(axis=0, ddof=1) / len(m) for m in means)
-    noise = np.sqrt(variance) / scale
-    # The two spreads rest on few pictures each.
-    freedom = len(ours) - 1
+    variances = [m.var(axis=0, ddof=1) / len(m) for m in means]
+    noise = np.sqrt(sum(variances)) / scale
+    # The two spreads rest on few pictures each (Welch and Satterthwaite).
+    parts = sum(v**2 / (len(m) - 1) for v, m in zip(variances, means, strict=True))
+    least = min(len(m) for m in means) - 1
+    freedom = np.divide(
+        sum(variances) ** 2, parts, out=np.full_like(parts, least), where=parts > 0.0
+    )
     wide, usual = student.ppf(1.0 - _CHANCE, freedom), student.ppf(0.975, freedom) / 2.0
     worst = int(np.argmax(np.where(lit, np.abs(difference), 0.0)))
     if abs(difference[worst]) >= measured["energy"]:

@@ -87,7 +87,7 @@ class Verdict:
     seconds: float = 0.0
 
 
-def judge(recipe, ask=Fault.KINDS, most=agreement.MOST):
+def judge(recipe, ask=Fault.KINDS, most=agreement.MOST, patience=agreement.PATIENCE):
     """Build a scene, render it and say what is wrong with it.
 
     Parameters
@@ -96,7 +96,7 @@ def judge(recipe, ask=Fault.KINDS, most=agreement.MOST):
         See `recipe.make_recipe`.
     ask : sequence of str
         Kinds of faults that are looked for; shrinking a scene asks only for its own.
-    most : int
+    most, patience : int, float
         See `agreement.compare`.
 
     Returns
@@ -106,14 +106,14 @@ def judge(recipe, ask=Fault.KINDS, most=agreement.MOST):
     start = time.process_time()
     verdict = Verdict()
     try:
-        _judge(recipe, ask, verdict, most)
+        _judge(recipe, ask, verdict, most, patience)
     except Fault as fault:
         verdict.kind, verdict.text, verdict.detail = fault.kind, fault.text, fault.detail
     verdict.seconds = time.process_time() - start
     return verdict
 
 
-def _judge(recipe, ask, verdict, most):
+def _judge(recipe, ask, verdict, most, patience):
     scene = build(recipe)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "picture.exr"
@@ -129,7 +129,7 @@ def _judge(recipe, ask, verdict, most):
         if given == given_again:
             _check_repeat(pictures, again)
     if "disagrees" in ask:
-        found = agreement.compare(scene, render, pictures, most)
+        found = agreement.compare(scene, render, pictures, most, patience)
         verdict.measured = found.measured
         if found.fault:
             raise Fault("disagrees", found.fault)

@@ -147,20 +147,24 @@ def _draw_layers(rng, collections, materials):
 
 def _draw_own_settings(bpy, rng, recipe):
     """Draw every setting that Aplanat adds to Blender's data-blocks."""
-    camera, light = bpy.data.cameras.new("trial"), bpy.data.lights.new("trial", "POINT")
-    material = bpy.data.materials.new("trial")
-    scene, layer = bpy.context.scene, bpy.context.view_layer
-    recipe["settings"] |= draw_settings(rng, scene.aplanat, "aplanat.")
-    recipe["camera"]["set"] |= draw_settings(rng, camera.aplanat, "aplanat.")
-    for spec in recipe["layers"]:
-        spec["set"] |= draw_settings(rng, layer.aplanat, "aplanat.")
-    for spec in recipe["materials"].values():
-        spec["set"] = spec.get("set", {}) | draw_settings(rng, material.aplanat, "aplanat.")
-    for spec in recipe["lights"]:
-        spec["set"] |= draw_settings(rng, light.aplanat, "aplanat.")
-    bpy.data.cameras.remove(camera)
-    bpy.data.lights.remove(light)
-    bpy.data.materials.remove(material)
+    recipe["settings"] |= draw_settings(rng, bpy.context.scene.aplanat, "aplanat.")
+    trials = {
+        "camera": (bpy.data.cameras, bpy.data.cameras.new("trial"), [recipe["camera"]]),
+        "world": (bpy.data.worlds, bpy.data.worlds.new("trial"), [recipe.get("world")]),
+        "material": (
+            *(bpy.data.materials, bpy.data.materials.new("trial")),
+            recipe["materials"].values(),
+        ),
+        "light": (bpy.data.lights, bpy.data.lights.new("trial", "POINT"), recipe["lights"]),
+        "layer": (None, bpy.context.view_layer, recipe["layers"]),
+    }
+    for blocks, block, specs in trials.values():
+        for spec in specs:
+            if spec is not None:
+                drawn = draw_settings(rng, block.aplanat, "aplanat.")
+                spec["set"] = spec.get("set", {}) | drawn
+        if blocks is not None:
+            blocks.remove(block)
 
 
 def _draw_lens(bpy, rng, recipe):

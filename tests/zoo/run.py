@@ -237,6 +237,8 @@ class Run:
             except queue.Empty:
                 break
             request = {"seed": self.options.seed, "number": number}
+            if self.options.no_reference:
+                request["ask"] = ["not repeatable"]
             verdict = worker.ask(request, self.options.scene_seconds)
             if self.stopped:
                 # Not the scene's fault.
@@ -383,6 +385,9 @@ def arguments(words=None):
         default=min(os.cpu_count() or 1, 4),
         help="processes; default one a core, four at most",
     )
+    parser.add_argument(
+        "--no-reference", action="store_true", help="do not compare with the reference method"
+    )
     parser.add_argument("--again", action="store_true", help="judge scenes again that were judged")
     parser.add_argument("--script", action="store_true", help="print the script of --scene, only")
     parser.add_argument("--verbose", action="store_true", help="a line for every scene")
@@ -390,6 +395,8 @@ def arguments(words=None):
         "--folder", type=Path, default=REPOSITORY / "build" / "zoo", help=argparse.SUPPRESS
     )
     options = parser.parse_args(words)
+    # What was not compared is judged again where it is to be.
+    options.state = f"seed-{options.seed}{'-alone' if options.no_reference else ''}"
     if options.script and options.scene is None:
         parser.error("--script needs --scene")
     if min(options.count, options.workers) < 1:
@@ -404,7 +411,7 @@ def main(words=None):
         print(_script_of(options.seed, options.scene))
         return 0
     if options.again:
-        (options.folder / f"seed-{options.seed}.jsonl").unlink(missing_ok=True)
+        (options.folder / f"{options.state}.jsonl").unlink(missing_ok=True)
     run = Run(options)
 
     def end(number, _frame):
