@@ -192,7 +192,7 @@ class Run:
         self.options = options
         self.folder = options.folder
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.results = Results(self.folder / f"seed-{options.seed}.jsonl", fingerprint())
+        self.results = Results(self.folder / f"{options.state}.jsonl", fingerprint())
         self.end = time.monotonic() + options.time_limit if options.time_limit else None
         self.stopped = ""
         self._start = time.monotonic()
