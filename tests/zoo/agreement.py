@@ -43,6 +43,9 @@ _DARK = 1e-6
 _SCENE_TRADES = {
     "level_bias": lambda value: max(value, 0.0),
     "render_error": lambda value: min(value, 0.01),
+    "render_min_samples": lambda value: max(value, 16),
+    "render_max_samples": lambda value: max(value, 256),
+    "render_time_limit": lambda value: 0.0,
     "render_samples": lambda value: max(value, 64),
     "render_max_samples": lambda value: max(value, 128),
     "sharing_cells": lambda value: max(value, 2),
@@ -198,7 +201,7 @@ def _fit_to_compare(scene):
                 value = getattr(group, name)
                 if bound(value) != value:
                     setattr(group, name, bound(value))
-                    # Both of these count only where the other does not.
+                    # Neither counts where the other does.
                     automatic = scene.aplanat.use_target_error
                     changed |= name != ("render_samples" if automatic else "render_error")
         yield changed

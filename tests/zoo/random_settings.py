@@ -6,16 +6,12 @@ from addon.lens_io.glass_catalog import catalog_names
 from addon.scene.lenses import shelf
 
 # What only costs time where it is large: how far a check goes. Nothing else of the picture depends
-# on how many samples there are, but for the noise.
+# on how many samples there are, but for the noise. Errors below the least take thousands.
 MOST = {
     "render_samples": 96,
     "subsamples": 24,
-    # An error: below it a picture takes thousands of samples.
-    "render_error": None,
     "render_min_samples": 64,
     "render_max_samples": 256,
-    # What it cuts off depends on the machine.
-    "render_time_limit": 0.0,
 }
 LEAST = {"render_error": 0.02}
 
