@@ -229,9 +229,9 @@ class NodeDrawer:
     def _number(self, socket, prop):
         rng = self._rng
         if "Strength" in socket.name:
-            return rng.choice(
-                [1.0, even(rng, 0.0, 3.0), around(rng, 0.1, 30.0), around(rng, 1.0, 3e3)]
-            )
+            # Mostly what is about as bright as the picture; now and then a lamp.
+            usual = even(rng, 0.0, 3.0), around(rng, 0.1, 30.0)
+            return around(rng, 10.0, 3e3) if rng.random() < 0.1 else rng.choice([1.0, *usual])
         low, high = max(prop.soft_min, -3.0), min(prop.soft_max, 5.0)
         if low >= high:
             low, high = prop.soft_min, prop.soft_max

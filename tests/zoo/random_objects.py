@@ -71,6 +71,16 @@ def draw_object(rng, materials, view, depth=1):
     return spec
 
 
+def draw_backdrop(rng, materials, view):
+    """Draw the recipe of a wall behind all others, so that blurred edges have something behind."""
+    distance = round_value(view.far * 1.2)
+    size = round_value(3.0 * view.half(distance))
+    spec = {"kind": "MESH", "shape": "grid", "count": rng.randint(1, 30)}
+    spec["materials"] = [rng.choice([*materials, None])]
+    spec["colors"] = [["Col", "FLOAT_COLOR", "POINT"]]
+    return spec | {"set": {"location": [0.0, distance, 0.0], "scale": [size] * 3}}
+
+
 def _placed(rng, view):
     distance = around(rng, view.near, view.far)
     half = view.half(distance)

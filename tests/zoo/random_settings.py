@@ -135,7 +135,7 @@ def draw_image(rng, largest=40):
     }
     if rng.random() < 0.5:
         spec["float"] = True
-        spec["bright"] = rng.choice([1.0, 3.0, 50.0, 2000.0])
+        spec["bright"] = rng.choice([1.0, 3.0, 3.0, 50.0, around(rng, 50.0, 2000.0)])
     if rng.random() < 0.3:
         spec["alpha"] = True
     if rng.random() < 0.3:

@@ -8,7 +8,7 @@ A recipe is made of plain values (what JSON can hold) and follows from its seed 
 import random
 
 from .random_nodes import NodeDrawer, draw_material, draw_world
-from .random_objects import draw_camera, draw_light, draw_object
+from .random_objects import draw_backdrop, draw_camera, draw_light, draw_object
 from .random_settings import draw_settings, even
 
 # Sides of pictures, in pixels: tiny, because a check of a scene is worth more than one of a pixel.
@@ -54,6 +54,8 @@ def make_recipe(bpy, seed, number):
         recipe["collections"] = ["A", "B"][: rng.choice([0, 0, 1, 2])]
         count = rng.choice([0, *range(1, 5), *range(3, 10), *range(3, 10)])
         recipe["objects"] = [draw_object(rng, names, view) for _ in range(count)]
+        if count and rng.random() < 0.4:
+            recipe["objects"].append(draw_backdrop(rng, names, view))
         for spec in recipe["objects"]:
             if recipe["collections"] and rng.random() < 0.6:
                 spec["collection"] = rng.choice(recipe["collections"])
