@@ -28,12 +28,13 @@ LOOK_BAR = 0.02
 _QUIET = 0.25
 # A scene fails by more than chance brings one of a few thousand scenes, at four numbers each.
 _CHANCE = 1e-5
-# Pictures of the scene's own method: two give a spread, and eight are what a check can afford.
-_FEWEST, MOST = 2, 8
+# Pictures of the scene's own method: three tell their spread within a factor of 4 (two: 13), and
+# twelve are what a check can afford.
+_FEWEST, MOST = 3, 12
 # Processor time of a comparison, in seconds; see `compare`.
 PATIENCE = 20.0
 # Of the reference method fewer are needed, because their samples grow, too: at first, at most.
-_MOST_REFERENCES = 4
+_MOST_REFERENCES = 3
 _REFERENCE_SAMPLES = (64, 256)
 # Light below this, in a picture's mean, is black on every display and lost in single precision.
 _DARK = 1e-6
