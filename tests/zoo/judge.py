@@ -127,7 +127,7 @@ def _judge(recipe, ask, verdict, most, patience):
         with digests_of_scenes() as given_again:
             again = render(scene)
         # With a limit of time the clock decides how many samples there are.
-        by_the_clock = scene.aplanat.use_target_error and scene.aplanat.render_time_limit > 0.0
+        by_the_clock = scene.aplanat.render_time_limit > 0.0
         if given == given_again and not by_the_clock:
             _check_repeat(pictures, again)
     if "disagrees" in ask:
