@@ -12,9 +12,9 @@ from ..device.targets import Targets, TargetSpec
 from ..device.uniforms import uniform_buffer
 from . import surface_code
 
-# Texels along the longer side of images that are computed twice as finely: what lies between texels
-# is interpolated after the nodes, not before.
-_SMALL = 2048
+# Texels along the longer side of images that are computed twice as finely, and of what is computed
+# at least: what lies between texels is interpolated after the nodes, not before.
+_SMALL, _LEAST = 2048, 1024
 
 
 def bake(graph, images, textures):
@@ -31,12 +31,13 @@ def bake(graph, images, textures):
     Returns
     -------
     ndarray of shape (height, width, 3)
-        Scene linear, as large as the largest of its images, or twice as large where that is small.
+        Scene linear, as large as the largest of its images, or larger where that is small.
     """
     code = surface_code.generate(graph, ())
     height, width = np.max([images[uid].pixels.shape[:2] for uid in code.images], axis=0).tolist()
-    if max(width, height) <= _SMALL:
-        width, height = 2 * width, 2 * height
+    longest = max(width, height)
+    finer = max(2 if longest <= _SMALL else 1, -(-_LEAST // longest))
+    width, height = finer * width, finer * height
     # It must live until the device has drawn.
     constants = uniform_buffer(np.array(code.constants, np.float32).tobytes())
     with Targets(width, height, [TargetSpec("world", "RGBA32F")]) as targets:
