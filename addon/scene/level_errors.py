@@ -83,6 +83,9 @@ def moved_by_pairs(step):
 class ErrorMeter:
     """Measures the values of a level at the vertices of the level before.
 
+    Each error counts with the edges of the triangles where it is: on flat parts of a body those are
+    far longer than in the mean.
+
     Parameters
     ----------
     step : Step
@@ -90,16 +93,18 @@ class ErrorMeter:
     """
 
     def __init__(self, step, positions):
-        self._step, self._samples = step, step.projection
-        self._total = max(float(self._samples.area.sum()), 1e-300)
+        self._samples = samples = step.projection
+        self._total = max(float(samples.area.sum()), 1e-300)
+        # Round a vertex there is the area of two triangles.
+        self._edge = _EDGE * np.sqrt(samples.mass / 2.0)[samples.owner]
         mesh = step.mesh
+        self._surface, self._triangles = float(step.surface.size.sum()) / 2.0, mesh.triangles
         distance = sum(
-            self._square(x.astype(np.float64), y)
+            self._mean_square(x.astype(np.float64), y, 1)
             for x, y in zip(positions.T, mesh.positions.T, strict=True)
         )
-        self._surface = float(step.surface.size.sum()) / 2.0
-        self._triangles = mesh.triangles
-        self._displacement, self._color = max(_OUTLINE_SHARE * distance, moved_by_pairs(step)), 0.0
+        of_pairs = moved_by_pairs(step) * edge_length(step)
+        self._displacement, self._color = max(_OUTLINE_SHARE * distance, of_pairs), 0.0
 
     def add(self, key, values, old):
         """Count an attribute.
@@ -110,27 +115,29 @@ class ErrorMeter:
         values : ndarray of shape (W, k)
         old : ndarray of shape (V, k)
         """
-        square = [self._square(x, y) for x, y in zip(values.T, old.T, strict=True)]
-        if key.startswith("uv:"):
+        power = 1 if key.startswith("uv:") else 3
+        square = [
+            self._mean_square(x, y, power) for x, y in zip(values.T[:3], old.T[:3], strict=True)
+        ]
+        if power == 1:
             self._displacement += sum(square) * self._length_of_uv(old) ** 2
         elif key == "normal":
             self._color += _SHADE_OF_NORMAL**2 * sum(square)
         else:
-            self._color = max(self._color, *square[:3])
+            self._color = max(self._color, *square)
 
     def found(self):
         """Return the `LevelErrors` against the level before."""
-        edge = edge_length(self._step)
-        return LevelErrors(float(self._displacement * edge), float(self._color * edge**3))
+        return LevelErrors(float(self._displacement), float(self._color))
 
-    def _square(self, values, old):
-        """Return the mean squared error of one component."""
+    def _mean_square(self, values, old, power):
+        """Return the mean of one component's squared errors, times a power of the edges there."""
         samples = self._samples
         old = old[samples.members].astype(np.float64)
-        moved = np.square(samples.at(values) - old[samples.moved]) * samples.moved_area
-        still = np.square(values[samples.owner[samples.still]] - old[samples.still])
-        still *= samples.area[samples.still]
-        return float(moved.sum() + still.sum()) / self._total
+        weight = samples.area * self._edge**power
+        error = values[samples.owner] - old
+        error[samples.moved] = samples.at(values) - old[samples.moved]
+        return float((weight * np.square(error)).sum()) / self._total
 
     def _length_of_uv(self, uv):
         """Return how long a unit of the texture is on the surface, in the mean."""
