@@ -48,7 +48,6 @@ _SCENE_TRADES = {
     "render_max_samples": lambda value: max(value, 256),
     "render_time_limit": lambda value: 0.0,
     "render_samples": lambda value: max(value, 64),
-    "render_max_samples": lambda value: max(value, 128),
     "sharing_cells": lambda value: max(value, 2),
     "subsamples": lambda value: min(value, 4),
     "least_triangles": lambda value: max(value, 256),

@@ -36,6 +36,7 @@ OWN_PASSES = {
     "use_pass_defocus": "Defocus",
     "use_pass_bokeh": "Bokeh",
     "use_pass_fringe": "Fringe",
+    "use_pass_sample_count": "Sample Count",
 }
 CRYPTOMATTES = {
     "use_pass_cryptomatte_object": "CryptoObject",

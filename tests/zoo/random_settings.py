@@ -104,7 +104,8 @@ def _draw_number(rng, prop):
         value = _between(rng, low, high)
     else:
         value = _between(rng, soft_low, soft_high)
-    return int(value) if prop.type == "INT" else round_value(value)
+    # Rounding must not leave the range.
+    return int(value) if prop.type == "INT" else min(max(round_value(value), low), high)
 
 
 def _between(rng, low, high):
