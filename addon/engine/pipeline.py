@@ -79,9 +79,7 @@ class FrameRenderer(ReadableFrame):
         self.samples_done = 0
         self._stopped = False
         self._earlier_rounds = DrawingCounts()
-        self._tiles = None
-        if plan.automatic:
-            self._tiles = TileSampling(plan, self._fullscreen, leader)
+        self._tiles = TileSampling(plan, self._fullscreen, leader) if plan.automatic else None
         self._cryptomattes = render_passes.cryptomatte_kinds(plan.passes)
         self._mattes = bool(render_passes.made_by(plan.passes, "MATTE", "CRYPTOMATTE"))
         target = surface.COLOR_AND_MATTES if self._mattes else surface.COLOR
@@ -247,11 +245,6 @@ class FrameRenderer(ReadableFrame):
             return self._tiles.done
         return self._stopped or self.samples_done >= self.plan.samples
 
-    def is_late(self, seconds):
-        """Whether drawing for so long is as long as the time limit allows."""
-        limit = self.plan.time_limit
-        return limit is not None and seconds >= limit and not self.sampled
-
     def stop(self):
         """Draw no further samples; what there is becomes the picture."""
         self._stopped = True
@@ -396,6 +389,7 @@ class FrameRenderer(ReadableFrame):
         if self._plain:
             self._plain.release()
         self._plain = self._buffers = self._drawing = self._blur = self._graded = None
+        self._tiles = None
         self._bokeh = self._whole = self._draft = self._occluders = self._pictures = None
         keeping.let_go()
 

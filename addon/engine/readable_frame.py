@@ -21,6 +21,11 @@ class ReadableFrame:
             return self._tiles.expected(self.samples_done)
         return self.samples_done if self._stopped else self.plan.samples
 
+    def is_late(self, seconds):
+        """Whether drawing for so long is as long as the time limit allows."""
+        limit = self.plan.time_limit
+        return limit is not None and seconds >= limit and not self.sampled
+
     @property
     def sampling(self):
         """How far sampling has come, as `SamplingReport`."""
