@@ -270,8 +270,9 @@ class FrameRenderer(ReadableFrame):
         self._earlier_rounds += self._drawing.counts
         self.plan = extended(self.plan)
         wavelengths = self._wavelength if self.plan.chromatic else None
-        if self._blur:
+        if earlier := self._blur:
             self._blur = SubsampleBlur(self.plan, self._drawing.nearest, wavelengths)
+            self._blur.limit(earlier)
         self._drawing.aim(self.plan, wavelengths, self._highlights, self._part())
         for spec in self._drawing.specs():
             if spec.name not in self._targets:

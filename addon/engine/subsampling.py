@@ -85,6 +85,16 @@ class SubsampleBlur:
         side = min(2.0 * (reach + 1.0), max(plan.width, plan.height) * plan.subpixels)
         return int(np.ceil(np.log2(side)))
 
+    def limit(self, earlier):
+        """Take no more levels than an earlier round, whose targets are used.
+
+        Parameters
+        ----------
+        earlier : SubsampleBlur
+        """
+        self._top = min(self._top, earlier._top)
+        self._levels = min(self._levels, earlier._levels)
+
     def specs(self):
         """Return the targets that it needs beside the sample's."""
         return (
