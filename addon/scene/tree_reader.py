@@ -95,12 +95,12 @@ class TreeReader:
         socket = input_socket(node, identifier)
         source, inner = source_of(socket, groups)
         if not source.is_output:
-            return self.constant(source)
+            return converted(self.constant(source), source, socket)
         result = self._result(source, inner)
         if result is None:
             self.note(f"node '{source.node.bl_label}' is not read; its socket's value is used")
             return self.constant(socket)
-        return result
+        return converted(result, source, socket)
 
     def constant(self, socket):
         """Return a socket's own value; 0 in place of what is not a number."""
@@ -191,7 +191,33 @@ def constant(socket):
 
 def constant_number(socket):
     """Return a socket's own value as a number: a colour's luminance, a vector's mean."""
-    values = constant(socket).value
+    return _as_number(constant(socket).value, socket)
+
+
+def converted(value, source, socket):
+    """Return what an input has of a constant that another kind of socket gives.
+
+    Parameters
+    ----------
+    value : Constant or Link
+        A link is converted where it is read.
+    source, socket : bpy.types.NodeSocket
+        Where it comes from and the input that it feeds.
+
+    Returns
+    -------
+    Constant or Link
+        As many numbers as the input has, converted as Blender does: a number becomes all three of
+        a vector or colour, a colour becomes its luminance, a vector its mean.
+    """
+    if not isinstance(value, Constant) or len(value.value) == len(numbers_of(socket)):
+        return value
+    if len(value.value) == 1:
+        return Constant(value.value * 3)
+    return Constant((_as_number(value.value, source),))
+
+
+def _as_number(values, socket):
     if len(values) == 1:
         return values[0]
     if socket.type == "RGBA":

@@ -280,3 +280,24 @@ def test_what_has_no_value_stays_out_of_the_picture(bpy, tmp_path):
     none = tree.node("Math", {"Value": huge.outputs[0], "Value_001": 0.0}, operation="MULTIPLY")
     show(tree, none.outputs[0])
     assert_equal(scene, tmp_path)
+
+
+def test_a_number_that_feeds_a_vector_counts_for_all_three(bpy, tmp_path):
+    scene, _, tree = card_scene(bpy, TEXELS)
+    angle = tree.node("Value")
+    angle.outputs[0].default_value = 0.7
+    inputs = {"Vector": texture(bpy, tree, 1), "Rotation": angle.outputs[0]}
+    turned = tree.node("Mapping", inputs)
+    tree.surface(tree.node("Emission", {"Color": turned.outputs[0]}).outputs[0])
+    assert_equal(scene, tmp_path)
+
+
+@pytest.mark.parametrize("color", [(0.0, 0.6, 0.2), (1.0, 0.3, 0.0)])
+def test_a_colour_that_feeds_a_mix_counts_by_its_luminance(bpy, tmp_path, color):
+    scene, _, tree = card_scene(bpy, TEXELS)
+    share = tree.node("RGB")
+    share.outputs[0].default_value = (*color, 1.0)
+    pair = [tree.node("Emission", {"Color": c}).outputs[0] for c in ((1, 0, 0), (0, 1, 0))]
+    inputs = {"Fac": share.outputs[0], "Shader": pair[0], "Shader_001": pair[1]}
+    tree.surface(tree.node("MixShader", inputs).outputs[0])
+    assert_equal(scene, tmp_path)
