@@ -5,6 +5,7 @@ The tests execute this file in Blender once, then call what it defines.
 
 import importlib
 import math
+import re
 import sys
 import weakref
 
@@ -118,7 +119,9 @@ def converged():
     """Whether every viewport that is watched shows its last sample; keeps them drawing."""
     if window().screen is not None:
         area().tag_redraw()
-    done = [text.removeprefix("Sample ").split("/") for text in texts()]
+    # Behind it stands the error that was reached, where one was asked for.
+    counts = [re.sub(r" \| Error [0-9.]+ of [0-9.]+", "", text) for text in texts()]
+    done = [count.removeprefix("Sample ").split("/") for count in counts]
     return bool(done) and all(len(pair) == 2 and pair[0] == pair[1] for pair in done)
 
 
