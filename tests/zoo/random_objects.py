@@ -158,7 +158,7 @@ def _mesh(rng, materials, depth):
 
 def _modifier(rng):
     settings = {
-        "SUBSURF": {"render_levels": rng.randint(0, 2)},
+        "SUBSURF": {"render_levels": rng.randint(0, 1)},
         "ARRAY": {"count": rng.randint(1, 6)},
         "BEVEL": {"width": 0.1},
         "SOLIDIFY": {"thickness": even(rng, -0.2, 0.2)},
@@ -166,7 +166,7 @@ def _modifier(rng):
         "WIREFRAME": {"thickness": 0.05},
         "DECIMATE": {"ratio": even(rng, 0.0, 1.0)},
         "TRIANGULATE": {},
-        "SCREW": {"render_steps": 8},
+        "SCREW": {"render_steps": 3},
         "BUILD": {},
         "EDGE_SPLIT": {},
     }
