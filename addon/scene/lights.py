@@ -45,7 +45,7 @@ def read_light(light, matrix):
     power = np.array(light.color[:], np.float64) * light.energy * 2.0**light.exposure
     if light.use_temperature:
         power *= light.temperature_color[:]
-    if light.node_tree and light.use_nodes:
+    if light.node_tree:
         power *= _emission(light.node_tree, notes)
     if not power.any():
         return None, notes

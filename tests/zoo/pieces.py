@@ -108,7 +108,6 @@ def make_light(scene, number, spec):
     light = bpy.data.lights.new(f"light {number}", spec["type"])
     assign(light, spec.get("set", {}))
     if "tree" in spec:
-        light.use_nodes = True
         fill_tree(light.node_tree, "ShaderNodeOutputLight", spec["tree"])
     obj = bpy.data.objects.new(light.name, light)
     assign(obj, spec.get("object", {}))
