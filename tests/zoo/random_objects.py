@@ -148,7 +148,7 @@ def _mesh(rng, materials, depth):
     elif rng.random() < 0.1:
         spec["points"] = {
             "radius": around(rng, 0.02, 0.5),
-            "subdivisions": rng.randint(1, 3),
+            "subdivisions": rng.randint(1, 2),
             "material": rng.choice([*materials, ""]),
         }
         if rng.random() < 0.3:
