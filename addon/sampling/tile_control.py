@@ -11,7 +11,8 @@ so the power is not assumed but found, from how the differences themselves fell 
 to the next.
 
 A tile is done when its error is at most the number that was asked for, the picture when the mean of
-all tiles is.
+all tiles is. Of a picture whose first samples are far better than that, such as a few lamps before
+a plain wall, the mean tells nothing about the places that matter: there each tile has to be good.
 """
 
 import numpy as np
@@ -26,6 +27,8 @@ _LEAST_POWER, _MOST_POWER = 1.0, 1.5
 # Aims below the number: a picture is stopped when its error looks small, which is more often by
 # chance than not.
 _AIM = 0.93
+# A picture that the fewest samples bring to this share of the number is judged tile by tile.
+_PLAIN_SHARE = 0.5
 # Of a comparison with half the samples; the rest is that of one with more of them.
 HALF_SHARE = 0.7
 # Of what a look measures; the rest is what the one before let expect.
@@ -63,6 +66,7 @@ class TileControl:
         self.active = np.ones(self._share.shape, bool)
         self.errors = None
         self.done = False
+        self._is_plain = False
         self._changes = {}
         self._ratios = []
         self._samples = 0
@@ -132,13 +136,15 @@ class TileControl:
         measured = smoothed(errors)
         if self.errors is None:
             self.errors = measured
+            self._is_plain = self.error <= _PLAIN_SHARE * self.target
         else:
             expected = self.errors * (self._samples / samples) ** self.power
             self.errors = np.where(
                 self.active, _NEW_SHARE * measured + (1.0 - _NEW_SHARE) * expected, self.errors
             )
         self._samples = samples
-        if samples >= self._most or (samples >= self._least and self.error <= _AIM * self.target):
+        good = self.left == 0 if self._is_plain else self.error <= _AIM * self.target
+        if samples >= self._most or (samples >= self._least and good):
             self.active = np.zeros_like(self.active)
             self.done = True
         elif samples >= self._least:
