@@ -532,7 +532,7 @@ def register_engine():
         addon.register()
 
 
-def build(width=960, seed=3):
+def build(width=768, seed=3):
     """Replace what is open by the demo scene."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     register_engine()
@@ -571,7 +571,7 @@ def main():
     arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("-o", "--output", type=Path, required=True, help="the .blend to write")
-    parser.add_argument("--width", type=int, default=960, help="picture width in pixels (960)")
+    parser.add_argument("--width", type=int, default=768, help="picture width in pixels (768)")
     parser.add_argument("--seed", type=int, default=3, help="seed of the lamps (3)")
     options = parser.parse_args(arguments)
     build(options.width, options.seed)

@@ -220,11 +220,21 @@ def test_camera_moves_upload_nothing_and_leak_nothing(stage):
     stage.run("bpy.context.scene.render.preview_pixel_size = 'AUTO'")
 
 
+def test_what_cannot_be_drawn_is_one_line_and_passes(stage):
+    wait_until_converged(stage)
+    stage.run("viewports.clear(); bpy.context.scene.camera.data.type = 'PANO'")
+    stage.wait_for("bool(texts()) and not texts()[0].startswith('Sample')")
+    text = stage.run("result = texts()[0]")
+    assert "pano" in text, text
+    assert "\n" not in text
+    stage.run("viewports.clear(); build(); view()")
+    wait_until_converged(stage)
+
+
 @pytest.mark.parametrize(
     "spoil, words",
     [
         ("bpy.context.scene.camera.data.dof.focus_distance = 0", "focus distance"),
-        ("bpy.context.scene.camera.data.type = 'PANO'", "panoramic|pano"),
         (
             "bpy.data.objects['thing1'].data.vertices[0].co.x = float('nan')\n"
             "bpy.data.objects['thing1'].data.update_tag()",
@@ -232,13 +242,12 @@ def test_camera_moves_upload_nothing_and_leak_nothing(stage):
         ),
     ],
 )
-def test_what_cannot_be_drawn_is_one_line_and_passes(stage, spoil, words):
+def test_faulty_numbers_are_drawn_without_and_told(stage, spoil, words):
     wait_until_converged(stage)
     stage.run("viewports.clear()\n" + spoil)
-    stage.wait_for("bool(texts()) and not texts()[0].startswith('Sample')")
-    text = stage.run("result = texts()[0]")
-    assert any(word in text for word in words.split("|")), text
-    assert "\n" not in text
+    # As Cycles, which draws the rest; the line still tells the samples.
+    stage.wait_for(f"any({words!r} in text and text.startswith('Sample') for text in texts())")
+    assert "\n" not in stage.run("result = texts()[0]")
     stage.run("viewports.clear(); build(); view()")
     wait_until_converged(stage)
 
