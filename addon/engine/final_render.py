@@ -179,16 +179,12 @@ def _result(engine, snapshot, view):
 def _draw(engine, gpu, renderer, result, heard):
     pacer = Pacer(gpu.slice_seconds)
     start = shown = time.perf_counter()
-    # The first sample also compiles; what follows is what a time limit is about.
-    compiled = None
     pause = _SHOW_SECONDS
     while not renderer.finished():
         with heard.statistics.timed("draw"):
             gpu.call(partial(pacer.advance, renderer))
         now = time.perf_counter()
-        if compiled is None:
-            compiled = now
-        elif renderer.is_late(now - compiled):
+        if renderer.is_late(now - start):
             renderer.stop()
         _show_progress(engine, heard, renderer, now - start)
         if now - shown > pause and not renderer.finished():

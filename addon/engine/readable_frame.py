@@ -22,9 +22,15 @@ class ReadableFrame:
         return self.samples_done if self._stopped else self.plan.samples
 
     def is_late(self, seconds):
-        """Whether drawing for so long is as long as the time limit allows."""
-        limit = self.plan.time_limit
-        return limit is not None and seconds >= limit and not self.sampled
+        """Whether drawing for so long is as long as the time limit allows.
+
+        The least samples of a noise threshold are drawn in any case: before them, shaders and the
+        bokeh may take longer than the limit, and the picture would be that of a pinhole.
+        """
+        limit, wanted = self.plan.time_limit, self.plan.automatic
+        if limit is None or seconds < limit or self.sampled:
+            return False
+        return wanted is None or self.samples_done >= min(wanted.least, wanted.most)
 
     @property
     def sampling(self):

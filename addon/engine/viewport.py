@@ -246,9 +246,7 @@ class Viewport:
             first = renderer.samples_done == 0
             start = time.perf_counter()
             self._pacer.advance(renderer)
-            if not first:
-                # The first sample also compiles.
-                self._drawn_seconds += time.perf_counter() - start
+            self._drawn_seconds += time.perf_counter() - start
             if renderer.is_late(self._drawn_seconds):
                 renderer.stop()
             if first:

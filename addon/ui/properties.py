@@ -88,8 +88,8 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
     )
     render_time_limit: FloatProperty(
         name="Render Time Limit",
-        description="Seconds of drawing, after the first sample, at which sampling stops; 0 is no"
-        " limit. With a limit, the noise depends on how fast and how busy the machine is",
+        description="Seconds of drawing at which sampling stops, but not before Min Samples; 0 is"
+        " no limit. With a limit, the noise depends on how fast and how busy the machine is",
         default=0.0,
         min=0.0,
         soft_max=3600.0,
@@ -114,7 +114,8 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
     )
     preview_time_limit: FloatProperty(
         name="Viewport Time Limit",
-        description="Seconds of drawing, after the first sample, at which it rests; 0 is no limit",
+        description="Seconds of drawing at which it rests, but not before Min Samples; 0 is no"
+        " limit",
         default=0.0,
         min=0.0,
         soft_max=60.0,
