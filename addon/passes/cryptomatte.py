@@ -23,6 +23,8 @@ CHANNELS = {"CryptoObject": 0, "CryptoMaterial": 1}
 _GROUP = 8
 _TILED = (("TILED", "1"), ("TILE", str(TILE)))
 _SPARE_PAIRS = 1
+# Blender offers 2 to 16 levels, two to a pass.
+_PAIRS = tuple(passes + _SPARE_PAIRS for passes in range(1, 9))
 
 
 def slot_pairs(kinds):
@@ -36,7 +38,7 @@ def slot_pairs(kinds):
     return max(kinds.values()) + _SPARE_PAIRS
 
 
-@variants(pairs=(2, 4), subpixels=(1, 4), tiled=(False, True))
+@variants(pairs=_PAIRS, subpixels=(1, 2, 3, 4), tiled=(False, True))
 def _count_info(pairs, subpixels, tiled):
     return ShaderInfo(
         name="aplanat_cryptomatte_count",
@@ -58,7 +60,7 @@ def _count_info(pairs, subpixels, tiled):
     )
 
 
-@variants(pairs=(2, 4), tiled=(False, True))
+@variants(pairs=_PAIRS, tiled=(False, True))
 def _rank_info(pairs, tiled):
     return ShaderInfo(
         name="aplanat_cryptomatte_rank",
