@@ -206,7 +206,7 @@ def build_pupil_tables(
     PrescriptionError
         If the lens is not one of revolution, or no ray of the axial beam gets through.
     """
-    if any(surface.curved_along for surface in configuration.surfaces):
+    if not configuration.of_revolution:
         raise PrescriptionError(
             "pupil tables are for lenses of revolution; this lens has a cylinder"
         )

@@ -32,7 +32,7 @@ def bake(arguments, console):
         tell_warnings(read, console)
         prescription = read.prescription
         configuration = prescription.configuration(arguments.zoom)
-        if not is_of_revolution(configuration):
+        if not configuration.of_revolution:
             raise InputError(
                 f"lens '{prescription.name}' has cylinders; bokeh tables are made for lenses of"
                 " revolution"
@@ -54,11 +54,6 @@ def bake(arguments, console):
         "files": [str(arguments.output)],
         "warnings": [found.as_json() for found in read.warnings],
     }
-
-
-def is_of_revolution(configuration):
-    """Whether a lens looks the same however it is turned about its axis."""
-    return all(surface.curved_along is None for surface in configuration.surfaces)
 
 
 def lens_profile(read, arguments, console):

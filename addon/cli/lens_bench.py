@@ -14,7 +14,6 @@ from ..optics.paraxial import first_order
 from ..optics.trace import Rays, trace
 from .json_file import write_json
 from .lens import open_lens
-from .lens_bake import is_of_revolution
 from .version import version
 
 _RAYS = 1_000_000
@@ -80,7 +79,7 @@ def _measure(prescription, configuration, console):
             "bench --lens compares with a direct trace, which only a checkout has; use"
             " scripts/aplanat there"
         ) from error
-    if not is_of_revolution(configuration):
+    if not configuration.of_revolution:
         raise InputError(
             f"bench --lens: '{prescription.name}' has cylinders; a profile is made for lenses of"
             " revolution"

@@ -5,7 +5,7 @@ from importlib.util import find_spec
 from ..errors import InputError
 from ..files.whole_file import check_writable, removed_on_signals, whole_file
 from .lens import open_lens, tell_warnings
-from .lens_bake import is_of_revolution, lens_profile
+from .lens_bake import lens_profile
 
 
 def plot(arguments, console):
@@ -21,7 +21,7 @@ def plot(arguments, console):
         tell_warnings(read, console)
         configuration = read.prescription.configuration(arguments.zoom)
         profile = None
-        if is_of_revolution(configuration):
+        if configuration.of_revolution:
             profile = lens_profile(read, arguments, console)
         figure = _sheet(read.prescription, configuration, profile, console)
         _save(figure, arguments)

@@ -174,20 +174,18 @@ def use_lens(camera, word):
     InputError
         If there is no such lens, it cannot be used, or the camera takes none.
     """
+    found = shelf().find(word)
+    if found is None:
+        # Refuses a name that is neither in the library nor a lens file.
+        Library([user_folder()]).open(word)
+    elif found.error is not None:
+        raise found.error
     if camera.data.type != "PERSP":
         raise CameraError(
             f"--lens {word}: camera '{camera.name}' is {camera.data.type.lower()}; a lens needs a"
             " perspective camera (Camera > Lens > Type)"
         )
-    found = shelf().find(word)
-    if found is None:
-        # Refuses a name that is neither in the library nor a lens file.
-        Library([user_folder()]).open(word)
-        lens_id = shelf().add_file(word)
-    elif found.error is not None:
-        raise found.error
-    else:
-        lens_id = found.id
+    lens_id = shelf().add_file(word) if found is None else found.id
     camera.data.aplanat.lens = lens_id
 
 

@@ -137,7 +137,7 @@ def _bokeh(scene, data, lens):
         "overscan": bokeh.overscan,
         "world": bokeh.world,
         "hardness": look.edge,
-        "profile_strength": bokeh.profile_strength if lens else None,
+        "profile_strength": bokeh.profile_strength if lens and lens.shapes_bokeh else None,
         "iris_image": data.aplanat.bokeh.iris_image.name if picture else None,
         "blade_curvature": None if picture else look.iris.curvature,
         "vignetting": bokeh.vignetting.lower(),

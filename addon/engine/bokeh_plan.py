@@ -154,6 +154,9 @@ def plan_bokeh(snapshot, plan):
         None where nothing is splatted: the settings ask for nothing, or everything is sharp.
     """
     settings, lens = snapshot.camera.bokeh, snapshot.camera.lens
+    real_lens = snapshot.camera.real_lens
+    if plan.orthographic or (real_lens and not real_lens.shapes_bokeh):
+        real_lens = None
     sampling = snapshot.sampling
     wanted = sampling.method != "REFERENCE" or sampling.reference_bokeh
     if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
@@ -202,7 +205,7 @@ def plan_bokeh(snapshot, plan):
         world_share=float(highlight_share(plan.empty_coc, least)) if world else 0.0,
         world_depth=_INFINITY * max(plan.focus_distance, 1.0),
         iris=lens.iris,
-        real_lens=None if plan.orthographic else snapshot.camera.real_lens,
+        real_lens=real_lens,
         filter_width=filter_width(film.filter_kind, film.filter_size_px),
         colors=colors,
     )

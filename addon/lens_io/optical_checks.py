@@ -155,7 +155,7 @@ def _check_power(position, findings):
         else:
             behind = indices(position.configuration, REFERENCE_WAVELENGTH_NM)[-1]
             what = f"a focal length of {behind / value:.6g} mm; it must be positive"
-        where = f" in the meridian {meridian}" if _has_cylinders(position.configuration) else ""
+        where = "" if position.configuration.of_revolution else f" in the meridian {meridian}"
         findings.add("E24", position.whole(), f"the prescription has {what}{where}")
 
 
@@ -303,7 +303,7 @@ def light_passes(configuration, field_deg):
         best = farthest[np.argmin(height)]
         near = heights[max(best - 1, 0)], heights[min(best + 1, FAN - 1)]
         heights = np.linspace(*near, FAN)
-    if not _has_cylinders(configuration):
+    if configuration.of_revolution:
         # Round rims about the axis are symmetric to the meridian of the field: a beam that gets
         # through has rays in it.
         return False
@@ -336,12 +336,8 @@ def _beam(configuration, x, y, field_deg):
     return np.stack([x, y, z], axis=-1), directions
 
 
-def _has_cylinders(configuration):
-    return any(surface.curved_along for surface in configuration.surfaces)
-
-
 def _meridians(configuration):
-    return ("y", "x") if _has_cylinders(configuration) else ("y",)
+    return ("y",) if configuration.of_revolution else ("y", "x")
 
 
 def _sags(surface, radii):

@@ -75,7 +75,7 @@ def lens_facts(prescription, label=None):
 
 
 def _horizontal(configuration):
-    if all(surface.curved_along is None for surface in configuration.surfaces):
+    if configuration.of_revolution:
         return None
     try:
         return first_order(configuration, meridian="x").efl

@@ -223,6 +223,11 @@ class Configuration:
         bending = [z for surface, medium, z in vertices if surface.glass != medium]
         return bending[-1] if bending else self.vertices[-1]
 
+    @cached_property
+    def of_revolution(self):
+        """Whether the lens looks the same however it is turned about its axis."""
+        return all(surface.curved_along is None for surface in self.surfaces)
+
     @property
     def sensor(self):
         """The z of the plane that the last thickness tells, mm, from surface 1."""

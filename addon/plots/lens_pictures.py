@@ -196,7 +196,7 @@ def _draw_thumbnail(prescription, step):
 def _disks(configuration):
     values = first_order(configuration)
     focus = _FOCUS * values.efl
-    if any(surface.curved_along for surface in configuration.surfaces):
+    if not configuration.of_revolution:
         lens = focused(configuration, focus - values.h)
         for light in _LIGHTS:
             far = math.isinf(light)

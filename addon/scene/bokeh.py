@@ -63,10 +63,16 @@ def read_bokeh(camera, real_lens, corner):
 def describe_bokeh(camera, real_lens, corner):
     """Return what `read_bokeh` does, also where it is switched off."""
     settings = camera.aplanat.bokeh
-    appearance, problems = _read_appearance(camera, real_lens, corner)
+    shaping = real_lens if real_lens and real_lens.shapes_bokeh else None
+    appearance, problems = _read_appearance(camera, shaping, corner)
+    if shaping is None and real_lens and camera.dof.use_dof:
+        problems += (
+            f"lens '{real_lens.prescription.name}' shapes no bokeh, a thin lens does: it has"
+            " cylinders, and discs are traced for lenses of revolution",
+        )
     distortion, distortion_problems = _read_distortion(settings, real_lens, corner)
     vignetting = settings.vignetting
-    if vignetting == "LENS" and real_lens is None:
+    if vignetting == "LENS" and shaping is None:
         vignetting = "NONE"
     bokeh = BokehSettings(
         threshold=settings.threshold,
@@ -242,18 +248,20 @@ def _read_distortion(settings, real_lens, corner):
     if real_lens is None:
         return 0.0, ("has no real lens whose distortion could be used; there is none",)
     prescription = real_lens.prescription
+    named = f"lens '{prescription.name}'"
+    configuration = prescription.configuration(real_lens.label)
     try:
-        k = _distortion_of_lens(
-            prescription.configuration(real_lens.label), prescription.projection, corner
-        )
+        k = _distortion_of_lens(configuration, prescription.projection, corner)
     except AplanatError as error:
-        return 0.0, (f"lens '{prescription.name}' has no distortion that could be used: {error}",)
+        return 0.0, (f"{named} has no distortion that could be used: {error}",)
+    problems = ()
+    if not configuration.of_revolution:
+        problems = (f"{named} has cylinders: its distortion along the height is drawn all round",)
     wanted = k * corner**2
     drawn = min(max(wanted, _STRONGEST[0]), _STRONGEST[1])
     if drawn != wanted:
-        told = f"has a distortion of K = {wanted:.3g}; {drawn:g} is drawn"
-        return drawn, (f"lens '{prescription.name}' {told}",)
-    return wanted, ()
+        problems += (f"{named} has a distortion of K = {wanted:.3g}; {drawn:g} is drawn",)
+    return drawn, problems
 
 
 @lru_cache(maxsize=64)

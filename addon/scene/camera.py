@@ -53,37 +53,46 @@ def read_camera(depsgraph, camera, film, view=None):
     else:
         world = view.place(camera).normalized()
         _shift(projection, data, render, film, view.shift_x(camera) - data.shift_x)
-    real_lens, problems = read_real_lens(data)
-    lens, focus_problems = read_lens(depsgraph, camera, real_lens, world)
-    focus = lens.focus_distance if lens else None
-    chromatic, chromatic_problems = read_chromatic(data, real_lens, focus)
-    corner = corner_tangent(data, depsgraph.scene)
-    bokeh, bokeh_problems = read_bokeh(data, real_lens, corner)
     return Camera(
         view=np.array(world.inverted(), np.float64),
         projection=projection,
-        lens=lens,
         orthographic=data.type == "ORTHO",
-        real_lens=real_lens,
-        report=camera_report(camera, problems, focus_problems, chromatic_problems, bokeh_problems),
-        chromatic=chromatic,
-        bokeh=bokeh,
+        **read_optics(depsgraph, camera, world),
     )
 
 
-def camera_report(camera, *problems):
-    """Return what a camera asks for and does not get, as lines that name it.
+def read_optics(depsgraph, camera, world=None):
+    """Return what a camera's lens does, for the final render and the viewport alike.
 
     Parameters
     ----------
+    depsgraph : bpy.types.Depsgraph
     camera : bpy.types.Object
-    *problems : iterable of str
+        Evaluated.
+    world : mathutils.Matrix or None
+        As `focus_distance` takes it.
 
     Returns
     -------
-    tuple of str
+    dict
+        Of `Camera`: ``lens``, ``real_lens``, ``chromatic``, ``bokeh``, and in ``report`` what the
+        camera asks for and does not get, as lines that name it.
     """
-    return tuple(f"camera '{camera.name}': {line}" for group in problems for line in group)
+    data = camera.data
+    real_lens, of_lens = read_real_lens(data)
+    lens, of_focus = read_lens(depsgraph, camera, real_lens, world)
+    focus = lens.focus_distance if lens else None
+    chromatic, of_chromatic = read_chromatic(data, real_lens, focus)
+    corner = corner_tangent(data, depsgraph.scene)
+    bokeh, of_bokeh = read_bokeh(data, real_lens, corner)
+    problems = (*of_lens, *of_focus, *of_chromatic, *of_bokeh)
+    return {
+        "lens": lens,
+        "real_lens": real_lens,
+        "chromatic": chromatic,
+        "bokeh": bokeh,
+        "report": tuple(f"camera '{camera.name}': {line}" for line in problems),
+    }
 
 
 def _shift(projection, data, render, film, shift_x):
@@ -163,6 +172,11 @@ def read_lens(depsgraph, camera, real_lens=None, world=None):
     except FocusError as error:
         return None, (f"{error}; everything is drawn sharp",)
     problems = ()
+    if real_lens and real_lens.limits(dof.aperture_fstop):
+        problems += (
+            f"asks for f/{dof.aperture_fstop:.3g}, and lens '{real_lens.prescription.name}' opens"
+            f" no wider than f/{f_number:.3g}, which is drawn",
+        )
     if dof.focus_object is not None and _focus_depth(depsgraph, camera, world) < 0.0:
         problems += (
             f"focus object '{dof.focus_object.name}' is behind the camera; its distance counts, as"

@@ -131,13 +131,17 @@ def _dispersion_of_glass(name):
 
 def _dispersion_of_lens(real_lens):
     name = real_lens.prescription.name
+    configuration = real_lens.prescription.configuration(real_lens.label)
     try:
-        dispersion = lens_dispersion(real_lens.prescription.configuration(real_lens.label))
+        dispersion = lens_dispersion(configuration)
     except AplanatError as error:
         problem = f"lens '{name}' has no axial color that could be used ({error})"
         return glass_dispersion(DEFAULT_GLASS), (f"{problem}; that of {DEFAULT_GLASS} is used",)
     if not dispersion.disperses:
         told = f"the glasses of lens '{name}' are given without dispersion: it parts no colors"
+        return dispersion, (told,)
+    if not configuration.of_revolution:
+        told = f"lens '{name}' has cylinders: its axial color along the height is drawn all round"
         return dispersion, (told,)
     return dispersion, ()
 

@@ -57,8 +57,6 @@ def read_real_lens(camera):
     wanted = camera.aplanat
     if not wanted.lens:
         return None, ()
-    if camera.type != "PERSP":
-        return None, (f"lens '{wanted.lens}' is left out: it needs a perspective camera",)
     found = shelf().find(wanted.lens)
     if found is None:
         near = shelf().near_ids(wanted.lens)
@@ -69,6 +67,8 @@ def read_real_lens(camera):
         )
     if found.lens is None:
         return None, (f"its lens cannot be used, it is drawn as a thin lens: {found.error}",)
+    if camera.type != "PERSP":
+        return None, (f"lens '{found.name}' is left out: it needs a perspective camera",)
     prescription = found.lens.prescription
     problems = ()
     label = wanted.zoom_label or None

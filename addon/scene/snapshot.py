@@ -19,6 +19,9 @@ from ..sampling.chromatic import ChromaticAberration
 from ..sampling.thin_lens import ThinLens
 from .surface_graph import REC709_LUMINANCE, SurfaceGraph
 
+# Part of an f-number that a photographer calls the same.
+_SAME_F_NUMBER = 0.005
+
 _uids = itertools.count(1)
 
 
@@ -292,6 +295,15 @@ class LensSettings:
     label: str | None
     f_number: float
     prescription: Prescription
+
+    @property
+    def shapes_bokeh(self):
+        """Whether its discs can be traced; a thin lens shapes those of others."""
+        return self.prescription.configuration(self.label).of_revolution
+
+    def limits(self, f_number):
+        """Whether an f-number asks for a wider opening than is in force."""
+        return f_number < self.f_number * (1.0 - _SAME_F_NUMBER)
 
 
 @dataclass(frozen=True)

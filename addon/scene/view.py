@@ -4,10 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .bokeh import corner_tangent, read_bokeh
-from .camera import camera_report, evaluated_camera, read_lens
-from .chromatic import read_chromatic
-from .lenses import read_real_lens
+from .camera import evaluated_camera, read_optics
 from .settings import filter_size
 from .snapshot import Camera, Film
 
@@ -66,19 +63,14 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
     covered = np.array([region.width / width, region.height / height]) / pixel_size
     stretch = np.diag([*covered, 1.0, 1.0])
     stretch[:2, 3] = covered - 1.0
-    lens = real_lens = bokeh = frame = field_radius = chromatic = None
-    report = ()
+    frame = field_radius = None
+    optics = {"lens": None}
     through_camera = region_3d.view_perspective == "CAMERA" and space.camera is not None
     if through_camera and space.camera.type == "CAMERA":
         camera = evaluated_camera(depsgraph, space.camera)
         frame = _camera_frame(camera, scene, window @ view)
         field_radius = _field_radius(camera, scene)
-        real_lens, of_lens = read_real_lens(camera.data)
-        lens, of_focus = read_lens(depsgraph, camera, real_lens)
-        corner = corner_tangent(camera.data, scene)
-        bokeh, of_bokeh = read_bokeh(camera.data, real_lens, corner)
-        chromatic, of_chromatic = read_chromatic(camera.data, real_lens)
-        report = camera_report(camera, of_lens, of_focus, of_chromatic, of_bokeh)
+        optics = read_optics(depsgraph, camera)
     if through_camera:
         border = _border_in_frame(scene.render, frame)
     else:
@@ -99,13 +91,9 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
     camera = Camera(
         view,
         stretch @ window,
-        lens,
         orthographic=bool(orthographic),
-        real_lens=real_lens,
-        bokeh=bokeh,
-        chromatic=chromatic,
         field_radius=field_radius,
-        report=report,
+        **optics,
     )
     return View(camera, film, pixel_size)
 

@@ -163,6 +163,8 @@ class APLANAT_CAMERA_PT_bokeh_appearance(_BokehPanel, bpy.types.Panel):
         settings, column = self.begin(context)
         camera = context.camera
         lens, _ = read_real_lens(camera)
+        if lens is not None and not lens.shapes_bokeh:
+            lens = None
         self._draw_discs(context, column, lens)
         if lens is None:
             column.prop(settings, "hardness", slider=True)

@@ -69,15 +69,19 @@ class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, bpy.types.Panel):
         camera = context.camera
         letters = letters_across(context)
         lens, _ = read_real_lens(camera)
-        aberration, problems = describe_chromatic(camera, lens)
-        if camera.dof.use_dof:
-            focus = (
+        dof = camera.dof
+        # How far away an object is, only drawing tells.
+        known = dof.use_dof and dof.focus_object is None and dof.focus_distance > 0.0
+        focus = dof.focus_distance if known else None
+        aberration, problems = describe_chromatic(camera, lens, focus)
+        if dof.use_dof:
+            text = (
                 f"The focus distance is meant for {aberration.reference_nm:.0f} nm, the longest"
                 " wavelength."
             )
         else:
-            focus = "Axial aberration is seen with Depth of Field only."
-        draw_sentences(column, focus, letters, icon="INFO")
+            text = "Axial aberration is seen with Depth of Field only."
+        draw_sentences(column, text, letters, icon="INFO")
         for problem in problems:
             draw_alert(column, f"{problem[0].upper()}{problem[1:]}.", letters)
 

@@ -26,8 +26,6 @@ from .sentences import draw_alert, draw_sentences, letters_across
 _CHOSEN_SCALE, _POPUP_SCALE, _BOKEH_SCALE = 9.0, 6.0, 10.0
 # What is said about focal lengths is rounded to this, mm; less than it is no difference.
 _SAME_LENGTH = 0.05
-# Part of an f-number that a photographer calls the same.
-_SAME_F_NUMBER = 0.005
 _MOST_FINDINGS = 8
 
 
@@ -138,7 +136,7 @@ def _draw_use(column, camera, letters):
                 column, f"No position '{settings.zoom_label}': '{lens.label}' is used.", letters
             )
     asked = camera.dof.aperture_fstop
-    if camera.dof.use_dof and asked < lens.f_number * (1.0 - _SAME_F_NUMBER):
+    if camera.dof.use_dof and lens.limits(asked):
         column.label(
             text=f"f/{asked:.3g} asked, the lens opens to f/{lens.f_number:.3g}", icon="INFO"
         )
@@ -281,7 +279,7 @@ def _draw_clamp(panel, context):
         return
     camera = context.camera
     lens, _ = read_real_lens(camera)
-    if lens and camera.dof.aperture_fstop < lens.f_number * (1.0 - _SAME_F_NUMBER):
+    if lens and lens.limits(camera.dof.aperture_fstop):
         panel.layout.label(text=f"The lens opens to f/{lens.f_number:.3g}", icon="INFO")
 
 

@@ -101,3 +101,5 @@ def test_lens_that_is_not_there_or_broken(refused, small_blend, make_blend, tmp_
     flat = make_blend(orthographic)
     line = refused("render", flat, "-o", tmp_path / "a.png", "--lens", "tessar-50mm-f2.8")
     assert "perspective" in line
+    line = refused("render", flat, "-o", tmp_path / "a.png", "--lens", "tesar-50mm")
+    assert "tessar-50mm-f2.8" in line and "perspective" not in line

@@ -307,6 +307,8 @@ def test_lens_of_the_library_is_used_and_told(aplanat, small_blend, tmp_path):
     assert settings["lens"] == "tessar-50mm-f2.8"
     # A lens opens no wider than it can, and leaves the framing alone.
     assert settings["fstop"] == 2.8
+    (line,) = done.answer["warnings"]
+    assert "asks for f/0.5" in line and "no wider than f/2.8" in line
     assert settings["focal_length_mm"] == 50.0
 
 

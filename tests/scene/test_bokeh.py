@@ -106,6 +106,25 @@ def test_a_real_lens_has_its_own_spherical_aberration_and_vignetting(camera, bok
     assert (real.appearance.edge, real.vignetting) == (0.0, "LENS")
 
 
+@pytest.mark.parametrize("colors", [False, True])
+def test_an_anamorphic_lens_leaves_the_discs_to_a_thin_lens_and_says_so_on_every_path(
+    colors, camera, bokeh, aplanat_bpy
+):
+    bokeh.hardness = 0.75
+    camera.aplanat.lens, camera.dof.aperture_fstop = "anamorphic-60mm-f2", 4.0
+    bokeh.hardness = 0.75
+    camera.aplanat.chromatic.use = colors
+    found = read(aplanat_bpy)
+    (line,) = found.report
+    assert line.startswith("camera 'Camera': lens 'Anamorphic") and "shapes no bokeh" in line
+    # Whatever the samples leave to the discs: nothing has been drawn to find it out.
+    assert (found.bokeh.appearance.edge, found.bokeh.vignetting) == (0.75, "NONE")
+    bokeh.distortion_source = "LENS"
+    assert "distortion along the height" in read(aplanat_bpy).report[-1]
+    bokeh.distortion_source, camera.dof.use_dof = "NONE", False
+    assert read(aplanat_bpy).report == ()
+
+
 def test_masks_that_do_nothing_are_left_out(bokeh, aplanat_bpy):
     bokeh.dust, bokeh.dust_depth = 10, 0.0
     look = read(aplanat_bpy).bokeh.appearance

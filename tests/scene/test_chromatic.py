@@ -1,6 +1,7 @@
 """A camera's chromatic aberration: read at the evaluated frame, kept while nothing changes."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from addon.scene.chromatic import LATERAL_UNIT
 from addon.scene.drawn_curves import EQUALIZER, SAMPLES, curve_values
 from addon.scene.extract import SceneExtractor
 from addon.scene.snapshot import Film
+from addon.scene.view import read_view
 from addon.ui.chromatic_curves import set_points
 
 FILM = Film(96, 64, (0, 0, 96, 64))
@@ -43,6 +45,19 @@ def chromatic(camera):
 def read_whole(bpy):
     depsgraph = bpy.context.evaluated_depsgraph_get()
     return read_camera(depsgraph, depsgraph.scene.camera, FILM)
+
+
+def read_through_camera(bpy):
+    """What a viewport in camera view reads."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    camera = depsgraph.scene.camera
+    region = SimpleNamespace(width=96, height=64)
+    region_3d = SimpleNamespace(
+        view_perspective="CAMERA",
+        window_matrix=camera.calc_matrix_camera(depsgraph, x=96, y=64),
+        view_matrix=camera.matrix_world.inverted(),
+    )
+    return read_view(depsgraph, SimpleNamespace(camera=camera), region, region_3d, 1).camera
 
 
 def read(bpy):
@@ -233,6 +248,7 @@ def test_what_cannot_be_done_is_told_and_something_is_drawn(
     # A pole of the axial map also sends some colours beyond infinity.
     assert problem in found.report[0] and len(found.report) <= 2
     assert found.chromatic is not None
+    assert read_through_camera(aplanat_bpy).report == found.report
     assert found.chromatic.wavelength_range[0] < found.chromatic.wavelength_range[1]
 
 

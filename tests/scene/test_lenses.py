@@ -49,6 +49,18 @@ def test_a_lens_opens_even_where_the_camera_says_zero(camera, aplanat_bpy):
     assert read(aplanat_bpy).lens.aperture_radius == pytest.approx(camera.lens / 5600, rel=1e-6)
 
 
+def test_an_opening_that_the_lens_has_not_is_told_wherever_it_matters(camera, aplanat_bpy):
+    camera.aplanat.lens = "tessar-50mm-f2.8"
+    (line,) = read(aplanat_bpy).report
+    assert line.startswith("camera 'Camera': asks for f/1.4")
+    assert "opens no wider than f/2.8" in line
+    # As wide as the lens, but for the rounding of a float property; and without blur.
+    camera.dof.aperture_fstop = 2.7999
+    assert read(aplanat_bpy).report == ()
+    camera.dof.aperture_fstop, camera.dof.use_dof = 1.4, False
+    assert read(aplanat_bpy).report == ()
+
+
 def test_choosing_a_lens_leaves_the_framing_alone(camera, aplanat_bpy):
     camera.lens = 35.0
     before = read(aplanat_bpy).projection
@@ -123,6 +135,9 @@ def test_an_orthographic_camera_has_no_real_lens(camera, aplanat_bpy):
     found = read(aplanat_bpy)
     assert found.real_lens is None
     assert "perspective" in found.report[0]
+    camera.aplanat.lens = "no-such-lens"
+    (line,) = read(aplanat_bpy).report
+    assert "'no-such-lens' is not in the library" in line and "perspective" not in line
 
 
 def test_the_users_folder_is_not_in_the_checkout(aplanat_bpy):
