@@ -59,6 +59,10 @@ class OutputError(InputError):
     """A picture that cannot be written where it was asked for."""
 
 
+class UnfinishedFileError(OutputError):
+    """A file that could be begun and not finished, as on a full disk. Exit code 1."""
+
+
 class StrictError(InputError):
     """There are warnings, and whoever renders takes them for errors.
 

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import InputError
+from ..errors import InputError, UnfinishedFileError
+from ..files.whole_file import check_writable, whole_file
 from .scene_setup import check_camera, load_scene, use_engine
 from .shared_scenes import is_shared_name, shared_references, shared_scene
 
@@ -77,9 +78,9 @@ def _case(word, arguments, console, default_samples):
 
 
 def check_folder(path):
-    """Refuse a folder for pictures that is not there."""
-    if path and not path.is_dir():
-        raise InputError(f"--pictures: folder '{path}' does not exist")
+    """Refuse a folder for pictures that is not there, or that takes none."""
+    if path:
+        check_writable(path / "picture.exr")
 
 
 def open_scene(case, resolution):
@@ -116,8 +117,9 @@ def save_picture(path, picture):
     import numpy as np
     import OpenEXR
 
-    from ..files.whole_file import whole_file
-
     header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
     with whole_file(path) as place:
-        OpenEXR.File(header, {"RGB": np.ascontiguousarray(picture, np.float32)}).write(place)
+        try:
+            OpenEXR.File(header, {"RGB": np.ascontiguousarray(picture, np.float32)}).write(place)
+        except RuntimeError as error:
+            raise UnfinishedFileError(f"cannot write '{path}': {error}") from error

@@ -14,6 +14,7 @@ from ..errors import (
     DeviceUnavailableError,
     InputError,
     LensFileError,
+    UnfinishedFileError,
 )
 from . import arguments as words_of
 from .console import Console
@@ -87,11 +88,13 @@ def _carry_out(arguments, console, prepare):
     except AplanatError as error:
         for line in _lines(error):
             console.say(line)
+        refused = isinstance(error, _REFUSALS) and not isinstance(error, UnfinishedFileError)
+        # Where a disk is full, Blender has nothing to add.
         if not isinstance(error, _REFUSALS):
             console.show_chatter()
         if arguments.json:
             console.answer(json_text(_errors(error, arguments.command)))
-        return 2 if isinstance(error, _REFUSALS) else 1
+        return 2 if refused else 1
     except Exception as error:
         # Not foreseen: everything that helps to find the cause is shown.
         console.say(f"failed: {error!r}")

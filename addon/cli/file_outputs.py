@@ -132,8 +132,7 @@ def _blend_folder(_match):
 def _check_folder(folder):
     known = folder.partition("{")[0]
     existing = Path(known)
-    while not existing.exists():
+    # The root of a drive that is missing is its own parent.
+    while not os.path.exists(existing) and existing != existing.parent:
         existing = existing.parent
-    if not existing.is_dir():
-        raise OutputError(f"cannot write to '{folder}': '{existing}' is no folder")
     check_writable(existing / "frame")

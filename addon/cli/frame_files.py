@@ -4,6 +4,7 @@ Blender writes into a held folder (`files.held_files`). What it wrote is then pu
 names that `-o` or the scene gives, and with it what the compositor's File Output nodes wrote.
 """
 
+import os
 import re
 import shutil
 from contextlib import ExitStack
@@ -12,7 +13,7 @@ from pathlib import Path
 import bpy
 
 from ..engine.views import views_of
-from ..errors import InputError, OutputError
+from ..errors import InputError, OutputError, UnfinishedFileError
 from ..files.claims import Claims
 from ..files.held_files import HeldFiles, publish
 from ..files.whole_file import check_writable
@@ -125,7 +126,7 @@ class FrameFiles:
         for patterns in self._renders():
             self._set_format(patterns)
             paths += [real for _, real in self._pairs(frame, patterns)]
-        missing = [path for path in paths if not path.exists()]
+        missing = [path for path in paths if not os.path.exists(path)]
         # As in Blender: of several files, one that exists is enough.
         if not self._overwrites and len(missing) < len(paths):
             return False
@@ -189,7 +190,11 @@ class FrameFiles:
         """
         for held, real in self._kept:
             # As Blender does for the scene's own output and for nodes; those of -o are there.
-            real.parent.mkdir(parents=True, exist_ok=True)
+            try:
+                real.parent.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                reason = error.strerror or error
+                raise OutputError(f"cannot make folder '{real.parent}': {reason}") from error
             publish(held, real)
             self._claims.settle(real)
         for held in {held for held, _ in self._kept}:
@@ -286,7 +291,10 @@ class FrameFiles:
             pictures.save_render_result(shown[0], self._scene)
         for held, real in pairs:
             if held not in self._moved and (not held.is_file() or held.stat().st_size == 0):
-                raise OutputError(f"cannot write '{real}': Blender wrote nothing; is a disk full?")
+                raise UnfinishedFileError(
+                    f"cannot write '{real}': Blender wrote nothing into '{held.parent}'; is the"
+                    " disk full? TMPDIR names another place"
+                )
             self._keep(held, real)
 
     def _keep(self, held, real):

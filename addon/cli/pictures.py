@@ -9,7 +9,7 @@ from pathlib import Path
 
 import bpy
 
-from ..errors import OutputError
+from ..errors import UnfinishedFileError
 
 RENDER_RESULT = "Render Result"
 
@@ -75,15 +75,17 @@ def save_render_result(path, scene):
 
     Raises
     ------
-    OutputError
+    UnfinishedFileError
         If Blender does not write it.
     """
     try:
         bpy.data.images[RENDER_RESULT].save_render(str(path), scene=scene)
     except RuntimeError as error:
-        raise OutputError(f"cannot write '{path}': {error}") from error
+        raise UnfinishedFileError(f"cannot write '{path}': {error}") from error
     if not Path(path).is_file() or Path(path).stat().st_size == 0:
-        raise OutputError(f"cannot write '{path}': Blender wrote nothing; is the disk full?")
+        raise UnfinishedFileError(
+            f"cannot write '{path}': Blender wrote nothing; is the disk full?"
+        )
 
 
 def uses_compositor(scene):

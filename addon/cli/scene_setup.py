@@ -33,7 +33,7 @@ def load_scene(path):
         If there is no such file or Blender cannot read it.
     """
     path = Path(path)
-    if not path.is_file():
+    if not os.path.isfile(path):
         raise InputError(f"scene file '{path}' does not exist; check the path")
     if not os.access(path, os.R_OK):
         raise InputError(f"scene file '{path}' cannot be read; check its permissions")

@@ -9,6 +9,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from ..errors import OutputError
 from .whole_file import forget_folder, remember_folder, whole_file
 
 
@@ -19,8 +20,16 @@ class HeldFiles:
     """
 
     def __enter__(self):
-        """Make the folder."""
-        self._folder = Path(tempfile.mkdtemp(prefix="aplanat-"))
+        """Make the folder, or raise `OutputError`."""
+        try:
+            self._folder = Path(tempfile.mkdtemp(prefix="aplanat-"))
+        except OSError as error:
+            # Without a folder at all, the message names those that were tried.
+            where = f" in '{tempfile.tempdir}'" if tempfile.tempdir else ""
+            raise OutputError(
+                f"cannot make a folder for unfinished files{where}: {error.strerror or error}; set"
+                " TMPDIR"
+            ) from error
         remember_folder(self._folder)
         return self
 

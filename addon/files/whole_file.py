@@ -11,10 +11,14 @@ import os
 import secrets
 import shutil
 import signal
+import stat
 import threading
 from pathlib import Path
 
-from ..errors import OutputError
+from ..errors import OutputError, UnfinishedFileError
+
+# Characters of a file's name that its temporary name has: 255 bytes are allowed, four a character.
+_LONGEST_STEM = 50
 
 # What a signal removes: files, and folders with all that is in them.
 _unfinished = set()
@@ -37,19 +41,19 @@ def whole_file(destination):
     Raises
     ------
     OutputError
-        If the folder cannot be written to.
+        If there can be no such file.
+    UnfinishedFileError
+        If it could not be written to its end.
     """
-    destination = Path(destination)
-    try:
-        writer = _open(destination)
-    except OSError as error:
-        raise _cannot_write(destination, error) from error
+    writer = _begin(Path(destination))
     try:
         yield writer.path
-        try:
-            writer.publish()
-        except OSError as error:
-            raise _cannot_write(destination, error) from error
+        writer.publish()
+    except OSError as error:
+        reason = error.strerror or error
+        raise UnfinishedFileError(
+            f"cannot write '{destination}' to its end: {reason}; nothing of it is left"
+        ) from error
     finally:
         writer.close()
 
@@ -61,19 +65,51 @@ def check_writable(destination):
     ------
     OutputError
     """
-    destination = Path(destination)
-    if not destination.parent.is_dir():
-        raise OutputError(f"folder '{destination.parent}' does not exist; create it first")
-    if destination.is_dir():
-        raise OutputError(f"'{destination}' is a folder; name a file")
+    _begin(Path(destination)).close()
+
+
+def _begin(destination):
+    """Return the writer of a file, or raise `OutputError` with its path and the reason."""
+    # As with a file that is opened for writing, a link stays one.
+    place = Path(os.path.realpath(destination)) if os.path.islink(destination) else destination
     try:
-        _open(destination).close()
+        kind = _kind(place)
+        if kind == "folder":
+            raise OutputError(f"cannot write '{destination}': it is a folder; name a file")
+        if kind is not None:
+            raise OutputError(f"cannot write '{destination}': it is {kind}; name a plain file")
+        return _open(place)
     except OSError as error:
-        raise _cannot_write(destination, error) from error
+        reason = _reason(place.parent, error)
+        raise OutputError(f"cannot write '{destination}': {reason}") from error
 
 
-def _cannot_write(destination, error):
-    return OutputError(f"cannot write '{destination}': {error.strerror or error}")
+def _kind(place):
+    """Return what stands at a place, if it is no file that may be replaced."""
+    try:
+        mode = os.lstat(place).st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    if stat.S_ISREG(mode):
+        return None
+    if stat.S_ISLNK(mode):
+        return "a link that leads to itself"
+    return "folder" if stat.S_ISDIR(mode) else "a device or a pipe"
+
+
+def _reason(folder, error):
+    """Return why no file can be made in a folder, in words, and what to do."""
+    try:
+        if not stat.S_ISDIR(os.stat(folder).st_mode):
+            return f"'{folder}' is no folder"
+    except FileNotFoundError:
+        return f"folder '{folder}' does not exist; create it first"
+    except OSError as deeper:
+        return deeper.strerror or str(deeper)
+    if isinstance(error, FileNotFoundError):
+        # What systems say of folders that are made up by them, such as /proc.
+        return f"no file can be made in '{folder}'; choose another folder"
+    return error.strerror or str(error)
 
 
 def _open(destination):
@@ -81,6 +117,11 @@ def _open(destination):
         with contextlib.suppress(IsADirectoryError, NotImplementedError, OSError):
             return _NamelessFile(destination)
     return _NamedFile(destination)
+
+
+def _shortened(name):
+    # So that what is added makes no name too long for the file system.
+    return name[:_LONGEST_STEM]
 
 
 class _NamelessFile:
@@ -101,7 +142,7 @@ class _NamelessFile:
             self._link(final)
         except FileExistsError:
             # No picture's ending: nobody takes it for one.
-            name = f".{final}.{os.getpid()}.part"
+            name = f".{_shortened(final)}.{os.getpid()}.part"
             with contextlib.suppress(FileNotFoundError):
                 os.unlink(name, dir_fd=self._folder)
             self._link(name)
@@ -121,7 +162,7 @@ class _NamedFile:
     def __init__(self, destination):
         self._destination = destination
         # Not by tempfile, which keeps its files from everybody else.
-        name = f".{destination.name}.{secrets.token_hex(8)}.part"
+        name = f".{_shortened(destination.name)}.{secrets.token_hex(8)}.part"
         self.path = str(destination.parent / name)
         os.close(os.open(self.path, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o666))
         remember_file(self.path)

@@ -26,7 +26,7 @@ import numpy as np
 from ..bokeh.focus_state import FocusState
 from ..bokeh.profile import LensProfile, ProfileTable
 from ..bokeh.ray_map import RayMap
-from ..errors import InputError, OutputError
+from ..errors import InputError, UnfinishedFileError
 from ..files.whole_file import whole_file
 from ..optics.paraxial import FirstOrder
 
@@ -74,7 +74,7 @@ def save_profile(path, stored, *, lens_id="", content_hash=""):
 
     Raises
     ------
-    OutputError
+    UnfinishedFileError
         If the file cannot be written.
     """
     import OpenEXR
@@ -108,7 +108,7 @@ def save_profile(path, stored, *, lens_id="", content_hash=""):
         try:
             OpenEXR.File(parts).write(place)
         except RuntimeError as error:
-            raise OutputError(f"cannot write '{path}': {error}") from error
+            raise UnfinishedFileError(f"cannot write '{path}': {error}") from error
 
 
 def load_profile(path):

@@ -110,11 +110,17 @@ def test_wavelength_that_a_glass_does_not_pass_is_told(refused, tmp_path):
     assert len(lines) == 1 and "2500 nm" in lines[0] and "surface 1" in lines[0]
 
 
-@pytest.mark.parametrize("words", [("bake", "out.exr"), ("plot", "out.png")])
-def test_folder_that_is_not_there_is_told_before_work(refused, tmp_path, words):
+@pytest.mark.parametrize("where", ["{tmp}/none/{}", "{tmp}/file/{}", "{tmp}/{}", "/proc/{}"])
+@pytest.mark.parametrize(
+    "words", [("bake", "out.exr"), ("plot", "out.png"), ("import", "out.toml")]
+)
+def test_where_no_file_can_be_path_and_reason_are_told_before_work(refused, tmp_path, words, where):
     word, name = words
-    lines, _ = refused("lens", word, "tessar-50mm-f2.8", "-o", tmp_path / "none" / name)
-    assert len(lines) == 1 and "does not exist" in lines[0]
+    (tmp_path / "file").write_text("")
+    (tmp_path / name).mkdir()
+    path = where.format(name, tmp=tmp_path)
+    lines, _ = refused("lens", word, "tessar-50mm-f2.8", "-o", path)
+    assert len(lines) == 1 and lines[0].startswith(f"aplanat: cannot write '{path}': ")
 
 
 def test_lens_with_cylinders_has_no_table(refused, tmp_path):

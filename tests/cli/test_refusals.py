@@ -1,5 +1,8 @@
 """What `aplanat render` refuses: exit code 2, one line that helps, and no file."""
 
+import errno
+import os
+
 import pytest
 
 
@@ -65,6 +68,44 @@ def test_unwritable_output(refused, small_blend, tmp_path):
 def test_unwritable_statistics(refused, small_blend, tmp_path):
     words = ("render", small_blend, "-o", tmp_path / "a.png", "--stats", tmp_path / "no" / "s.json")
     assert "does not exist" in refused(*words)
+
+
+@pytest.mark.parametrize("option", ["-o", "--stats"])
+@pytest.mark.parametrize("where", ["/proc/{}", "{tmp}/no/{}", "{tmp}/folder-{}", "{tmp}/file/{}"])
+def test_a_render_that_cannot_be_written_names_path_and_reason(
+    option, where, aplanat, small_blend, tmp_path
+):
+    (tmp_path / "file").write_text("")
+    name = "a.png" if option == "-o" else "a.json"
+    (tmp_path / f"folder-{name}").mkdir()
+    path = where.format(name, tmp=tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    output = () if option == "-o" else ("-o", tmp_path / "b.png")
+    done = aplanat("render", small_blend, *output, option, path)
+    assert done.code == 2 and done.err.count("\n") == 1, done.err
+    assert done.err.startswith(f"aplanat: cannot write '{path}': ")
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_disk_that_fills_up_is_one_line_and_exit_code_1(
+    aplanat, small_blend, tmp_path, monkeypatch
+):
+    from addon.files import held_files
+
+    def full(_held, _place):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(held_files.shutil, "copyfile", full)
+    done = aplanat("render", small_blend, "-o", tmp_path / "a.png", "--samples", "1", "--json")
+    assert done.code == 1 and "Traceback" not in done.err
+    (error,) = done.answer["errors"]
+    assert error["code"] == "unfinished_file"
+    assert f"'{tmp_path / 'a.png'}'" in error["message"] and "No space left" in error["message"]
+    assert sorted(tmp_path.iterdir()) == []
+
+
+def test_a_scene_whose_path_no_system_can_have(refused, tmp_path):
+    assert "does not exist" in refused("render", tmp_path / f"{'a' * 300}.blend")
 
 
 def test_movie_output_of_the_scene(refused, make_blend):

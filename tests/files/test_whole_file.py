@@ -1,5 +1,6 @@
 """A file is there whole or not at all, whatever ends its writing."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -9,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from addon.errors import OutputError
+from addon.errors import OutputError, UnfinishedFileError
 from addon.files import whole_file as module
 from addon.files.whole_file import check_writable, whole_file
 
@@ -76,17 +77,63 @@ def test_check_leaves_nothing(kind, tmp_path):
     assert os.listdir(tmp_path) == []
 
 
-def test_missing_folder_a_folder_and_a_file_as_folder_are_refused(tmp_path):
+def test_where_no_file_can_be_the_path_and_the_reason_are_told(tmp_path):
     (tmp_path / "file").write_text("")
     (tmp_path / "folder.exr").mkdir()
-    for path, told in (
-        (tmp_path / "nowhere" / "a.exr", "does not exist"),
-        (tmp_path / "folder.exr", "is a folder"),
-        (tmp_path / "file" / "a.exr", "does not exist"),
-        (Path("/proc/a.exr"), "cannot write"),
-    ):
-        with pytest.raises(OutputError, match=told):
-            check_writable(path)
+    places = [
+        (tmp_path / "nowhere" / "a.exr", "nowhere' does not exist; create it"),
+        (tmp_path / "folder.exr", "it is a folder; name a file"),
+        (tmp_path / "file" / "a.exr", "file' is no folder"),
+        (tmp_path / "file" / "deeper" / "a.exr", "Not a directory"),
+        (tmp_path / f"{'a' * 300}.exr", "name too long"),
+    ]
+    if sys.platform == "linux":
+        os.mkfifo(tmp_path / "pipe.exr")
+        (tmp_path / "loop.exr").symlink_to("loop.exr")
+        (tmp_path / "dangling.exr").symlink_to(tmp_path / "gone" / "a.exr")
+        places += [
+            (Path("/proc/a.exr"), "no file can be made in '/proc'; choose another folder"),
+            (Path("/sys/a.exr"), "Permission denied"),
+            (tmp_path / "pipe.exr", "a device or a pipe; name a plain file"),
+            (tmp_path / "loop.exr", "a link that leads to itself"),
+            (tmp_path / "dangling.exr", "gone' does not exist"),
+        ]
+    before = sorted(tmp_path.iterdir())
+    for path, told in places:
+        for use in (check_writable, lambda place: whole_file(place).__enter__()):
+            with pytest.raises(OutputError) as caught:
+                use(path)
+            line = str(caught.value)
+            assert line.startswith(f"cannot write '{path}': ") and told in line, line
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links of POSIX")
+def test_a_link_stays_one_and_the_file_behind_it_is_written(kind, tmp_path):
+    (tmp_path / "real").mkdir()
+    link = tmp_path / "a.txt"
+    link.symlink_to(tmp_path / "real" / "b.txt")
+    for content in ("new", "replaced"):
+        with whole_file(link) as place:
+            Path(place).write_text(content)
+        assert link.is_symlink() and (tmp_path / "real" / "b.txt").read_text() == content
+
+
+def test_a_name_as_long_as_can_be_is_written_and_replaced(kind, tmp_path):
+    path = tmp_path / ("a" * 251 + ".txt")
+    for content in ("new", "replaced"):
+        with whole_file(path) as place:
+            Path(place).write_text(content)
+        assert path.read_text() == content
+
+
+def test_a_disk_that_is_full_leaves_nothing_and_is_told(kind, tmp_path):
+    path = tmp_path / "a.txt"
+    with pytest.raises(UnfinishedFileError) as caught, whole_file(path) as place:
+        Path(place).write_text("half")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    assert f"'{path}'" in str(caught.value) and "No space left" in str(caught.value)
+    assert os.listdir(tmp_path) == []
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
