@@ -1,6 +1,6 @@
 // The source whose cone a thread of bokeh_cones_comp or bokeh_cones_groups_comp tests.
 // Inputs: sources_tx; visibility_buf; count; without EDGES keys_img and culls; FILL: states_tx,
-// keys_tx, totals_tx, otherwise states_img.
+// keys_tx, totals_tx, window, otherwise states_img.
 // Outputs: keys_img, where nothing is tested.
 #include "lib/cones_lib.glsl"
 
@@ -15,6 +15,20 @@ struct ConeSource {
   LensView view;  // in camera space
 };
 
+#ifdef FILL
+// How many pairs prefix sums have before those of a key; of one behind the last, more than there are.
+uint pairs_before(ivec2 key)
+{
+  if (key.x == SOURCE_COLUMNS) {
+    key = ivec2(0, key.y + 1);
+  }
+  if (key.y == textureSize(keys_tx, 0).y) {
+    return ~0u;
+  }
+  return texelFetch(keys_tx, key, 0).x + texelFetch(totals_tx, list_texel(key.y), 0).x;
+}
+#endif
+
 // `segment`: first row of keys.
 ConeSource source_of_thread(int index, int segment)
 {
@@ -27,9 +41,11 @@ ConeSource source_of_thread(int index, int segment)
 #ifdef FILL
   if (own.tested) {
     own.record = texelFetch(states_tx, own.texel, 0);
-    own.place = texelFetch(keys_tx, own.key, 0).x;
-    own.place += texelFetch(totals_tx, list_texel(own.key.y), 0).x;
-    own.tested = state_is_open(own.record.w) || culls == 0;
+    own.place = pairs_before(own.key);
+    // A source none of whose pairs are in the window is not searched for once more in each window.
+    bool within = own.place < uint(window.x + window.y) &&
+                  pairs_before(own.key + ivec2(1, 0)) > uint(window.x);
+    own.tested = within && (state_is_open(own.record.w) || culls == 0);
   }
 #else
   if (own.tested) {

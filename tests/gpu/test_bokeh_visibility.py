@@ -270,7 +270,8 @@ def test_a_half_hidden_highlight_looks_as_lens_samples_show_it(lamp_depth, metho
 
 def test_masks_are_the_same_where_pairs_are_listed_in_parts(monkeypatch):
     scene = Scene(snapshot(slanted(9)))
-    sources = sources_at((7.0, 8.0), count=1500)
+    # The last of them is the last of its table.
+    sources = sources_at((7.0, 8.0), count=2048)
     monkeypatch.setattr(bokeh_visibility, "_LEAST_PAIRS", 1)
     monkeypatch.setattr(bokeh_visibility, "_WINDOW", 1024)
     _, in_parts, counts = scene.find(sources, "RASTER")
