@@ -32,7 +32,7 @@ class LensFileError(InputError):
     ----------
     file_name : str
     findings : sequence
-        Errors, each with ``code``, ``path`` and ``message`` (see `addon.lens_io.findings`).
+        Errors, each with ``code``, ``path`` and ``message`` (see `addon.lens_io.toml.findings`).
     warnings : sequence
         Warnings of the same kind.
     """

@@ -2,28 +2,25 @@
 
 from .cli import blender_command
 from .engine import render_engine
-from .ui import (
-    background,
-    blender_panels,
-    bokeh_panel,
-    bokeh_presets,
-    bokeh_previews,
+from .ui.jobs import background
+from .ui.operators import (
     chromatic_curves,
     chromatic_operators,
-    chromatic_panel,
-    chromatic_presets,
-    chromatic_previews,
     lens_import,
     lens_operators,
-    lens_panel,
-    lens_thumbnails,
     level_operators,
-    overrides,
-    panels,
-    properties,
-    sampling_panel,
-    sampling_presets,
 )
+from .ui.panels import (
+    blender_panels,
+    bokeh_panel,
+    chromatic_panel,
+    lens_panel,
+    panels,
+    sampling_panel,
+)
+from .ui.presets import bokeh_presets, chromatic_presets, sampling_presets
+from .ui.previews import bokeh_previews, chromatic_previews, lens_thumbnails
+from .ui.properties import overrides, properties
 
 _MODULES = (
     background,

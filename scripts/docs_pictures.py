@@ -71,7 +71,7 @@ def rendered():
 
 def busy():
     import importlib
-    background = importlib.import_module("bl_ext.user_default.aplanat.addon.ui.background")
+    background = importlib.import_module("bl_ext.user_default.aplanat.addon.ui.jobs.background")
     return background.progress() is not None
 
 def converged():

@@ -15,8 +15,8 @@ from addon.device import geometry, shader_variants
 from addon.device.shaders import ShaderInfo, compile_shader, dispatch
 from addon.device.targets import Targets, TargetSpec
 from addon.device.uniforms import uniform_buffer
-from addon.passes import data, environment_bake, surface, surface_code
-from addon.scene.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
+from addon.passes.surface import data, environment_bake, surface, surface_code
+from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 
 _MODULES = [
     importlib.import_module(f"{passes.__name__}.{found.name}")

@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from addon.bokeh.appearance import Appearance
+from addon.lens_bokeh.look.appearance import Appearance
 from addon.sampling.iris import Iris
-from addon.scene.snapshot import BokehSettings
+from addon.snapshot.scene import BokehSettings
 
 FOCUS = 2.0
 
@@ -58,8 +58,9 @@ def splatted(plan, depth, chief=(0.0, 0.0), light=(1.0, 1.0, 1.0), window=None, 
     from addon.device.targets import Targets, TargetSpec
     from addon.device.textures import texture_2d
     from addon.device.uniforms import uniform_buffer
-    from addon.engine.bokeh_look import make_look
-    from addon.passes import splat, surface
+    from addon.engine.bokeh.look import make_look
+    from addon.passes.bokeh import splat
+    from addon.passes.surface import surface
 
     size = plan.size
     middle = np.asarray(chief) * plan.focal_px if window is None else np.asarray(window)
@@ -92,7 +93,7 @@ def splatted(plan, depth, chief=(0.0, 0.0), light=(1.0, 1.0, 1.0), window=None, 
 def library_lens(lens_id, f_number=None):
     """Return `LensSettings` of a lens that comes with Aplanat."""
     from addon.lens_io.lens_shelf import LensShelf
-    from addon.scene.snapshot import LensSettings
+    from addon.snapshot.scene import LensSettings
 
     prescription = LensShelf([]).find(lens_id).lens.prescription
     configuration = prescription.configuration(None)

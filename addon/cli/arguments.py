@@ -9,16 +9,16 @@ import re
 from pathlib import Path
 
 from ..errors import InputError
-from .lens_arguments import add_lens, check_lens
-from .option_values import (
+from .lens.lens_arguments import add_lens, check_lens
+from .render.sampling_arguments import MAX_SAMPLES, add_sampling, check_sampling
+from .words.option_values import (
     file_with_ending,
     joined_negatives,
     pixel_size,
     positive_number,
     whole_number,
 )
-from .sampling_arguments import MAX_SAMPLES, add_sampling, check_sampling
-from .version import version
+from .words.version import version
 
 # Bounds of Blender's own properties.
 MIN_SIDE, MAX_SIDE = 4, 65536

@@ -17,8 +17,8 @@ from ..errors import (
     UnfinishedFileError,
 )
 from . import arguments as words_of
-from .console import Console
-from .json_file import json_text
+from .words.console import Console
+from .words.json_file import json_text
 
 _REFUSALS = (InputError, DeviceUnavailableError, DeviceLimitError)
 
@@ -111,21 +111,21 @@ def _carry_out(arguments, console, prepare):
 def _runner(arguments, prepare):
     # A lens needs no Blender, and is told sooner than one starts.
     if arguments.command == "lens":
-        from .lens import lens as run
+        from .lens.lens_command import lens as run
     elif arguments.command == "bench" and arguments.lens:
-        from .lens_bench import bench_lenses as run
+        from benchmarks.benches.lens import bench_lenses as run
     else:
         prepare()
         if arguments.command == "render":
-            from .render import render as run
+            from .render.render_command import render as run
         elif arguments.chromatic:
-            from .bench_chromatic import bench_chromatic as run
+            from benchmarks.benches.chromatic import bench_chromatic as run
         elif arguments.bokeh is not None:
-            from .bench_bokeh import bench_bokeh as run
+            from benchmarks.bokeh.bench import bench_bokeh as run
         elif arguments.method == "adaptive":
-            from .bench_adaptive import bench_adaptive as run
+            from benchmarks.benches.adaptive import bench_adaptive as run
         else:
-            from .bench import bench as run
+            from benchmarks.benches.reference_method import bench as run
     return run
 
 

@@ -13,17 +13,17 @@ import bpy
 
 from ..device import context
 from ..device.shaders import compiled_count
+from ..levels.choosing import meshes_with_levels
+from ..levels.level_store import level_store
 from ..scene.extract import SceneExtractor
+from .drawing.scene_buffers import SceneBuffers
+from .frame.pipeline import FrameRenderer
+from .frame.render_passes import cryptomatte_metadata, fill_layer, render_pass
 from .gpu_thread import gpu_of_render
-from .level_store import level_store
-from .levels import meshes_with_levels
 from .outcome import LayerPicture, PassPicture, note_highlights, note_sampling
 from .pacing import Pacer
-from .pipeline import FrameRenderer
-from .plan import plan_frame
-from .render_passes import cryptomatte_metadata, fill_layer, render_pass
+from .planning.plan import plan_frame
 from .report import frame_report, without_count
-from .scene_buffers import SceneBuffers
 from .views import views_of
 
 # The picture is shown twice a second while it converges, unless that takes a tenth of the time.

@@ -4,7 +4,8 @@ import bpy
 
 from ..errors import AplanatError, RenderCancelledError
 from ..scene.settings import read_passes
-from . import final_render, gpu_thread, outcome, render_passes
+from . import final_render, gpu_thread, outcome
+from .frame import render_passes
 from .viewport import Viewport
 
 ENGINE_ID = "APLANAT"

@@ -14,20 +14,20 @@ from functools import cache
 from ..device import context as device_context
 from ..device import state
 from ..errors import AplanatError
-from ..scene.changes import Change, compare
+from ..levels.choosing import meshes_with_levels
+from ..levels.level_store import level_store
 from ..scene.extract import SceneExtractor
 from ..scene.settings import read_preview_sampling
-from ..scene.snapshot import SceneSnapshot
 from ..scene.view import read_view
-from .bokeh_marks import shows_marks
-from .level_store import level_store
-from .levels import meshes_with_levels
+from ..snapshot.changes import Change, compare
+from ..snapshot.scene import SceneSnapshot
+from .bokeh.marks import shows_marks
+from .drawing.scene_buffers import SceneBuffers
+from .frame.pipeline import FrameRenderer
 from .outcome import note_highlights, note_sampling
 from .pacing import Pacer
-from .pipeline import FrameRenderer
-from .plan import plan_frame
+from .planning.plan import plan_frame
 from .report import frame_report, in_short
-from .scene_buffers import SceneBuffers
 
 # Between two answers to the user; a single sample may take longer.
 DRAW_SECONDS = 0.02

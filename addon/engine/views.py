@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """One view of a render, as `scene.camera.read_camera` asks for it.
+    """One view of a render, as `scene.camera.camera.read_camera` asks for it.
 
     Parameters
     ----------

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from ..errors import LensFileError
-from .findings import Finding
-from .toml_reader import LensFile, read_lens
+from .toml.findings import Finding
+from .toml.toml_reader import LensFile, read_lens
 
 # Of the formats that can be imported.
 FOREIGN_ENDINGS = frozenset({".dat", ".zmx", ".seq", ".txt"})

@@ -12,7 +12,7 @@ from pathlib import Path
 from ..errors import LensFileError
 from .any_lens_file import read_any_lens
 from .library import SHIPPED_FOLDER, Library
-from .toml_reader import LensFile
+from .toml.toml_reader import LensFile
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from ..errors import LensFileError
 from .any_lens_file import read_any_lens
-from .findings import Finding
+from .toml.findings import Finding
 
 SHIPPED_FOLDER = Path(__file__).resolve().parents[2] / "lens_profiles"
 ENDING = ".toml"

@@ -12,9 +12,9 @@ import os
 import time
 from pathlib import Path
 
-from ..bokeh.profile import make_profile
 from ..errors import InputError, OutputError
 from ..files.cache_folder import cache_folder
+from ..lens_bokeh.tables.profile import make_profile
 from .profile_file import FORMAT_VERSION, StoredProfile, load_profile, save_profile
 
 LARGEST_SIZE = 512 * 1024 * 1024
@@ -137,8 +137,8 @@ def pupil_tables(
     PrescriptionError, RenderCancelledError
         As for `profile`.
     """
-    from ..bokeh.pupil_parts import LAYOUT, pack, unpack
-    from ..bokeh.pupil_tables import build_pupil_tables
+    from ..lens_bokeh.tables.pupil_parts import LAYOUT, pack, unpack
+    from ..lens_bokeh.tables.pupil_tables import build_pupil_tables
 
     configuration = prescription.configuration(label)
     options = {} if wavelengths_nm is None else {"wavelengths_nm": tuple(wavelengths_nm)}

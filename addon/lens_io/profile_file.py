@@ -23,11 +23,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..bokeh.focus_state import FocusState
-from ..bokeh.profile import LensProfile, ProfileTable
-from ..bokeh.ray_map import RayMap
 from ..errors import InputError, UnfinishedFileError
 from ..files.whole_file import whole_file
+from ..lens_bokeh.tables.focus_state import FocusState
+from ..lens_bokeh.tables.profile import LensProfile, ProfileTable
+from ..lens_bokeh.tables.ray_map import RayMap
 from ..optics.paraxial import FirstOrder
 
 FORMAT = "aplanat-bokeh-profile"

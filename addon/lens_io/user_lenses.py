@@ -9,11 +9,11 @@ from pathlib import Path
 
 from ..errors import LensFileError, OutputError
 from ..files.whole_file import whole_file
-from .findings import Finding
 from .lens_shelf import unused_id
 from .library import ENDING
-from .toml_reader import parse_lens, read_lens
-from .toml_writer import lens_toml
+from .toml.findings import Finding
+from .toml.toml_reader import parse_lens, read_lens
+from .toml.toml_writer import lens_toml
 
 # Of an id, so that paths stay usable everywhere.
 _LONGEST_ID = 80

@@ -7,7 +7,7 @@ pixel filter (see `sampling.pixel_filter`).
 from ..device import shader_source, state
 from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
-from . import chromatic
+from .surface import chromatic
 
 # Name, fragment shader, output and sampler of each kind of sum.
 _PICTURE = ("aplanat_accumulate", "passes/accumulate_frag.glsl", ("VEC4", "out_color"), "sample_tx")

@@ -4,10 +4,10 @@ from ..device import shader_source, state
 from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
 from ..device.uniforms import bind_resource
-from . import chromatic
-from .environment import ENVIRONMENT_PARAMS
-from .highlights import APPEND_CONSTANTS, APPEND_DEFINES, APPEND_IMAGES
-from .surface import HIGHLIGHT_PARAMS, VIEW_PARAMS
+from .bokeh.highlights import APPEND_CONSTANTS, APPEND_DEFINES, APPEND_IMAGES
+from .surface import chromatic
+from .surface.environment import ENVIRONMENT_PARAMS
+from .surface.surface import HIGHLIGHT_PARAMS, VIEW_PARAMS
 
 
 @variants(

@@ -2,7 +2,7 @@
 
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
-from . import chromatic
+from .surface import chromatic
 
 _SAMPLERS = (
     ("FLOAT_2D", "sample_tx"),
@@ -59,7 +59,7 @@ def blur(
         Colour and depth of the sample; offsets, one row a sample; means and ranges of the sample's
         pyramid.
     sweep : sequence of 4 float
-        See ``lib/sweep_lib.glsl``.
+        See ``lib/bokeh/sweep_lib.glsl``.
     spread : sequence of 2 float
         Largest offset of any sample along x and y, m.
     depths : sequence of 2 float

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from ..optics.aberrations import axial_focus, best_focus, field_curves, paraxial_focus
 from ..optics.glass import REFERENCE_WAVELENGTH_NM
-from ..optics.pupil import pupil_rays
-from ..optics.trace import trace
+from ..optics.rays.aberrations import axial_focus, best_focus, field_curves, paraxial_focus
+from ..optics.rays.pupil import pupil_rays
+from ..optics.rays.trace import trace
 from .style import INK, QUIET, SPECTRUM, VIOLET, frame_diagram, legend, symmetric_limits
 
 _RHO = np.linspace(0.0, 1.0, 51)

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from ..bokeh.mapping import pattern_row
-from ..bokeh.profile import REFERENCE_DISTANCE, profile_table, ring_areas
+from ..lens_bokeh.tables.mapping import pattern_row
+from ..lens_bokeh.tables.profile import REFERENCE_DISTANCE, profile_table, ring_areas
 from ..optics.focus import focused
 from ..optics.paraxial import first_order, image_distance
-from ..optics.pupil import pupil_rays
-from ..optics.trace import trace
+from ..optics.rays.pupil import pupil_rays
+from ..optics.rays.trace import trace
 from ..sampling.spectrum import rgb_weights, spectrum_wavelengths
 from .style import QUIET, SMALL_SIZE, frame_diagram, frame_picture, length
 

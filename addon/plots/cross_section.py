@@ -12,8 +12,8 @@ import numpy as np
 
 from ..optics.glass import REFERENCE_WAVELENGTH_NM, Air
 from ..optics.paraxial import image_distance
+from ..optics.rays.trace import Rays, trace
 from ..optics.surfaces import sag
-from ..optics.trace import Rays, trace
 
 # Places at which a surface is drawn, and where a beam is searched for what gets through.
 _PROFILE_POINTS = 41

@@ -5,12 +5,12 @@ import math
 
 import numpy as np
 
-from ..bokeh.deposit import pattern
-from ..bokeh.mapping import pattern_row
-from ..bokeh.profile import make_profile
-from ..bokeh.pupil_beam import beam_from_infinity, beam_from_point
 from ..errors import OutputError, RenderCancelledError
 from ..files.whole_file import whole_file
+from ..lens_bokeh.look.deposit import pattern
+from ..lens_bokeh.tables.mapping import pattern_row
+from ..lens_bokeh.tables.profile import make_profile
+from ..lens_bokeh.tables.pupil_beam import beam_from_infinity, beam_from_point
 from ..lens_io.profile_cache import content_hash, profile_folder, pupil_tables
 from ..optics.focus import focused
 from ..optics.glass import REFERENCE_WAVELENGTH_NM

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..optics.aberrations import best_focus, spot
-from ..optics.pupil import pupil_outline
+from ..optics.rays.aberrations import best_focus, spot
+from ..optics.rays.pupil import pupil_outline
 from .style import INK, QUIET, RULE, SMALL_SIZE, SPECTRUM, TEXT_SIZE, frame_picture, length
 
 _GRID = 41

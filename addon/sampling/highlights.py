@@ -13,7 +13,7 @@ with the signed circle of confusion `C` (px) is divided into
 kept of a lamp would be a bright dot in each of them, and most of the noise. A gain multiplies
 only what lies above the threshold.
 
-The same functions for the graphics device are in ``lib/highlight_lib.glsl``.
+The same functions for the graphics device are in ``lib/bokeh/highlight_lib.glsl``.
 """
 
 import numpy as np

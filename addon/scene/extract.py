@@ -4,19 +4,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .camera import read_camera
-from .changes import Change, compare_content, same_instances
-from .cryptomatte import cryptomatte_id
-from .drawn_curves import is_curve_group
-from .instances import read_instances
-from .materials import MaterialReader
-from .meshes import MeshReading, read_mesh, same_content, used_slots
-from .motion import RowSources, add_motion
+from ..snapshot.changes import Change, compare_content, same_instances
+from ..snapshot.cryptomatte import cryptomatte_id
+from ..snapshot.scene import InstanceGroup, InstanceTable, SceneContent, SceneSnapshot
+from ..snapshot.surface_graph import attributes_read
+from .camera.camera import read_camera
+from .camera.drawn_curves import is_curve_group
+from .geometry.instances import read_instances
+from .geometry.meshes import MeshReading, read_mesh, same_content, used_slots
+from .geometry.motion import RowSources, add_motion
 from .settings import read_film, read_passes, read_sampling
-from .snapshot import InstanceGroup, InstanceTable, SceneContent, SceneSnapshot
-from .surface_graph import attributes_read
+from .shading.materials import MaterialReader
+from .shading.world import read_world
 from .unsupported import read_unsupported
-from .world import read_world
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class SceneExtractor:
     largest_image : int or None
         Texels along a side that the device can hold.
     in_main_thread : callable or None
-        As for `scene.images.ImageReader`; for an extractor that is used in another thread.
+        As for `scene.images.images.ImageReader`; for an extractor that is used in another thread.
     """
 
     def __init__(self, space=None, largest_image=None, in_main_thread=None):

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .camera import evaluated_camera, read_optics
+from ..snapshot.scene import Camera, Film
+from .camera.camera import evaluated_camera, read_optics
 from .settings import filter_size
-from .snapshot import Camera, Film
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@
 
 // Radiance above which light is dropped. Far above any lamp, and far enough below the largest float
 // (3e38) that gains and sums over all samples of a picture stay finite. The same as
-// LARGEST_RADIANCE of addon/scene/surface_graph.py.
+// LARGEST_RADIANCE of addon/snapshot/surface_graph.py.
 #define LARGEST_RADIANCE 1e30
 
 // Channel by channel, as Cycles drops light. Told by the bits: a compiler may take for granted that

@@ -1,7 +1,7 @@
 // Projection of a point onto the lens, seen from a source, into the source's tile of the atlas.
 #ifndef TILE_LIB_GLSL
 #define TILE_LIB_GLSL
-#include "lib/source_lib.glsl"
+#include "lib/bokeh/source_lib.glsl"
 
 // tile: x, y, side, texels. The tile's sides, the clip start and the source's own surface cut off
 // what lies beyond: otherwise a floor would cover the whole atlas.

@@ -6,13 +6,13 @@
 // CHROMATIC: as in surface_vert.
 // Outputs: opaque scene-linear colour; with EXCESS lists of fragments: light above the threshold.
 // Source: methods 1: the ray from the lens' place through the pixel's point of the focus plane.
-#include "lib/environment_lib.glsl"
-#include "lib/texture_lib.glsl"
+#include "lib/surface/environment_lib.glsl"
+#include "lib/surface/texture_lib.glsl"
 #if defined(HIGHLIGHTS) || defined(EXCESS)
-#include "lib/highlight_lib.glsl"
+#include "lib/bokeh/highlight_lib.glsl"
 #endif
 #ifdef EXCESS
-#include "passes/highlights_append.glsl"
+#include "passes/bokeh/highlights_append.glsl"
 #endif
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"

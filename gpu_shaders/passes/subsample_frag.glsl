@@ -10,7 +10,7 @@
 // Outputs: the weighted sum of the sample and its subsamples.
 // Source: methods 6 (JKL13 section 6, algorithm 3).
 #include "lib/extremes_lib.glsl"
-#include "lib/sweep_lib.glsl"
+#include "lib/bokeh/sweep_lib.glsl"
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
 

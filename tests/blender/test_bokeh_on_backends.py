@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.cli.bench_bokeh_charts import FOCUS, many_highlights
+from benchmarks.bokeh.charts import FOCUS, many_highlights
 from tests import surface_scenes
 from tests.pictures import ssim
 

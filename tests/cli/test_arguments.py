@@ -166,7 +166,7 @@ def test_help_promises_only_what_is_built(capsys):
 
 
 def test_version_is_the_manifests(capsys):
-    from addon.cli.version import version
+    from addon.cli.words.version import version
 
     with pytest.raises(SystemExit):
         parse(["--version"])

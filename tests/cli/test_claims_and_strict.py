@@ -198,7 +198,7 @@ def test_strict_holds_the_files_of_all_frames_back(aplanat, make_blend, tmp_path
 def test_strict_holds_files_back_from_what_only_the_drawing_finds(
     aplanat, make_blend, tmp_path, monkeypatch
 ):
-    from addon.engine.pipeline import FrameRenderer
+    from addon.engine.frame.pipeline import FrameRenderer
 
     monkeypatch.setattr(FrameRenderer, "report", property(lambda self: ("lights merged",)))
     blend = make_blend(writing_to(tmp_path))

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from addon.cli.arguments import parse
-from addon.cli.sampling_arguments import apply_sampling
+from addon.cli.render.sampling_arguments import apply_sampling
 from addon.errors import InputError
 
 RENDER = ["render", "scene.blend"]

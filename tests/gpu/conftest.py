@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from addon.engine.pipeline import FrameRenderer
-from addon.engine.plan import plan_frame
-from addon.engine.scene_buffers import SceneBuffers
+from addon.engine.drawing.scene_buffers import SceneBuffers
+from addon.engine.frame.pipeline import FrameRenderer
+from addon.engine.planning.plan import plan_frame
 from addon.errors import DeviceUnavailableError
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.scene.snapshot import (
+from addon.snapshot.scene import (
     Camera,
     Film,
     InstanceGroup,
@@ -22,7 +22,7 @@ from addon.scene.snapshot import (
     World,
     next_uid,
 )
-from addon.scene.surface_graph import emission_graph
+from addon.snapshot.surface_graph import emission_graph
 
 WORLD_COLOR = (0.125, 0.25, 0.5)
 

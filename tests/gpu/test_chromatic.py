@@ -5,22 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine.plan import plan_frame
-from addon.reference.chromatic import displaced
+from addon.engine.planning.plan import plan_frame
 from addon.sampling.chromatic import ChromaticAberration, Dispersion
 from addon.sampling.equalizer import band
 from addon.sampling.field_maps import FIELD_PRESETS, FieldMap, field_corner
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.scene.snapshot import ImageSnapshot, Sampling, World, next_uid
+from addon.snapshot.scene import ImageSnapshot, Sampling, World, next_uid
+from benchmarks.reference.chromatic import displaced
 
-from .conftest import (
-    LENS,
-    make_renderer,
-    render_snapshot,
-    some_triangles,
-    triangles_snapshot,
-)
+from .conftest import LENS, make_renderer, render_snapshot, some_triangles, triangles_snapshot
 from .test_reuse import FOCUS, picture, rounded, sheets_snapshot
 
 pytestmark = pytest.mark.usefixtures("gpu_context")

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.bokeh.distortion import distorted, undistorted
 from addon.device.readback import read_color
 from addon.device.targets import Targets, TargetSpec
-from addon.reference.distortion import cubic_sample, distorted_picture
+from addon.lens_bokeh.look.distortion import distorted, undistorted
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.scene.snapshot import BokehSettings, World
+from addon.snapshot.scene import BokehSettings, World
+from benchmarks.reference.distortion import cubic_sample, distorted_picture
 from tests.pictures import ssim
 
 from .conftest import make_renderer, render_snapshot, some_triangles, triangles_snapshot

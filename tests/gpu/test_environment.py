@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine.scene_buffers import SceneBuffers
-from addon.passes import environment
-from addon.scene.snapshot import ImageSnapshot, World, next_uid
+from addon.engine.drawing.scene_buffers import SceneBuffers
+from addon.passes.surface import environment
+from addon.snapshot.scene import ImageSnapshot, World, next_uid
 
 from .conftest import some_triangles, triangles_snapshot
 

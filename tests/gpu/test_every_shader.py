@@ -89,9 +89,9 @@ def test_what_the_compiler_leaves_out_is_passed_over_and_the_rest_is_set():
 
 # Functions that make infos of module constants, and of surfaces' and worlds' nodes.
 _ENUMERATED_ELSEWHERE = {
-    "addon.passes.clusters._info",
-    "addon.passes.environment_bake._info",
-    "addon.passes.surface.surface_info",
+    "addon.passes.bokeh.clusters._info",
+    "addon.passes.surface.environment_bake._info",
+    "addon.passes.surface.surface.surface_info",
 }
 
 

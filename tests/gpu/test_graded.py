@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine import graded_drawings
-from addon.engine.pipeline import FrameRenderer
-from addon.engine.plan import plan_frame
-from addon.engine.scene_buffers import SceneBuffers
-from addon.scene.mesh_levels import simplify
-from addon.scene.snapshot import Sampling
+from addon.engine.drawing import graded_drawings
+from addon.engine.drawing.scene_buffers import SceneBuffers
+from addon.engine.frame.pipeline import FrameRenderer
+from addon.engine.planning.plan import plan_frame
+from addon.levels.making.mesh_levels import simplify
+from addon.snapshot.scene import Sampling
 
 from .test_reuse import FOCUS, bumpy_sheet, sheets_snapshot
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine.plan import plan_frame
+from addon.engine.planning.plan import plan_frame
 from addon.sampling.thin_lens import ThinLens
-from addon.scene.snapshot import (
+from addon.snapshot.scene import (
     InstanceGroup,
     InstanceTable,
     MaterialSnapshot,
@@ -15,7 +15,7 @@ from addon.scene.snapshot import (
     Sampling,
     next_uid,
 )
-from addon.scene.surface_graph import emission_graph
+from addon.snapshot.surface_graph import emission_graph
 
 from .conftest import make_renderer, triangles_snapshot
 

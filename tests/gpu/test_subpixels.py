@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine.plan import plan_frame, subpixels
-from addon.scene.snapshot import InstanceGroup
+from addon.engine.planning.plan import plan_frame, subpixels
+from addon.snapshot.scene import InstanceGroup
 
 from .conftest import LENS, make_renderer, some_triangles, triangles_snapshot
 

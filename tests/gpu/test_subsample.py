@@ -7,7 +7,7 @@ from addon.device import geometry, readback
 from addon.device.targets import Targets, TargetSpec
 from addon.device.textures import texture_2d
 from addon.passes import pyramid, subsample
-from addon.reference import subsample as twin
+from benchmarks.reference import subsample as twin
 
 pytestmark = pytest.mark.usefixtures("gpu_context")
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from addon.engine.plan import plan_frame
-from addon.reference.rasterize import rasterize
+from addon.engine.planning.plan import plan_frame
+from benchmarks.reference.rasterize import rasterize
 
 from .conftest import (
     LENS,

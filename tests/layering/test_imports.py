@@ -260,7 +260,7 @@ def test_root_and_addon_import_without_blender():
         "import sys\n"
         "for name in ('bpy', 'gpu', 'mathutils'): sys.modules[name] = None\n"
         f"sys.path.insert(0, {str(REPOSITORY)!r})\n"
-        "import addon, addon.errors, addon.scene.snapshot, addon.engine.plan\n"
+        "import addon, addon.errors, addon.snapshot.scene, addon.engine.planning.plan\n"
         "import importlib.util as u\n"
         f"spec = u.spec_from_file_location('root', {str(REPOSITORY / '__init__.py')!r})\n"
         "sys.modules['root'] = u.module_from_spec(spec)\n"

@@ -1,8 +1,8 @@
-"""A few hundred mutated lens files; tests/benchmarks/fuzz_lens_files.py reads thousands."""
+"""A few hundred mutated lens files; benchmarks/tools/fuzz_lens_files.py reads thousands."""
 
 import pytest
 
-from tests.benchmarks import fuzz_lens_files as fuzz
+from benchmarks.tools import fuzz_lens_files as fuzz
 from tests.lens_io.lens_texts import SINGLET, ZOOM
 
 # One file may take this much more memory, in MiB: parsed text and findings of a file of 1 MiB.

@@ -3,8 +3,8 @@
 import re
 from pathlib import Path
 
-from addon.lens_io import lens_tables, material, surface_tables
-from addon.lens_io.toml_reader import parse_lens
+from addon.lens_io.toml import lens_tables, material, surface_tables
+from addon.lens_io.toml.toml_reader import parse_lens
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "lens-files.md"
 TEXT = PAGE.read_text(encoding="utf-8")

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from addon.lens_io.toml_reader import read_lens
-from addon.optics.aiming import chief_ray
-from addon.optics.beam import Beam
+from addon.lens_io.toml.toml_reader import read_lens
 from addon.optics.focus import focused
 from addon.optics.glass import REFERENCE_WAVELENGTH_NM
 from addon.optics.paraxial import first_order
-from addon.optics.trace import Rays, trace
+from addon.optics.rays.aiming import chief_ray
+from addon.optics.rays.beam import Beam
+from addon.optics.rays.trace import Rays, trace
 
 FILES = sorted((Path(__file__).resolve().parents[2] / "lens_profiles").glob("*.toml"))
 NAMES = [file.stem for file in FILES]

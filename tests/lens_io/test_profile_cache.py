@@ -13,7 +13,7 @@ import pytest
 from addon.errors import RenderCancelledError
 from addon.lens_io import profile_cache as module
 from addon.lens_io.profile_cache import content_hash, profile, profile_folder, prune, pupil_tables
-from addon.lens_io.toml_reader import read_lens
+from addon.lens_io.toml.toml_reader import read_lens
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
@@ -139,7 +139,7 @@ def test_many_writers_at_once_leave_one_good_file(shared, tmp_path):
         f"sys.path.insert(0, {str(REPOSITORY)!r})\n"
         "from pathlib import Path\n"
         "from addon.lens_io.profile_cache import profile\n"
-        "from addon.lens_io.toml_reader import read_lens\n"
+        "from addon.lens_io.toml.toml_reader import read_lens\n"
         "lens = read_lens(Path(sys.argv[1])).prescription\n"
         "profile(lens, folder=Path(sys.argv[2]), chromatic=False)\n"
     )

@@ -5,11 +5,11 @@ import os
 import numpy as np
 import pytest
 
-from addon.bokeh.mapping import pattern_row
-from addon.bokeh.profile import make_profile, profile_table
 from addon.errors import InputError, OutputError
+from addon.lens_bokeh.tables.mapping import pattern_row
+from addon.lens_bokeh.tables.profile import make_profile, profile_table
 from addon.lens_io.profile_file import StoredProfile, load_profile, save_profile
-from addon.lens_io.toml_reader import read_lens
+from addon.lens_io.toml.toml_reader import read_lens
 from addon.optics.prescription import FocusGroup
 
 

@@ -8,7 +8,7 @@ from addon.errors import LensFileError, OutputError
 from addon.lens_io.importers import ImportOptions
 from addon.lens_io.lens_shelf import LensShelf
 from addon.lens_io.library import SHIPPED_FOLDER
-from addon.lens_io.toml_reader import read_lens
+from addon.lens_io.toml.toml_reader import read_lens
 from addon.lens_io.user_lenses import copy_into, id_for, import_into, remove
 
 LENS = SHIPPED_FOLDER / "tessar-50mm-f2.8.toml"

@@ -6,7 +6,7 @@ import numpy as np
 
 from addon.optics.glass import AIR, ConstantGlass
 from addon.optics.prescription import Configuration, Surface
-from addon.optics.trace import Rays
+from addon.optics.rays.trace import Rays
 
 CROWN = ConstantGlass(1.5168)
 FLINT = ConstantGlass(1.7)

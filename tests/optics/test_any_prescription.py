@@ -13,9 +13,9 @@ from addon.optics.fresnel import Coating
 from addon.optics.glass import ConstantGlass
 from addon.optics.paraxial import first_order, image_distance
 from addon.optics.prescription import FocusGroup
-from addon.optics.pupil import pupil_outline, pupil_rays
-from addon.optics.trace import Rays, trace
-from addon.optics.vignetting import vignetting
+from addon.optics.rays.pupil import pupil_outline, pupil_rays
+from addon.optics.rays.trace import Rays, trace
+from addon.optics.rays.vignetting import vignetting
 from tests.optics.lenses import biconvex, symmetric, triplet
 
 MAGNITUDES = (1e-300, 1e-30, 1e-8, 1e-3, 1.0, 1e3, 1e8, 1e30, 1e160, 1e300, 1.7e308)

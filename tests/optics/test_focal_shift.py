@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from addon.errors import PrescriptionError
-from addon.lens_io.toml_reader import read_lens
+from addon.lens_io.toml.toml_reader import read_lens
 from addon.optics.focal_shift import equivalent_focal_lengths
 from addon.optics.glass import AIR, SellmeierGlass
 from addon.optics.paraxial import first_order, image_distance

@@ -10,7 +10,7 @@ from addon.optics.focus import focused
 from addon.optics.glass import REFERENCE_WAVELENGTH_NM
 from addon.optics.paraxial import first_order, image_distance
 from addon.optics.prescription import FocusGroup
-from addon.optics.trace import trace
+from addon.optics.rays.trace import trace
 from tests.optics.lenses import CROWN, lens, rays, surface, triplet
 
 # Triplet: 1-2 front lens, 3 stop, 4-6 doublet.

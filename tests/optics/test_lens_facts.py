@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from addon.errors import PrescriptionError
-from addon.lens_io.toml_reader import read_lens
+from addon.lens_io.toml.toml_reader import read_lens
 from addon.optics.lens_facts import lens_facts
 
 

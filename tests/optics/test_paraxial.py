@@ -8,14 +8,8 @@ import pytest
 
 from addon.errors import PrescriptionError
 from addon.optics.glass import REFERENCE_WAVELENGTH_NM, AbbeGlass, ConstantGlass
-from addon.optics.paraxial import (
-    entrance_pupil,
-    first_order,
-    image_distance,
-    magnification,
-    power,
-)
-from addon.optics.trace import trace
+from addon.optics.paraxial import entrance_pupil, first_order, image_distance, magnification, power
+from addon.optics.rays.trace import trace
 from tests.optics.lenses import CROWN, FLINT, biconvex, lens, parallel, rays, surface, triplet
 
 NM = REFERENCE_WAVELENGTH_NM

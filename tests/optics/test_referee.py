@@ -5,11 +5,11 @@ import json
 import numpy as np
 import pytest
 
-from addon.lens_io.toml_reader import read_lens
+from addon.lens_io.toml.toml_reader import read_lens
 from addon.optics.media import indices
 from addon.optics.paraxial import first_order, image_distance, magnification
-from addon.optics.trace import Rays, RayStatus, trace
-from addon.optics.vignetting import vignetting
+from addon.optics.rays.trace import Rays, RayStatus, trace
+from addon.optics.rays.vignetting import vignetting
 
 LENSES = (
     "aspheric-30mm-f2",

@@ -3,13 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.plots.chromatic_pictures import (
-    encoded,
-    map_curve,
-    map_disc,
-    map_range,
-    spectrum_colors,
-)
+from addon.plots.chromatic_pictures import encoded, map_curve, map_disc, map_range, spectrum_colors
 from addon.sampling.field_maps import FIELD_PRESETS, FieldMap
 
 MAPS = {f"{name} {i}": maps[1 + i] for name, maps in FIELD_PRESETS.items() for i in range(2)}

@@ -5,16 +5,11 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from addon.lens_io.toml_reader import read_lens
+from addon.lens_io.toml.toml_reader import read_lens
 from addon.optics.glass import AIR, ConstantGlass
 from addon.optics.paraxial import first_order
 from addon.optics.prescription import Configuration, Surface
-from addon.plots.cross_section import (
-    draw_cross_section,
-    element_outlines,
-    ray_paths,
-    sensor_plane,
-)
+from addon.plots.cross_section import draw_cross_section, element_outlines, ray_paths, sensor_plane
 
 
 def singlet(**changes):

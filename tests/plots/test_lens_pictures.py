@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from addon.bokeh.iris_mask import BladedIris
 from addon.errors import RenderCancelledError
+from addon.lens_bokeh.look.iris_mask import BladedIris
 from addon.lens_io.library import SHIPPED_FOLDER
-from addon.lens_io.toml_reader import read_lens
+from addon.lens_io.toml.toml_reader import read_lens
 from addon.plots import lens_pictures
 from addon.plots.lens_pictures import SHEET_TILE, THUMBNAIL_SIZE, bokeh_sheet, thumbnail
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from addon.cli.bench_bokeh_charts import LAMP_DEPTH, half_hidden, many_highlights
-from addon.cli.bench_bokeh_frames import PASSES
 from addon.engine import outcome
+from benchmarks.bokeh.charts import LAMP_DEPTH, half_hidden, many_highlights
+from benchmarks.bokeh.frames import PASSES
 from tests.pictures import energy_ratio, save_side_by_side, ssim
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")

@@ -6,8 +6,12 @@
 import numpy as np
 import pytest
 
-from addon.cli import chromatic_charts
-from addon.cli.bench_chromatic import (
+from addon.device.context import ensure_context
+from addon.errors import DeviceUnavailableError
+from addon.sampling.chromatic import RGB_WAVELENGTHS_NM
+from addon.sampling.equalizer import band
+from addon.sampling.field_maps import FieldMap
+from benchmarks.benches.chromatic import (
     EVEN,
     SCENE_AXIAL,
     aberration,
@@ -16,15 +20,11 @@ from addon.cli.bench_chromatic import (
     sampled_plan,
     with_aberration,
 )
-from addon.cli.bench_frames import BenchScene
-from addon.cli.cycles_channels import channels_of_cycles
-from addon.cli.picture_metrics import compare
-from addon.cli.shared_scenes import shared_scene
-from addon.device.context import ensure_context
-from addon.errors import DeviceUnavailableError
-from addon.sampling.chromatic import RGB_WAVELENGTHS_NM
-from addon.sampling.equalizer import band
-from addon.sampling.field_maps import FieldMap
+from benchmarks.benches.cycles_channels import channels_of_cycles
+from benchmarks.benches.frames import BenchScene
+from benchmarks.referees import chromatic_charts
+from benchmarks.referees.picture_metrics import compare
+from benchmarks.referees.shared_scenes import shared_scene
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
@@ -77,7 +77,7 @@ def test_points_agree_with_cycles_channel_by_channel(bench):
 
 
 def test_balls_agree_with_cycles_channel_by_channel(bench, shared):
-    from addon.cli.bench_scenes import Case, open_scene
+    from benchmarks.benches.scenes import Case, open_scene
 
     file = shared_scene("balls", "flat", _Quiet())
     scene = open_scene(Case("balls", file, 1536, {}), RESOLUTION)
@@ -87,7 +87,7 @@ def test_balls_agree_with_cycles_channel_by_channel(bench, shared):
 
 
 def test_few_samples_of_the_spectrum_are_near_many(bench, shared):
-    from addon.cli.bench_scenes import Case, open_scene
+    from benchmarks.benches.scenes import Case, open_scene
 
     file = shared_scene("toys", "flat", _Quiet())
     scene = open_scene(Case("toys", file, 128, {}), RESOLUTION)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from addon.engine import level_store
+from addon.levels import level_store
 from tests import frame_orders
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")

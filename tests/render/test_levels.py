@@ -8,7 +8,9 @@ import math
 import numpy as np
 import pytest
 
-from addon.engine import levels, outcome, scene_drawing
+from addon.engine import outcome
+from addon.engine.drawing import scene_drawing
+from addon.levels import choosing
 from tests.pictures import energy_ratio, save_side_by_side, srgb
 from tests.surface_scenes import Tree
 
@@ -156,7 +158,7 @@ def test_levels_that_are_forced_keep_the_light(toys, monkeypatch, tmp_path, leve
     def forced(seen, _triangles, _plan, _bias=0.0):
         return np.full(len(seen.radius), float(level))
 
-    for module in (levels, scene_drawing):
+    for module in (choosing, scene_drawing):
         monkeypatch.setattr(module, "choose_levels", forced)
         monkeypatch.setattr(module, "allowed_levels", lambda chosen, _wanted: chosen)
     picture, work = render(toys)

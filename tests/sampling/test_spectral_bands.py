@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.lens_io.dispersion import glass_dispersion
+from addon.lens_io.glasses.dispersion import glass_dispersion
 from addon.sampling.chromatic import ChromaticAberration, Dispersion
 from addon.sampling.equalizer import EQUALIZER_PRESETS
 from addon.sampling.spectral_bands import band_levels, spectral_bands, spectral_length

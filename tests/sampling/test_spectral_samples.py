@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.lens_io.dispersion import glass_dispersion
+from addon.lens_io.glasses.dispersion import glass_dispersion
 from addon.sampling.chromatic import ChromaticAberration
 from addon.sampling.equalizer import EQUALIZER_PRESETS, FLAT, SpectralEqualizer, band
 from addon.sampling.halton import halton

@@ -7,9 +7,9 @@ know exactly what a new one reads.
 import numpy as np
 import pytest
 
-from addon.scene.changes import Change, compare_content
 from addon.scene.extract import SceneExtractor
-from addon.scene.meshes import same_content
+from addon.scene.geometry.meshes import same_content
+from addon.snapshot.changes import Change, compare_content
 from tests import scene_builders as scenes
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from addon.scene.extract import SceneExtractor
-from addon.scene.meshes import read_mesh
+from addon.scene.geometry.meshes import read_mesh
 from tests import scene_builders as scenes
 
 

@@ -5,17 +5,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from addon.bokeh.appearance import Appearance
-from addon.bokeh.grain import Grain
-from addon.bokeh.iris_mask import BladedIris
-from addon.bokeh.vignetting_model import cat_eye
-from addon.engine.bokeh_marks import FATE_COLORS
-from addon.passes.bokeh_marks import FATES
-from addon.ui import bokeh_panel, bokeh_presets
-from addon.ui.bokeh_panel import counts_as_lines
-from addon.ui.bokeh_previews import disc_pictures
-from addon.ui.bokeh_properties import APPEARANCE_NAMES
-from addon.ui.lens_memory import values_of
+from addon.engine.bokeh.marks import FATE_COLORS
+from addon.lens_bokeh.look.appearance import Appearance
+from addon.lens_bokeh.look.grain import Grain
+from addon.lens_bokeh.look.iris_mask import BladedIris
+from addon.lens_bokeh.look.vignetting_model import cat_eye
+from addon.passes.bokeh.marks import FATES
+from addon.ui.panels import bokeh_panel
+from addon.ui.panels.bokeh_panel import counts_as_lines
+from addon.ui.presets import bokeh_presets
+from addon.ui.previews.bokeh_previews import disc_pictures
+from addon.ui.properties.bokeh_properties import APPEARANCE_NAMES
+from addon.ui.properties.lens_memory import values_of
 
 TESSAR, PLANAR = "tessar-50mm-f2.8", "planar-50mm-f1.4"
 MENU = "APLANAT_PT_bokeh_presets"

@@ -6,8 +6,10 @@ import pytest
 
 from addon.lens_io.lens_shelf import LensShelf
 from addon.lens_io.library import SHIPPED_FOLDER
-from addon.scene import lenses
-from addon.ui import camera_properties, lens_import, lens_operators, lens_panel
+from addon.scene.camera import lenses
+from addon.ui.operators import lens_import, lens_operators
+from addon.ui.panels import lens_panel
+from addon.ui.properties import camera_properties
 
 TESSAR, ZOOM = "tessar-50mm-f2.8", "zoom-36-69mm-f3.5"
 CHANGING = (
@@ -239,7 +241,7 @@ def test_operators_can_be_undone_and_explain_themselves():
 
 
 def test_nothing_is_made_in_the_background_of_a_blender_without_windows(camera):
-    from addon.ui import background
+    from addon.ui.jobs import background
 
     camera.aplanat.lens_choice = f"lens:{TESSAR}"
     assert background.progress() is None

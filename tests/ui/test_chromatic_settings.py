@@ -7,10 +7,12 @@ import pytest
 
 from addon.sampling.equalizer import EQUALIZER_PRESETS
 from addon.sampling.field_maps import FIELD_PRESETS, FieldMap
-from addon.scene.chromatic import read_field_map
-from addon.scene.drawn_curves import CURVE_NAMES, EQUALIZER, curve_points, curve_values
-from addon.ui import chromatic_curves, chromatic_operators, chromatic_panel, chromatic_presets
-from addon.ui.chromatic_properties import SETTING_NAMES, values_as_dict
+from addon.scene.camera.chromatic import read_field_map
+from addon.scene.camera.drawn_curves import CURVE_NAMES, EQUALIZER, curve_points, curve_values
+from addon.ui.operators import chromatic_curves, chromatic_operators
+from addon.ui.panels import chromatic_panel
+from addon.ui.presets import chromatic_presets
+from addon.ui.properties.chromatic_properties import SETTING_NAMES, values_as_dict
 
 TESSAR, PLANAR = "tessar-50mm-f2.8", "planar-50mm-f1.4"
 MENU = "APLANAT_PT_chromatic_presets"

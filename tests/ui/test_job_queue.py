@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from addon.ui.job_queue import JobQueue
+from addon.ui.jobs.job_queue import JobQueue
 
 # Seconds; nothing here takes a hundredth of it.
 PATIENCE = 20.0

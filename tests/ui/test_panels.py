@@ -77,7 +77,7 @@ def test_every_property_has_a_name_a_tooltip_and_bounds(scene):
 
 
 def test_panels_of_ours_have_a_poll_for_the_engine(scene, aplanat_bpy):
-    from addon.ui import panels
+    from addon.ui.panels import panels
 
     for panel in panels.CLASSES:
         assert panel.is_registered

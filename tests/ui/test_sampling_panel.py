@@ -2,7 +2,7 @@
 
 import pytest
 
-from addon.engine.tile_sampling import SamplingReport
+from addon.engine.frame.tile_sampling import SamplingReport
 
 
 @pytest.mark.parametrize("name", ["viewport", "render", "advanced"])
@@ -13,7 +13,7 @@ def test_sections_belong_to_the_panel(aplanat_bpy, name):
 
 
 def test_the_panel_tells_the_error_that_was_reached(aplanat_bpy):
-    from addon.ui.sampling_panel import sampling_as_lines
+    from addon.ui.panels.sampling_panel import sampling_as_lines
 
     report = SamplingReport(0.01, 0.0093, (16, 48.4, 128), 60, 12)
     assert sampling_as_lines(report) == [

@@ -20,7 +20,7 @@ from addon.errors import AplanatError
 
 from . import agreement
 from .blenders_part import digests_of_scenes
-from .script import build
+from .scenes.script import build
 
 # Blender's switch of each pass, and the pass.
 LAYER_PASSES = {

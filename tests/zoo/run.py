@@ -14,7 +14,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from .script import script
+from .scenes.script import script
 from .shrink import shrink
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -434,7 +434,7 @@ def _script_of(seed, number):
 
     import addon
 
-    from .recipe import make_recipe
+    from .scenes.recipe import make_recipe
 
     addon.register()
     return script(make_recipe(bpy, seed, number), f"Scene {seed}:{number}.")

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from addon.engine import final_render
-from addon.engine.pipeline import FrameRenderer
+from addon.engine.frame.pipeline import FrameRenderer
 from tests.zoo import agreement
 from tests.zoo.judge import Fault, judge
-from tests.zoo.script import build
+from tests.zoo.scenes.script import build
 
 PLAIN = {
     "scene": {"render.resolution_x": 8, "render.resolution_y": 6},

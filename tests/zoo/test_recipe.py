@@ -6,8 +6,8 @@ import random
 import pytest
 
 from tests.zoo.judge import LAYER_PASSES, OWN_PASSES
-from tests.zoo.random_settings import draw_settings
-from tests.zoo.recipe import make_recipe
+from tests.zoo.scenes.random_settings import draw_settings
+from tests.zoo.scenes.recipe import make_recipe
 
 
 def many(bpy, count=60):

@@ -7,8 +7,8 @@ import numpy as np
 
 from tests.conftest import REPOSITORY
 from tests.zoo.judge import render
-from tests.zoo.recipe import make_recipe
-from tests.zoo.script import build, script
+from tests.zoo.scenes.recipe import make_recipe
+from tests.zoo.scenes.script import build, script
 
 
 def summary(bpy):

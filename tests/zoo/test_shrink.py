@@ -2,7 +2,7 @@
 
 import json
 
-from tests.zoo.recipe import make_recipe
+from tests.zoo.scenes.recipe import make_recipe
 from tests.zoo.shrink import reductions, shrink
 
 

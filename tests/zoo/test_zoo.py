@@ -3,8 +3,8 @@
 import pytest
 
 from tests.zoo.judge import judge
-from tests.zoo.recipe import make_recipe
-from tests.zoo.script import script
+from tests.zoo.scenes.recipe import make_recipe
+from tests.zoo.scenes.script import script
 
 SEED = 1
 COUNT = 40

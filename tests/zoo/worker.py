@@ -23,7 +23,7 @@ def main():
     import addon
 
     from .judge import Fault, judge
-    from .recipe import make_recipe
+    from .scenes.recipe import make_recipe
 
     addon.register()
     print(json.dumps({"ready": True}), file=answers)

@@ -1,7 +1,7 @@
 """Importers of foreign lens files: pbrt, Zemax, CODE V, optical-bench tables."""
 
+from .draft.options import ImportOptions, glass_option
 from .import_lens import ENDINGS, ImportedLens, import_bytes, import_lens
-from .options import ImportOptions, glass_option
 
 __all__ = [
     "ENDINGS",

@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 from ...errors import LensFileError, PrescriptionError
 from ...optics.paraxial import first_order
 from ...optics.prescription import Configuration, Prescription, Surface, ZoomPosition
-from ..findings import Finding
-from ..lens_tables import LONGEST_NAME
-from ..surface_tables import FEWEST_SURFACES, MOST_SURFACES
-from ..toml_reader import parse_lens
-from ..toml_writer import lens_toml
-from .draft import DraftPosition
+from ..toml.findings import Finding
+from ..toml.lens_tables import LONGEST_NAME
+from ..toml.surface_tables import FEWEST_SURFACES, MOST_SURFACES
+from ..toml.toml_reader import parse_lens
+from ..toml.toml_writer import lens_toml
+from .draft.draft import DraftPosition
 from .sizes import UNKNOWN_RIM, FileValueError, fields_of, half_field, rims, stop_radius
 
 # Focal lengths nearer than this, as a share, are one: the distances show how the lens focuses.

@@ -7,11 +7,13 @@ import numpy as np
 
 from ...errors import LensFileError
 from ...optics.prescription import Prescription
-from ..findings import Finding
-from . import codev, optical_bench, pbrt, zemax
+from ..toml.findings import Finding
+from . import optical_bench, pbrt
+from .codev import codev
 from .completion import complete
-from .options import ImportOptions
-from .source_text import MOST_LINES, clean, decode, numbered_lines, read_source, size_finding
+from .draft.options import ImportOptions
+from .draft.source_text import MOST_LINES, clean, decode, numbered_lines, read_source, size_finding
+from .zemax import zemax
 
 # In the order in which their contents are told apart: from the most to the least distinct.
 FORMATS = (optical_bench, zemax, codev, pbrt)

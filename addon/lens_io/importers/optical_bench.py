@@ -16,8 +16,8 @@ import math
 import re
 
 from ...optics.glass import REFERENCE_WAVELENGTH_NM, AbbeGlass, ConstantGlass
-from .draft import Draft, DraftPosition, DraftSurface, Field, Opening
-from .source_text import clean, excerpt, number
+from .draft.draft import Draft, DraftPosition, DraftSurface, Field, Opening
+from .draft.source_text import clean, excerpt, number
 
 FORMAT_NAME = "optical-bench table"
 _SECTIONS = (

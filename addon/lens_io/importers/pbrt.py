@@ -10,8 +10,8 @@ tables tell no dispersion, field, f-number or image distance.
 import math
 
 from ...optics.glass import AIR, REFERENCE_WAVELENGTH_NM, ConstantGlass
-from .draft import Draft, DraftSurface, Opening
-from .source_text import clean, excerpt, number
+from .draft.draft import Draft, DraftSurface, Opening
+from .draft.source_text import clean, excerpt, number
 
 FORMAT_NAME = "pbrt lens table"
 _COLUMNS = ("radius", "thickness", "index", "aperture")

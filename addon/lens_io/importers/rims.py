@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from ...optics.aiming import aim
-from ...optics.beam import Beam
 from ...optics.glass import REFERENCE_WAVELENGTH_NM
-from ...optics.pupil import grid_of, passing
+from ...optics.rays.aiming import aim
+from ...optics.rays.beam import Beam
+from ...optics.rays.pupil import grid_of, passing
+from ...optics.rays.trace import Rays, trace
 from ...optics.surfaces import sag
-from ...optics.trace import Rays, trace
 
 # A lens covers the field where at least this share of the axial beam gets through, two stops less
 # than on the axis. At the corners that their makers give, thirty lenses of published prescriptions

@@ -5,13 +5,13 @@ import math
 import pytest
 
 from addon.errors import InputError, LensFileError
-from addon.lens_io.glass_catalog import catalog_glass
+from addon.lens_io.glasses.glass_catalog import catalog_glass
 from addon.lens_io.importers import ImportOptions, glass_option, import_bytes
-from addon.lens_io.toml_reader import parse_lens
-from addon.lens_io.toml_writer import lens_toml
+from addon.lens_io.toml.toml_reader import parse_lens
+from addon.lens_io.toml.toml_writer import lens_toml
 from addon.optics.paraxial import first_order
 from addon.optics.prescription import may_overlap
-from addon.optics.trace import Rays, trace
+from addon.optics.rays.trace import Rays, trace
 from tests.lens_io.importers.foreign_texts import BENCH, CODEV, ND, PBRT, RADIUS, VD, ZEMAX
 
 # The singlet of the texts: its paraxial values by the equations of a thick lens.

@@ -8,8 +8,8 @@ import pytest
 from addon.errors import LensFileError
 from addon.lens_io.importers import ImportOptions, glass_option, import_lens
 from addon.lens_io.library import Library
-from addon.lens_io.toml_reader import parse_lens, read_lens
-from addon.lens_io.toml_writer import lens_toml
+from addon.lens_io.toml.toml_reader import parse_lens, read_lens
+from addon.lens_io.toml.toml_writer import lens_toml
 from addon.optics.glass import REFERENCE_WAVELENGTH_NM, Air
 from addon.optics.paraxial import first_order
 
@@ -156,7 +156,7 @@ def test_sequence_without_rdm_needs_the_option(samples, lens):
 
 
 def test_no_vignetting_within_rims_that_were_computed(samples):
-    from addon.optics.vignetting import vignetting
+    from addon.optics.rays.vignetting import vignetting
 
     lens = import_lens(
         samples / "cooke-triplet-no-rdm.seq", ImportOptions(radii="radius")

@@ -1,0 +1,167 @@
+"""The sampling options of `aplanat render`: all that its panels for quality have."""
+
+from ...errors import InputError
+from ..words.option_values import number_between, positive_number, whole_number
+
+# Bounds of Blender's and our own properties.
+MAX_SAMPLES = 65536
+MAX_SEED = 2**31 - 1
+MAX_FILTER_PX = 500.0
+LEAST_ERROR, LARGEST_ERROR = 0.0005, 0.5
+MAX_BIAS = 16.0
+MAX_CELLS = 8
+MIN_TRIANGLES, MAX_TRIANGLES = 4, 10_000_000
+
+# What only the adaptive method has, by the name in the namespace.
+_ADAPTIVE = (
+    *("subsamples", "target_error", "min_samples", "max_samples", "level_bias", "no_levels"),
+    *("min_triangles", "sharing_cells"),
+)
+# What belongs to a noise threshold, and what does to a number of samples.
+_AUTOMATIC = ("target_error", "min_samples", "max_samples")
+_FIXED = ("samples", "subsamples")
+
+
+def add_sampling(parser):
+    """Add the options.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+    """
+    add = parser.add_argument
+    samples = whole_number(1, MAX_SAMPLES)
+    add(
+        "--target-error",
+        metavar="X",
+        type=number_between(LEAST_ERROR, LARGEST_ERROR),
+        help="adaptive method: noise threshold; samples are drawn, where they are needed, until the"
+        " picture differs from a perfect one by no more than this (1 - SSIM; 0.02 draft, 0.01"
+        " clean)",
+    )
+    add("--min-samples", metavar="N", type=samples, help="with a noise threshold: at least so many")
+    add("--max-samples", metavar="N", type=samples, help="with a noise threshold: at most so many")
+    add(
+        "--time-limit",
+        metavar="SECONDS",
+        type=positive_number(),
+        help="stop sampling a view layer after so long; the noise then depends on the machine",
+    )
+    add("--samples", metavar="N", type=samples, help="lens samples, instead of a noise threshold")
+    add(
+        "--subsamples",
+        metavar="S",
+        type=whole_number(0, 64),
+        help="adaptive method without a noise threshold: places on the lens that a sample stands"
+        " for besides its own",
+    )
+    add(
+        "--sharing-cells",
+        metavar="N",
+        type=whole_number(0, MAX_CELLS),
+        help="adaptive method: places along a pixel that are told apart when samples share"
+        " drawings of what is in focus; 0 shares none",
+    )
+    add(
+        "--level-bias",
+        metavar="X",
+        type=number_between(-MAX_BIAS, MAX_BIAS),
+        help="adaptive method: levels of detail by which blurred objects are drawn finer",
+    )
+    add("--no-levels", action="store_true", help="adaptive method: everything in full detail")
+    add(
+        "--min-triangles",
+        metavar="N",
+        type=whole_number(MIN_TRIANGLES, MAX_TRIANGLES),
+        help="adaptive method: no level of detail has fewer",
+    )
+    add("--seed", metavar="N", type=whole_number(0, MAX_SEED), help="pattern of samples")
+    add("--filter", choices=("box", "blackman-harris"), help="pixel filter")
+    add(
+        "--filter-size",
+        metavar="PX",
+        type=positive_number(MAX_FILTER_PX),
+        help="width of the pixel filter, in pixels",
+    )
+
+
+def check_sampling(arguments):
+    """Refuse options that exclude each other.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+
+    Raises
+    ------
+    InputError
+    """
+    if arguments.method == "reference":
+        for name in _given(arguments, _ADAPTIVE):
+            raise InputError(
+                f"{name} belongs to --method adaptive; the reference method has none: it draws"
+                " everything in full detail, --samples times"
+            )
+    automatic, fixed = _given(arguments, _AUTOMATIC), _given(arguments, _FIXED)
+    if automatic and fixed:
+        raise InputError(
+            f"{automatic[0]} and {fixed[0]} exclude each other: give a noise threshold, or a number"
+            " of samples"
+        )
+    least, most = arguments.min_samples, arguments.max_samples
+    if least is not None and most is not None and least > most:
+        raise InputError(f"--min-samples {least} is more than --max-samples {most}")
+    if arguments.no_levels and (
+        arguments.level_bias is not None or arguments.min_triangles is not None
+    ):
+        raise InputError("--no-levels leaves nothing for --level-bias and --min-triangles to do")
+
+
+def _given(arguments, names):
+    return [
+        "--" + name.replace("_", "-")
+        for name in names
+        if getattr(arguments, name) not in (None, False)
+    ]
+
+
+def apply_sampling(settings, render, arguments):
+    """Put the options in force.
+
+    Parameters
+    ----------
+    settings : AplanatSceneSettings
+    render : bpy.types.RenderSettings
+    arguments : argparse.Namespace
+    """
+    if arguments.method:
+        settings.method = arguments.method.upper()
+    if _given(arguments, _FIXED):
+        settings.use_target_error = False
+    if _given(arguments, _AUTOMATIC):
+        settings.use_target_error = True
+    for option, name in (
+        ("samples", "render_samples"),
+        ("subsamples", "subsamples"),
+        ("target_error", "render_error"),
+        ("min_samples", "render_min_samples"),
+        ("max_samples", "render_max_samples"),
+        ("time_limit", "render_time_limit"),
+        ("level_bias", "level_bias"),
+        ("min_triangles", "least_triangles"),
+        ("seed", "seed"),
+    ):
+        value = getattr(arguments, option)
+        if value is not None:
+            setattr(settings, name, value)
+    if arguments.no_levels:
+        settings.use_levels = False
+    elif arguments.level_bias is not None or arguments.min_triangles is not None:
+        settings.use_levels = True
+    if arguments.sharing_cells is not None:
+        settings.use_sharing = arguments.sharing_cells > 0
+        settings.sharing_cells = max(arguments.sharing_cells, 1)
+    if arguments.filter:
+        settings.pixel_filter = arguments.filter.upper().replace("-", "_")
+    if arguments.filter_size:
+        render.filter_size = arguments.filter_size

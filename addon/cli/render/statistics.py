@@ -1,0 +1,269 @@
+"""What `--stats` and `--json` tell; the keys are described in docs/command-line.md."""
+
+import sys
+
+import bpy
+
+from ...device.context import device_name
+from ...engine.views import views_of
+from ...lens_bokeh.look.iris_mask import PictureIris
+from ...sampling.chromatic import RGB_WAVELENGTHS_NM
+from ...scene.camera.bokeh import corner_tangent, read_bokeh
+from ...scene.camera.camera import focus_distance
+from ...scene.camera.chromatic import read_chromatic
+from ...scene.camera.lenses import read_real_lens
+from ...scene.settings import read_passes
+from ..words.version import version
+
+
+def settings_in_force(scene, arguments=None):
+    """Return every setting that shapes a frame.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+        At the frame in question.
+    arguments : argparse.Namespace, optional
+        Of `render`.
+
+    Returns
+    -------
+    dict
+    """
+    render, own = scene.render, scene.aplanat
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    camera = scene.camera.evaluated_get(depsgraph)
+    data = camera.data
+    dof = data.dof
+    focus = dof.focus_object
+    lens, _ = read_real_lens(data)
+    automatic = own.method == "ADAPTIVE" and own.use_target_error
+    return {
+        "method": own.method.lower(),
+        "target_error": own.render_error if automatic else None,
+        "min_samples": own.render_min_samples if automatic else None,
+        "max_samples": own.render_max_samples if automatic else None,
+        "time_limit_s": own.render_time_limit or None,
+        "samples": None if automatic else own.render_samples,
+        "subsamples": _subsamples(own, automatic),
+        "share_drawings": own.sharing_cells if own.use_sharing else 0,
+        "levels_of_detail": own.use_levels,
+        "level_bias": own.level_bias,
+        "least_triangles": own.least_triangles,
+        "seed": own.seed,
+        "filter": own.pixel_filter.lower().replace("_", "-"),
+        "filter_size_px": render.filter_size,
+        "resolution": [
+            render.resolution_x * render.resolution_percentage // 100,
+            render.resolution_y * render.resolution_percentage // 100,
+        ],
+        "pixel_aspect": render.pixel_aspect_x / render.pixel_aspect_y,
+        "border": (
+            [render.border_min_x, render.border_min_y, render.border_max_x, render.border_max_y]
+            if render.use_border
+            else None
+        ),
+        "crop_to_border": render.use_border and render.use_crop_to_border,
+        "film_transparent": render.film_transparent,
+        "simplify": render.use_simplify,
+        "scene": scene.name,
+        "view_layers": [layer.name for layer in scene.view_layers if layer.use],
+        "passes": {
+            layer.name: list(read_passes(layer)) for layer in scene.view_layers if layer.use
+        },
+        "views": [view.name for view in views_of(None, scene) if view] or None,
+        "stereo": _stereo(render, data),
+        "compositing": bool(render.use_compositing and scene.compositing_node_group),
+        "compositor_precision": render.compositor_precision.lower(),
+        "camera": camera.name,
+        "camera_type": data.type.lower(),
+        "focal_length_mm": data.lens if data.type == "PERSP" else None,
+        "sensor_mm": [data.sensor_width, data.sensor_height],
+        "sensor_fit": data.sensor_fit.lower(),
+        "shift": [data.shift_x, data.shift_y],
+        "clip_m": [data.clip_start, data.clip_end],
+        "depth_of_field": dof.use_dof,
+        "lens": lens.id if lens else None,
+        "zoom_position": lens.label if lens else None,
+        "fstop": lens.f_number if lens else dof.aperture_fstop,
+        "focus_object": focus.name if focus else None,
+        "focus_distance_m": focus_distance(depsgraph, camera) if dof.use_dof else None,
+        "aperture_blades": dof.aperture_blades,
+        "aperture_rotation": dof.aperture_rotation,
+        "aperture_ratio": dof.aperture_ratio,
+        "bokeh": _bokeh(scene, data, lens),
+        "chromatic": _chromatic(data, lens),
+        "amplify_whites": scene.world.aplanat.amplification if scene.world else 0.0,
+        "view_transform": scene.view_settings.view_transform,
+        "look": scene.view_settings.look,
+        "exposure": scene.view_settings.exposure,
+        "gamma": scene.view_settings.gamma,
+        "working_space": bpy.data.colorspace.working_space,
+        "no_bokeh": bool(arguments and arguments.no_bokeh),
+        "no_chromatic": bool(arguments and arguments.no_chromatic),
+    }
+
+
+def _stereo(render, data):
+    if not render.use_multiview or render.views_format != "STEREO_3D":
+        return None
+    stereo = data.stereo
+    return {
+        "convergence": stereo.convergence_mode.lower(),
+        "convergence_distance_m": stereo.convergence_distance,
+        "interocular_distance_m": stereo.interocular_distance,
+        "pivot": stereo.pivot.lower(),
+    }
+
+
+def _bokeh(scene, data, lens):
+    own = scene.aplanat
+    bokeh, _ = read_bokeh(data, lens, corner_tangent(data, scene))
+    if bokeh is None or (own.method == "REFERENCE" and not own.use_reference_bokeh):
+        return None
+    look = bokeh.appearance
+    picture = isinstance(look.iris, PictureIris)
+    return {
+        "threshold": bokeh.threshold,
+        "gain": bokeh.gain,
+        "model": bokeh.model.lower(),
+        "cluster_levels": bokeh.cluster_levels if bokeh.model == "CLUSTERED" else 0,
+        "similarity": bokeh.similarity,
+        "global_merge": bokeh.global_merge,
+        "visibility": bokeh.visibility.lower(),
+        "debug_view": bokeh.debug_view.lower(),
+        "layers": bokeh.layers,
+        "lens_views": bokeh.lens_views,
+        "overscan": bokeh.overscan,
+        "world": bokeh.world,
+        "hardness": look.edge,
+        "profile_strength": bokeh.profile_strength if lens and lens.shapes_bokeh else None,
+        "iris_image": data.aplanat.bokeh.iris_image.name if picture else None,
+        "blade_curvature": None if picture else look.iris.curvature,
+        "vignetting": bokeh.vignetting.lower(),
+        "distortion": bokeh.distortion,
+        "grain": look.grain.strength if look.grain else 0.0,
+        "dust": look.grain.dust if look.grain else 0,
+        "diffraction": look.diffraction.strength if look.diffraction else 0.0,
+        "onion": look.onion.contrast if look.onion else 0.0,
+    }
+
+
+def _chromatic(data, lens):
+    found, _ = read_chromatic(data, lens)
+    if found is None:
+        return None
+    shortest, longest = found.wavelength_range
+    return {
+        "mode": found.mode.lower(),
+        "axial": found.axial,
+        "lateral_per_um": found.lateral,
+        "axial_map": found.axial_map.text,
+        "lateral_map": found.lateral_map.text,
+        "wavelengths_nm": RGB_WAVELENGTHS_NM if found.mode == "RGB" else [shortest, longest],
+        "focal_length_m": found.focal_length,
+        # Of the shortest wavelength over the longest's, before the strength.
+        "focal_ratio": float(found.dispersion.ratio(shortest, found.reference_nm)),
+        "equalizer": (
+            None
+            if found.mode == "RGB" or found.equalizer.is_flat
+            else [found.equalizer.wavelengths_nm, found.equalizer.weights]
+        ),
+    }
+
+
+def _subsamples(own, automatic):
+    if own.method != "ADAPTIVE":
+        return 0
+    # With a noise threshold they follow from the blur; the work tells how many there were.
+    return None if automatic else own.subsamples
+
+
+def work(statistics):
+    """Return a render's `RenderStatistics` as numbers for JSON."""
+    found = statistics.highlights
+    return {
+        "seconds": {stage: round(seconds, 6) for stage, seconds in statistics.seconds.items()},
+        "lens_samples": statistics.lens_samples,
+        "subsamples": statistics.subsamples,
+        "subpixels": statistics.subpixels,
+        "noise": _noise(statistics.noise),
+        "draw_calls": statistics.draw_calls,
+        "meshes_decimated": statistics.decimations,
+        "levels_replayed": statistics.replays,
+        "triangles_submitted": statistics.triangles_submitted,
+        "triangles_full_detail": statistics.triangles_full_detail,
+        "sprites_drawn": statistics.sprites_drawn,
+        "sprites_copied": statistics.sprites_copied,
+        "highlights_found": found["found"],
+        "highlights_clustered": found["clustered"],
+        "highlights_culled": {
+            "size": found["culled_size"],
+            "occlusion": found["culled_occlusion"],
+            "cone": found["culled_cone"],
+        },
+        "highlights_masked": found["masked"],
+        "highlights_splatted": found["splatted"],
+        "uploads": dict(statistics.uploads),
+        "shaders_compiled": statistics.shaders_compiled,
+        "texture_bytes": statistics.texture_bytes,
+        "geometry_bytes": statistics.geometry_bytes,
+    }
+
+
+def _noise(report):
+    if report is None:
+        return None
+    least, mean, most = report.samples
+    return {
+        "target": report.target,
+        "error": report.error,
+        "samples_least": least,
+        "samples_mean": mean,
+        "samples_most": most,
+        "tiles": report.tiles,
+        "tiles_above": report.above,
+    }
+
+
+def total_work(parts):
+    """Add the work of several frames, key by key; of what is no sum, take the most."""
+    total = {}
+    for part in parts:
+        for key, value in part.items():
+            if key == "noise":
+                # That of the frame that was left with the largest error.
+                worst = total.get(key)
+                if worst is None or _error(value) > _error(worst):
+                    total[key] = value
+            elif isinstance(value, dict):
+                total[key] = total_work([total.get(key, {}), value])
+            elif key.endswith(("_bytes", "subpixels", "subsamples")):
+                total[key] = max(total.get(key, 0), value)
+            else:
+                total[key] = total.get(key, 0) + value
+    return total
+
+
+def _error(noise):
+    return (noise or {}).get("error") or 0.0
+
+
+def machine():
+    """Return what rendered: versions, device and the process' peak memory."""
+    return {
+        "aplanat": version(),
+        "blender": bpy.app.version_string,
+        "gpu": device_name(),
+        "peak_memory_bytes": peak_memory(),
+    }
+
+
+def peak_memory():
+    """Return the largest memory this process ever had in bytes; None where nobody tells."""
+    try:
+        import resource
+    except ImportError:
+        return None
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else peak * 1024

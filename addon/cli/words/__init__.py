@@ -1,0 +1,1 @@
+"""Words in and text out: what every command shares."""

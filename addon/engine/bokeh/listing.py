@@ -1,0 +1,252 @@
+"""The search of a frame's highlights on the device (methods 9).
+
+Tile by tile and view by view: what is brighter than the threshold is drawn into lists of fragments,
+beside the depth of all that is opaque, and listed pixel by pixel.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...device import state
+from ...device.targets import Targets, TargetSpec
+from ...device.uniforms import uniform_buffer
+from ...passes import background
+from ...passes.bokeh import highlights, peel
+from ...passes.surface import surface
+from ..planning.bokeh_search import tiles_of
+from .lamp_areas import NO_AREAS, LampAreas, lamp_areas
+
+# Fragments that there is room for at first, for each texel, and at least and at most; where there
+# are more than that in a tile, it is divided.
+_ROOM = 0.25
+_LEAST_ROOM, _MOST_ROOM = 1 << 14, 1 << 23
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Surfaces that are searched for highlights in one way.
+
+    Parameters
+    ----------
+    surfaces : frozenset of (int, int)
+        Group and slot.
+    world : bool
+        Instead of surfaces, the world.
+    part : tuple of 4 int
+        Of the raster.
+    subpixels : int
+    views : list of (tuple of 2 float, int)
+        Place on the lens, m, and the region that it stands for.
+    areas : LampAreas
+        Of the instances with those surfaces, as far as they are counted.
+    """
+
+    surfaces: frozenset
+    world: bool
+    part: tuple[int, int, int, int]
+    subpixels: int
+    views: list
+    areas: LampAreas = NO_AREAS
+
+
+class HighlightSearch:
+    """Lists a frame's highlights.
+
+    Parameters
+    ----------
+    plan : FramePlan
+        With a `bokeh`.
+    drawing : SceneDrawing
+        Aimed at the frame.
+    buffers : SceneBuffers
+    split : GPUUniformBuf
+        `HighlightParams`.
+    sources : tuple of 2 GPUTexture
+        Get the list (see `passes.bokeh.highlights`), as far as they have room.
+    field : tuple of (str, GPUUniformBuf or GPUTexture) or None
+        `passes.surface.chromatic.resources`, with chromatic aberration.
+
+    Attributes
+    ----------
+    count : int
+        Highlights found.
+    sharp : int
+        Pixels with light too sharp to be splatted.
+    bytes : int
+        Most that it held on the device.
+    """
+
+    def __init__(self, plan, drawing, buffers, split, sources, field=None):
+        self._plan = plan
+        self._drawing = drawing
+        self._buffers = buffers
+        self._split = split
+        self._sources = sources
+        self._field = field
+        self.count = 0
+        self.sharp = 0
+        self.bytes = 0
+
+    def run(self, fullscreen):
+        """Search all that may shine.
+
+        Parameters
+        ----------
+        fullscreen : GPUBatch
+        """
+        for search in self._searches():
+            tiles = tiles_of(search.part, search.subpixels)
+            if not tiles or not (search.world or search.surfaces):
+                continue
+            draws = self._draws(search)
+            if not (search.world or draws[1]):
+                continue
+            _, _, width, height = tiles[0]
+            fine = search.subpixels
+            specs = [TargetSpec("scene", "DEPTH_COMPONENT32F", scale=fine)]
+            with Targets(width, height, specs) as raster:
+                self._list_tiles(search, tiles, draws, raster, fullscreen)
+
+    def _list_tiles(self, search, tiles, draws, raster, fullscreen):
+        fine = search.subpixels
+        room = int(np.clip(_ROOM * raster.width * raster.height * fine**2, _LEAST_ROOM, _MOST_ROOM))
+        lists = highlights.FragmentLists(raster.width, raster.height, fine, room)
+        areas = search.areas.in_tile(search.part, fine, len(self._drawing.content.instances.world))
+        counts = highlights.TexelCounts(areas)
+        # Where a tile's edge cuts a lamp, its texels are counted before any of its light is listed.
+        cut = search.areas.any_cut(tiles, fine, areas)
+        try:
+            for tile in tiles if cut else ():
+                lists.clear()
+                self._draw(
+                    search, tile, search.views[0], draws, raster, (lists, counts, True), fullscreen
+                )
+            for tile in tiles:
+                for view in search.views:
+                    held = (lists, counts, not cut)
+                    lists = self._list(search, tile, view, draws, raster, held, fullscreen)
+        finally:
+            lists.release()
+            counts.release()
+
+    def _searches(self):
+        """Return what is searched in which way: what looks the same from anywhere, and the rest."""
+        bokeh = self._plan.bokeh
+        places = [tuple(place) for place in (bokeh.lens_views * self._plan.lens_extent).tolist()]
+        views = list(zip(places, range(1, len(places) + 1), strict=True))
+        alone = [((0.0, 0.0), 0)]
+        steady = bokeh.shining - bokeh.mirroring
+        areas = NO_AREAS
+        if not bokeh.draft:
+            content, size = self._drawing.content, bokeh.whole[2:]
+            areas = lamp_areas(content, steady, self._plan.view, bokeh.projection, size)
+        searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone, areas)]
+        if bokeh.mirroring:
+            several = views if len(views) > 1 else alone
+            fine = bokeh.mirroring_subpixels
+            searches.append(_Search(bokeh.mirroring, False, bokeh.whole, fine, several))
+        if bokeh.world:
+            searches.append(_Search(frozenset(), True, bokeh.whole, bokeh.world_subpixels, alone))
+        return searches
+
+    def _draws(self, search):
+        """Return the draws of what is searched and of what else may be in front."""
+        if search.world:
+            return (), ()
+        drawing = self._drawing
+        shining = drawing.full_detail_draws(peel.HIGHLIGHTS, search.surfaces)
+        if not shining:
+            return (), ()
+        others = drawing.surfaces() - search.surfaces
+        return drawing.full_detail_draws(peel.OPAQUE, others), shining
+
+    def _draw(self, search, tile, view, draws, raster, held, fullscreen):
+        """Draw what a tile shows from a place on the lens into lists; returns its `ViewParams`."""
+        params = uniform_buffer(self._raster_params(tile, raster, search.subpixels))
+        framebuffer = raster.framebuffer(depth="scene")
+        size = (tile[2] * search.subpixels, tile[3] * search.subpixels)
+        with framebuffer.bind(), state.scissored(0, 0, *size):
+            framebuffer.clear(depth=1.0)
+            self._append(search, draws, params, view[0], held, fullscreen)
+        return params
+
+    def _list(self, search, tile, view, draws, raster, held, fullscreen):
+        """List what a tile shows from a place on the lens; returns the lists to go on with."""
+        lists, counts, _ = held
+        lens, region = view
+        lists.clear()
+        params = self._draw(search, tile, view, draws, raster, held, fullscreen)
+        number, shining = lists.read()
+        if number > lists.capacity:
+            # Drawn again, nothing is counted again.
+            if number <= _MOST_ROOM:
+                lists.release()
+                lists = highlights.FragmentLists(
+                    raster.width, raster.height, search.subpixels, number
+                )
+                held = (lists, counts, False)
+                return self._list(search, tile, view, draws, raster, held, fullscreen)
+            parts = _halves(tile)
+            if len(parts) > 1:
+                for part in parts:
+                    held = (lists, counts, False)
+                    lists = self._list(search, part, view, draws, raster, held, fullscreen)
+                return lists
+        self.bytes = max(self.bytes, raster.bytes + lists.targets.bytes)
+        if number == 0:
+            return lists
+        layers = self._plan.bokeh.layers
+        seen = highlights.SearchedRaster(
+            params, self._split, search.subpixels, layers, lens, region, self._field
+        )
+        scene = None if search.world else raster["scene"]
+        highlights.order(seen, lists, min(number, lists.capacity), scene, counts)
+        count, sharp = highlights.emit(seen, lists, shining, self._sources, self.count)
+        self.count += count
+        self.sharp += sharp
+        return lists
+
+    def _append(self, search, draws, params, lens, held, fullscreen):
+        buffers = self._buffers
+        lists, counts, counting = held
+        if search.world:
+            world = (buffers.environment_buffer, buffers.environment_image)
+            background.list_highlights(fullscreen, params, *world, self._split, lists)
+            return
+        others, shining = draws
+        peel.draw_opaque(others, params, buffers.instances, lens)
+        peel.list_highlights(
+            shining, params, buffers.instances, lens, lists, self._split, counts, counting
+        )
+        for draw in (*others, *shining):
+            self._drawing.counts.draw_calls += 1
+            self._drawing.counts.triangles += draw.triangles * draw.count
+
+    def _raster_params(self, tile, raster, subpixels):
+        plan, bokeh = self._plan, self._plan.bokeh
+        x, y, _, _ = tile
+        width, height = raster.width, raster.height
+        crop = np.eye(4)
+        crop[0, 0], crop[1, 1] = bokeh.width / width, bokeh.height / height
+        crop[0, 3] = (bokeh.width - 2 * x - width) / width
+        crop[1, 3] = (bokeh.height - 2 * y - height) / height
+        return surface.VIEW_PARAMS.pack(
+            view=plan.view,
+            view_inverse=np.linalg.inv(plan.view),
+            projection=crop @ bokeh.projection,
+            lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
+            film=(width * subpixels, height * subpixels, 0.0, 0.0),
+        )
+
+
+def _halves(tile):
+    """Divide a tile across its longer side; one of a single pixel stays as it is."""
+    x, y, width, height = tile
+    if width * height == 1:
+        return [tile]
+    if width >= height:
+        half = width // 2
+        return [(x, y, half, height), (x + half, y, width - half, height)]
+    half = height // 2
+    return [(x, y, width, half), (x, y + half, width, height - half)]

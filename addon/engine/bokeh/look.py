@@ -1,0 +1,369 @@
+"""What the splats of a frame look like: textures and numbers for the shader (methods 12, 13).
+
+Everything follows from the camera's settings, the focus and the f-number; depth and field are left
+to the shader. Textures are made again only when what they depend on has changed.
+
+All discs keep their energy. A profile and rims are made up for by tables; so is what an
+opening takes of the tiles of a real lens' pupil.
+"""
+
+import atexit
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from ...device.textures import texture_2d, texture_array
+from ...device.uniforms import uniform_buffer
+from ...errors import AplanatError
+from ...lens_bokeh.look import splat_pupil, splat_rims
+from ...lens_bokeh.look.iris_mask import BladedIris, texel_centres
+from ...lens_bokeh.look.opening import LAYERS, LEAST_BLUR, layers_of_mask
+from ...lens_bokeh.look.splat_profile import (
+    distance_from_h,
+    light_on_radii,
+    profile_layers,
+    rows_of_edge,
+    rows_of_lens,
+)
+from ...lens_bokeh.tables.pupil_tables import build_pupil_tables
+from ...optics.focus import focused
+from ...passes.bokeh.splat import MOST_RIMS, SPLAT_PARAMS
+from .lens_profiles import lens_profile, lens_pupil
+
+# Texels along a side of an opening's layers, and of the masks that they are made of.
+_OPENING, _MASK = 512, 1024
+# Diffraction changes with the size of the disc, that is, with the layer; discs of fewer pixels than
+# the last of these shows no ringing of their own.
+_RINGING_LAYERS = 4
+_RINGING_MASK = 512
+_REFERENCE_M = 587.5618e-9
+# Focus distance over that of the nearest tile: still nearer patterns only grow.
+_NEAREST = 4.0
+# Steps in which beams reach nearer, per doubling: the fewer, the coarser are beams in between.
+_SHARED = 4
+_MM = 1000.0
+# Colours part by no more, px.
+_FARTHEST = 1e9
+
+
+@dataclass(frozen=True)
+class BokehLook:
+    """Shape of the discs of a frame.
+
+    Parameters
+    ----------
+    variants : tuple of str
+        Of `passes.bokeh.splat.VARIANTS`.
+    textures : tuple of (str, GPUTexture)
+        By their names in the shader.
+    blocks : tuple of GPUUniformBuf
+        `SplatParams`, one for each band of wavelengths that is drawn.
+    field : tuple of (str, GPUUniformBuf or GPUTexture)
+        What the bands are looked up in; empty without chromatic aberration.
+    report : tuple of str
+        What is not as the camera asks, one sentence each.
+    """
+
+    variants: tuple[str, ...]
+    textures: tuple
+    blocks: tuple
+    field: tuple = ()
+    report: tuple[str, ...] = ()
+
+
+def describe_look(plan):
+    """Say what the splats of a frame need, without a device.
+
+    Parameters
+    ----------
+    plan : FramePlan
+        With a `bokeh`.
+
+    Returns
+    -------
+    variants : tuple of str
+    arrays : dict of str to ndarray
+        By the names of the textures in the shader.
+    params : dict of str to sequence of float
+        Of `SplatParams`, without the wavelength.
+
+    Raises
+    ------
+    AplanatError
+        If the real lens cannot be focused where the camera is.
+    """
+    bokeh = plan.bokeh
+    settings = bokeh.settings
+    appearance = _appearance(settings.appearance, bokeh.iris)
+    # Without ringing the opening is the same at every focus.
+    ringing = appearance.diffraction is not None
+    fresnel = _fresnel_scale(plan) if ringing else 0.0
+    arrays = {"opening_tx": _opening(replace(appearance, rims=(), edge=0.0), fresnel)}
+    lens = bokeh.real_lens and _Lens(bokeh.real_lens)
+    tangent = _largest_tangent(plan)
+    params = {
+        "opening": (bokeh.iris.ratio, bokeh.filter_width, 1.0, np.sqrt(len(bokeh.lens_views))),
+        "rows": (-1.0, 0.5, 0.0, settings.profile_strength),
+        "field": (1.0 / tangent, 0.0, 1.0, 0.0),
+        "rims": np.zeros((MOST_RIMS, 4)),
+    }
+    # A draft has the lens' pattern of the axis, which is there at once.
+    tiled = settings.vignetting == "LENS" and not plan.orthographic and not bokeh.draft
+    if lens is not None and tiled:
+        _add_tiles(plan, appearance, tangent, arrays, params)
+        return ("TILES",), arrays, params
+    variants = ()
+    rows, strength = None, settings.profile_strength
+    if lens is not None and strength > 0.0:
+        rows = _lens_rows(lens, plan.focus_distance)
+    elif lens is None and appearance.edge != 0.0:
+        rows, strength = rows_of_edge(appearance.edge), 1.0
+    layers = None
+    if rows is not None:
+        variants += ("PROFILE",)
+        layers = _profile(_Arrays(rows, arrays["opening_tx"]), strength)
+        arrays["profile_tx"] = layers
+        first, last = rows.w_range
+        soft = rows.soft * plan.coc_scale / plan.focus_distance
+        params["rows"] = (first, 1.0 / (last - first), soft, strength)
+    if settings.vignetting == "ANALYTIC" and appearance.rims and not plan.orthographic:
+        variants += ("RIMS",)
+        rims = appearance.rims[:MOST_RIMS]
+        left = _rims(rims, _Arrays(arrays["opening_tx"], layers), tangent)
+        arrays["left_tx"] = left
+        params["field"] = (1.0 / tangent, len(rims), len(left) / LAYERS, 0.0)
+        params["rims"][: len(rims), :3] = [(r.radius, r.shift, r.members) for r in rims]
+    return variants, arrays, params
+
+
+def make_look(plan, field=None):
+    """Upload what the splats of a frame need.
+
+    Where the real lens cannot shape them, they are a thin lens'.
+
+    Parameters
+    ----------
+    plan : FramePlan
+        With a `bokeh`.
+    field : tuple of (str, GPUUniformBuf or GPUTexture) or None
+        `passes.surface.chromatic.resources`, with chromatic aberration.
+
+    Returns
+    -------
+    BokehLook
+    """
+    report = ()
+    try:
+        variants, arrays, params = describe_look(plan)
+    except AplanatError as error:
+        lens = plan.bokeh.real_lens
+        if lens is None:
+            raise
+        report = (f"lens '{lens.prescription.name}' shapes no bokeh, a thin lens does: {error}",)
+        variants, arrays, params = describe_look(
+            replace(plan, bokeh=replace(plan.bokeh, real_lens=None))
+        )
+    textures = tuple((name, _texture(_Arrays(array))) for name, array in arrays.items())
+    blocks = tuple(uniform_buffer(SPLAT_PARAMS.pack(**params, **band)) for band in _bands(plan))
+    return BokehLook(variants, textures, blocks, tuple(field or ()), report)
+
+
+def _bands(plan):
+    focus, colors = 1.0 / plan.focus_distance, plan.bokeh.colors
+    if colors is None:
+        nothing = (0.0, 0.0, 0.0, 0.0)
+        yield {"wavelength": (1.0, 1.0, 1.0, focus), "dispersion": nothing, "spread": nothing}
+        return
+    for level in colors.levels:
+        for band in level.bands:
+            yield {
+                "wavelength": (*band.weights, focus),
+                "dispersion": band.dispersion,
+                "spread": (level.least, min(level.most, _FARTHEST), *colors.spreads),
+            }
+
+
+class _Lens:
+    """A real lens as a key, whose prescription may have no hash."""
+
+    def __init__(self, settings):
+        self.settings = settings
+
+    def __eq__(self, other):
+        return self.settings == other.settings
+
+    def __hash__(self):
+        return hash((self.settings.id, self.settings.label, self.settings.f_number))
+
+    def profile(self):
+        """Return the lens' bokeh profile."""
+        return lens_profile(self.settings)
+
+
+class _Arrays:
+    """Arrays as a key: known by identity, so that they are never compared."""
+
+    def __init__(self, *parts):
+        self.parts = parts
+
+    def __eq__(self, other):
+        return len(self.parts) == len(other.parts) and all(
+            a is b for a, b in zip(self.parts, other.parts, strict=True)
+        )
+
+    def __hash__(self):
+        return hash(tuple(map(id, self.parts)))
+
+
+@lru_cache(maxsize=16)
+def _texture(arrays):
+    (array,) = arrays.parts
+    if array.ndim == 4:
+        return texture_array(array, "RGBA16F")
+    texture = texture_2d(array, "RGBA32F")
+    texture.filter_mode(True)
+    texture.extend_mode("EXTEND")
+    return texture
+
+
+# The device goes before Python does when the process ends; no texture may outlive it.
+atexit.register(_texture.cache_clear)
+
+
+def _appearance(appearance, iris):
+    """Return an appearance with the camera's own iris where it names none."""
+    if appearance.iris == BladedIris() and iris.blades >= 3:
+        appearance = replace(appearance, iris=BladedIris(iris.blades, 0.0, iris.rotation))
+    # Textures are before the anamorphic ratio.
+    return replace(appearance, anamorphic_ratio=1.0)
+
+
+def _largest_tangent(plan):
+    """Return the tangent of the corner of what highlights are searched in."""
+    if plan.orthographic:
+        return 1.0
+    inverse = np.linalg.inv(plan.bokeh.projection)
+    corners = np.array([(x, y, 0.0, 1.0) for x in (-1, 1) for y in (-1, 1)]) @ inverse.T
+    return float(np.hypot(corners[:, 0], corners[:, 1]).max() / -corners[0, 2])
+
+
+def _fresnel_scale(plan):
+    """Return the Fresnel number of a disc of one pixel radius over its radius.
+
+    With the places in object space, ``N = a^2 |1/d - 1/d_f| / lambda``; a the opening's radius.
+    """
+    radius = float(plan.lens_extent[1])
+    per_pixel = radius**2 / (plan.coc_scale * _REFERENCE_M)
+    return per_pixel / (plan.focus_distance if plan.orthographic else 1.0) * plan.bokeh.filter_width
+
+
+@lru_cache(maxsize=4)
+def _opening(appearance, fresnel):
+    """Layers of the opening; `fresnel`: Fresnel number of a disc as wide as its blur."""
+    ringing = appearance.diffraction
+    if ringing is None or ringing.strength == 0.0:
+        mask = _mask(appearance, _MASK, None)
+        layers = layers_of_mask(mask, range(LAYERS), _OPENING)
+    else:
+        parts = []
+        for layer in range(_RINGING_LAYERS):
+            # A layer is read for discs that its blur is that part of.
+            mask = _mask(appearance, _RINGING_MASK, fresnel / (LEAST_BLUR * 2.0**layer))
+            last = LAYERS if layer == _RINGING_LAYERS - 1 else layer + 1
+            parts.append(layers_of_mask(mask, range(layer, last), _OPENING))
+        layers = np.concatenate(parts)
+    areas = _texel_areas(len(layers))
+    energy = layers[..., :3].sum(axis=(1, 2), dtype=np.float64) * areas[:, None]
+    layers[..., :3] /= np.maximum(energy, 1e-30)[:, None, None]
+    return layers
+
+
+def _texel_areas(layers):
+    widths = LEAST_BLUR * 2.0 ** np.arange(layers)
+    return (2.0 * (1.0 + widths / np.sqrt(2.0)) / _OPENING) ** 2
+
+
+def _mask(appearance, size, number):
+    light = appearance.transmission(texel_centres(size), 2.0 / size, fresnel_number=number)
+    return light.reshape(size, size, -1)
+
+
+@lru_cache(maxsize=4)
+def _lens_rows(lens, focus_distance):
+    return rows_of_lens(lens.profile(), focus_distance, lens.settings.f_number)
+
+
+@lru_cache(maxsize=4)
+def _profile(rows_and_opening, strength):
+    rows, opening = rows_and_opening.parts
+    return profile_layers(rows, opening, strength, _light_on_radii(_Arrays(opening)))
+
+
+@lru_cache(maxsize=4)
+def _light_on_radii(opening):
+    return light_on_radii(*opening.parts)
+
+
+@lru_cache(maxsize=4)
+def _rims(rims, opening_and_profile, tangent):
+    return splat_rims.light_left(rims, *opening_and_profile.parts, tangent)
+
+
+def _add_tiles(plan, appearance, tangent, arrays, params):
+    settings, lens = plan.bokeh.settings, _Lens(plan.bokeh.real_lens)
+    tiles, w_range, soft = _tiles(lens, plan.focus_distance, tangent)
+    first, last = w_range
+    even = replace(appearance, rims=(), edge=0.0) == type(appearance)()
+    arrays["sharp_tx"], arrays["soft_tx"] = tiles.sharp, tiles.soft
+    arrays["places_tx"] = tiles.places
+    arrays["left_tx"] = _tiles_left(_Arrays(tiles, arrays["opening_tx"]), even)
+    params["field"] = (1.0 / tiles.largest_tangent, 0.0, 1.0, float(not even))
+    scale = plan.coc_scale / plan.focus_distance
+    params["rows"] = (first, 1.0 / (last - first), soft * scale, settings.profile_strength)
+
+
+@lru_cache(maxsize=2)
+def _tiles(lens, focus_distance, tangent):
+    """Tiles of a lens at a focus; w of their first and last depth; c0 over c at infinity."""
+    profile = lens.profile()
+    distance = distance_from_h(profile, focus_distance)
+    state = profile.focused(distance)
+    focus = distance if lens.settings.prescription.focus else np.inf
+    nearest = min(float(state.ray_map.vergences[-1]), _NEAREST / (focus_distance * _MM))
+    reach = nearest
+    if np.isinf(focus):
+        # The same beams serve every focus; those that reach a little nearer, several in a row.
+        reach = 2.0 ** (np.ceil(np.log2(nearest) * _SHARED) / _SHARED)
+        reach = min(float(state.ray_map.vergences[-1]), float(reach))
+    beams = _beams(lens, focus, float(state.ray_map.pupil), tangent, reach)
+    plane = state.image_plane(distance)
+    # The circle of confusion of the lens, c = k0 + k1 V, is 0 at the focus.
+    linear = state.ray_map.reference[0] + (plane - state.ray_map.plane) * state.ray_map.reference[1]
+    opening = profile.stop_fraction(lens.settings.f_number)
+    k0, k1 = (-opening * state.ray_map.pupil_radius * linear).tolist()
+    # Far from the axis patterns change where they are as small as that field's aberrations.
+    soft = beams.width_in_focus(plane - beams.sensor, -k0 / k1)
+    ends = [k0 + k1 * vergence for vergence in (0.0, nearest)]
+    w_range = tuple(sorted(c / (abs(c) + soft) for c in ends))
+    tiles = splat_pupil.pupil_tiles(beams, plane - beams.sensor, (k0, k1), soft, w_range)
+    return tiles, w_range, soft / abs(k0)
+
+
+@lru_cache(maxsize=2)
+def _beams(lens, focus, pupil, tangent, nearest):
+    settings = lens.settings
+    prescription = settings.prescription
+    if np.isinf(focus):
+        tables = lens_pupil(settings)
+    else:
+        configuration = prescription.configuration(settings.label)
+        tables = build_pupil_tables(focused(configuration, focus, prescription.focus))
+    return splat_pupil.PupilBeams(tables, pupil, settings.f_number, tangent, nearest)
+
+
+@lru_cache(maxsize=2)
+def _tiles_left(tiles_and_opening, even):
+    if even:
+        return np.ones((1, 2, 2, 4), np.float32)
+    return splat_pupil.light_left(*tiles_and_opening.parts)

@@ -1,0 +1,285 @@
+"""Bokeh of a frame: peel, extract, splat (methods 9 to 13).
+
+Done once a frame, before its first lens sample; what the samples then leave out is what was
+splatted here, light for light. A view that moves is given a draft, and the whole in steps when it
+has come to rest.
+"""
+
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
+
+from ...device import geometry, readback
+from ...device.targets import Targets, TargetSpec
+from ...device.uniforms import uniform_buffer
+from ...passes.bokeh import clusters, highlights, splat
+from ...passes.surface import surface
+from ..visibility.stage import BokehVisibility
+from .clusters import similarity_of
+from .listing import HighlightSearch
+from .look import make_look
+from .marks import draw_marks, fates, with_sharp
+
+# Highlights that the list has room for at first.
+_FIRST_LIST = 1 << 16
+# Sources of a draft, and how often they are merged more boldly to get there.
+_DRAFT_SOURCES = 1 << 11
+_DRAFT_ROUNDS = 4
+
+
+@dataclass
+class HighlightCounts:
+    """What became of a frame's highlights.
+
+    Attributes
+    ----------
+    found : int
+        Pixels of any layer above the threshold.
+    clustered : int
+        Sources that are left after merging.
+    culled_size : int
+        Found, but so sharp that the lens samples draw them.
+    culled_occlusion, culled_cone : int
+        Sources that nothing of the lens sees; sources that need no mask.
+    masked : int
+        Sources with a mask of their own.
+    splatted : int
+        Sources that were drawn.
+    """
+
+    found: int = 0
+    clustered: int = 0
+    culled_size: int = 0
+    culled_occlusion: int = 0
+    culled_cone: int = 0
+    masked: int = 0
+    splatted: int = 0
+
+
+def highlight_buffer(bokeh):
+    """Upload what divides light into highlights and the rest.
+
+    Parameters
+    ----------
+    bokeh : BokehPlan
+
+    Returns
+    -------
+    GPUUniformBuf
+        `HighlightParams`.
+    """
+    settings = bokeh.settings
+    return uniform_buffer(
+        surface.HIGHLIGHT_PARAMS.pack(
+            split=(settings.threshold, bokeh.least_coc, settings.gain, 0.0),
+            world=(bokeh.world_depth, float(bokeh.world), bokeh.world_share, 0.0),
+        )
+    )
+
+
+class BokehStage:
+    """Makes a frame's bokeh.
+
+    Parameters
+    ----------
+    plan : FramePlan
+        With a `bokeh`.
+    drawing : SceneDrawing
+        Aimed at the frame.
+    buffers : SceneBuffers
+    occluders : SceneOccluders
+        Of the drawing's content.
+    highlights_buffer : GPUUniformBuf
+        See `highlight_buffer`.
+    field : tuple of (str, GPUUniformBuf or GPUTexture) or None
+        `passes.surface.chromatic.resources`, with chromatic aberration.
+
+    Attributes
+    ----------
+    counts : HighlightCounts
+    report : tuple of str
+        What is not as the camera asks, one sentence each; known when discs have been drawn.
+    fates : dict of str to int
+        What became of how many sources, by the names of `passes.bokeh.marks.FATES`.
+    """
+
+    def __init__(self, plan, drawing, buffers, occluders, highlights_buffer, field=None):
+        self._plan = plan
+        self._drawing = drawing
+        self._buffers = buffers
+        self._occluders = occluders
+        self._highlights = highlights_buffer
+        self._field = field
+        self.counts = HighlightCounts()
+        self.fates = {}
+        self.report = ()
+        self.bytes = 0
+        self._unpaired = 0
+
+    def run(self, fullscreen, targets, frame_view, stage=nullcontext):
+        """Peel, extract and splat.
+
+        Parameters
+        ----------
+        fullscreen : GPUBatch
+        targets : Targets
+            Whose ``bokeh`` gets it.
+        frame_view : GPUUniformBuf
+            `ViewParams` of the frame, in pixels.
+        stage : callable, optional
+            As that of `FrameRenderer.advance`: ``search``, ``merge``, ``visibility``, ``splat``.
+        """
+        steps = self.steps(fullscreen, targets, frame_view)
+        for name in ("search", "merge", "visibility", "splat"):
+            with stage(name):
+                next(steps, None)
+
+    def steps(self, fullscreen, targets, frame_view):
+        """Do the same bit by bit; the picture changes with the last step.
+
+        Yields
+        ------
+        None
+            After each step; closing the generator gives back what it holds.
+        """
+        held = []
+        try:
+            sources, count = listed = self._find(fullscreen, held)
+            yield
+            sources, count = merged = self._merge(sources, count, held)
+            visibility = None
+            if count:
+                yield
+                visibility = self._hide(sources, count, held)
+                yield
+            target = targets.framebuffer("bokeh")
+            with target.bind():
+                target.clear(color=(0.0, 0.0, 0.0, 0.0))
+            if visibility:
+                self._splat(sources, count, visibility, target, frame_view)
+            self.fates = fates(self.counts, visibility and visibility.counts)
+            if "marks" in targets:
+                marks = targets.framebuffer("marks")
+                draw_marks(
+                    self._plan,
+                    marks,
+                    frame_view,
+                    listed,
+                    merged,
+                    visibility,
+                    lambda: self._with_sharp()._find(fullscreen, held),
+                )
+            self.bytes = max(self.bytes, sum(targets.bytes for targets in held))
+        finally:
+            for targets in held:
+                targets.release()
+
+    def _find(self, fullscreen, held):
+        """Return the list of highlights, two textures, and how many they are."""
+        room = _FIRST_LIST
+        while True:
+            specs = [TargetSpec(name, "RGBA32F") for name in "ab"]
+            lists = Targets(highlights.COLUMNS, room // highlights.COLUMNS, specs)
+            search = HighlightSearch(
+                self._plan,
+                self._drawing,
+                self._buffers,
+                self._highlights,
+                (lists["a"], lists["b"]),
+                self._field,
+            )
+            search.run(fullscreen)
+            self.bytes = max(self.bytes, search.bytes)
+            if search.count <= room:
+                break
+            lists.release()
+            room = highlights.COLUMNS * -(-search.count // highlights.COLUMNS)
+        held.append(lists)
+        self.counts.found = search.count + search.sharp
+        self.counts.culled_size = search.sharp
+        return (lists["a"], lists["b"]), search.count
+
+    def _with_sharp(self):
+        """Return a stage that lists what is too sharp to be splatted, too."""
+        bokeh = with_sharp(self._plan.bokeh)
+        plan = replace(self._plan, bokeh=bokeh)
+        parts = (self._drawing, self._buffers, self._occluders)
+        return BokehStage(plan, *parts, highlight_buffer(bokeh), self._field)
+
+    def _merge(self, sources, count, held):
+        """Merge similar highlights, as the model asks for; returns the list and its length."""
+        plan = self._plan
+        similarity = similarity_of(plan.bokeh.settings, count)
+        rounds = _DRAFT_ROUNDS if plan.bokeh.draft else 1
+        while similarity and count > 1:
+            colors = plan.bokeh.colors
+            focus = colors.focus_distance if colors else plan.focus_distance
+            lens = (focus, float(plan.orthographic), plan.coc_scale, 0.0)
+            pixel = 2.0 / (plan.projection[1, 1] * plan.height)
+            parameters = clusters.cluster_params(similarity, plan.view, lens, pixel)
+            parameters = uniform_buffer(parameters)
+            lists, count, unpaired = clusters.cluster(sources, count, parameters, similarity)
+            held.append(lists)
+            if unpaired:
+                self._unpaired = unpaired
+            sources = (lists["a"], lists["b"])
+            rounds -= 1
+            if rounds == 0 or count <= _DRAFT_SOURCES:
+                break
+            similarity = _bolder(similarity)
+        self.counts.clustered = count
+        return sources, count
+
+    def _told_of_merging(self):
+        if not self._unpaired:
+            return ()
+        return (
+            f"bokeh: {self._unpaired} clusters are more than the {clusters.MOST_PAIRED} that Merge"
+            " All compares with one another; neighbours were merged instead (raise Levels or"
+            " Similarity)",
+        )
+
+    def _hide(self, sources, count, held):
+        """Find what hides the sources from the lens, as `Visibility`."""
+        visibility = BokehVisibility(self._plan, self._occluders, self._buffers)
+        found = visibility.find(sources[0], count, self._drawing, held)
+        counts = found.counts
+        self.counts.culled_occlusion = counts.outside + counts.hidden
+        self.counts.culled_cone = counts.visible + counts.free
+        self.counts.masked = counts.masked
+        self.counts.splatted = count - self.counts.culled_occlusion
+        merged = self._plan.bokeh.settings.model == "CLUSTERED" or self._plan.bokeh.draft
+        if merged and counts.masked and counts.method != "SPLAT":
+            masks = found.masks
+            soft = Targets(masks.width, masks.height, [TargetSpec("masks", "R16F")])
+            held.append(soft)
+            clusters.soften(sources[0], count, found, soft["masks"])
+            found = replace(found, masks=soft["masks"])
+        return found
+
+    def _splat(self, sources, count, visibility, target, frame_view):
+        rays = None
+        if visibility.counts.method == "SPLAT":
+            rays = (visibility.layers, visibility.opacity, visibility.states, visibility.parameters)
+        look = make_look(self._plan, self._field)
+        self.report = (*look.report, *self._told_of_merging())
+        with target.bind():
+            splat.splat(
+                geometry.square_batch(),
+                count,
+                (*sources, visibility.tiles, visibility.masks),
+                look,
+                frame_view,
+                rays,
+            )
+        # What it reads is given back only after the device has read it.
+        readback.wait(target)
+
+
+def _bolder(similarity):
+    """Return what merges highlights that differ twice as much."""
+    return replace(
+        similarity,
+        cell=2.0 * similarity.cell,
+        extent=2.0 * similarity.extent,
+        harm=4.0 * similarity.harm,
+    )

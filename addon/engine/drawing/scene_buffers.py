@@ -1,0 +1,252 @@
+"""A scene's meshes, images, materials and instances on the device.
+
+Content is found by uid: what the previous content had already is not uploaded again, and what the
+new one lacks is released.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...device.census import size_of_texture
+from ...device.geometry import MeshBuffers
+from ...device.textures import image_texture, texture_2d
+from ...device.uniforms import uniform_buffer
+from ...levels.making.graded_levels import MergeTree
+from ...passes.surface import environment, environment_bake, light_table
+from .occluders import ShapeCache
+
+# Must agree with lib/surface/instance_lib.glsl.
+INSTANCES_PER_ROW = 256
+
+
+class SceneBuffers:
+    """Device-side copies of a scene's content, updated by difference.
+
+    Attributes
+    ----------
+    meshes : dict of int to MeshBuffers
+    images : dict of int to GPUTexture
+    levels : dict of int to tuple of MeshBuffers
+        Levels of detail from 1 up, by the mesh's uid.
+    levels_version : int
+        Grows when levels are added.
+    shapes : ShapeCache
+        Meshes as the visibility of highlights needs them.
+    expected_pairs : int
+        Of highlight and cluster of triangles; see `engine.visibility.stage`.
+    instances : GPUTexture
+    lighting : tuple of (str, GPUUniformBuf or GPUTexture)
+        What lit surfaces read of the lights and the world.
+    environment_buffer, environment_image : GPUUniformBuf, GPUTexture or None
+        The world as the background reads it; no image where it is one colour.
+    uploads : dict of str to int
+        How many meshes, images, materials, instance tables, light tables were uploaded and
+        environments computed so far.
+    """
+
+    def __init__(self):
+        self.meshes = {}
+        self.images = {}
+        self.levels = {}
+        self.levels_version = 0
+        self.shapes = ShapeCache()
+        self.expected_pairs = 0
+        self._level_meshes = {}
+        self.instances = None
+        self.lighting = ()
+        self.environment_buffer = None
+        self.environment_image = None
+        self.uploads = dict.fromkeys(
+            ("meshes", "images", "materials", "instance_tables", "light_tables", "environments"), 0
+        )
+        self._level_meshes = {}
+        self._merge_trees = {}
+        self._lights = None
+        self._world = None
+        self._levels = None
+        self._fixed = None
+        self._materials = {}
+        self._instance_table = None
+        self._content = None
+
+    def update(self, content):
+        """Upload what is new in a `SceneContent` and release what it lacks."""
+        for _ in self.update_steps(content):
+            pass
+
+    def update_steps(self, content):
+        """Do what `update` does in steps; left half done, the next call completes it."""
+        if content is self._content:
+            return
+        self._content = None
+        for uid in self.meshes.keys() - content.meshes.keys():
+            del self.meshes[uid]
+            for kept in (self.levels, self._level_meshes, self._merge_trees):
+                kept.pop(uid, None)
+        levels = (level.uid for levels in self._level_meshes.values() for level in levels)
+        self.shapes.keep({*content.meshes, *levels})
+        for uid in self.images.keys() - content.images.keys():
+            del self.images[uid]
+        for key in [k for k in self._materials if k[0] not in content.materials]:
+            del self._materials[key]
+        for uid, mesh in content.meshes.items():
+            if uid not in self.meshes:
+                self.meshes[uid] = MeshBuffers(mesh)
+                self.uploads["meshes"] += 1
+                yield
+        for uid, image in content.images.items():
+            if uid not in self.images:
+                self.images[uid] = image_texture(image)
+                self.uploads["images"] += 1
+                yield
+        if self._instance_table is not content.instances:
+            self.instances = texture_2d(instance_texels(content.instances))
+            self._instance_table = content.instances
+            self.uploads["instance_tables"] += 1
+        yield from self._update_lighting(content)
+        self._content = content
+
+    def _update_lighting(self, content):
+        if self._fixed is None:
+            self._fixed = (environment.ggx_texture(), environment.single_texel())
+        table = dict(self.lighting).get("lights_tx")
+        if table is None or self._lights != content.lights:
+            table = light_table.light_texture(content.lights)
+            self._lights = content.lights
+            self.uploads["light_tables"] += 1
+        world = content.world
+        known = self._world and (self._world.image, self._world.amplification, self._world.graph)
+        if known != (world.image, world.amplification, world.graph):
+            self._levels = self.environment_image = None
+            if world.image:
+                self._compute_environment(content.images, world)
+                yield
+        if self._world != world:
+            self.environment_buffer = environment.environment_buffer(world)
+            self._world = world
+        table_of_ggx, empty = self._fixed
+        self.lighting = (
+            ("environment_buf", self.environment_buffer),
+            ("lights_tx", table),
+            ("environment_tx", self.environment_image or empty),
+            ("environment_levels_tx", self._levels or empty),
+            ("ggx_tx", table_of_ggx),
+        )
+
+    def _compute_environment(self, images, world):
+        image = images[world.image]
+        if world.graph is None:
+            pixels = image.linear_colors()
+        else:
+            pixels = environment_bake.bake(world.graph, images, self.images)
+        pixels = environment.world_pixels(pixels, world)
+        self._levels = environment.prefilter(pixels)
+        changed = world.graph is not None or world.amplification
+        if image.srgb or image.pixels.dtype == np.uint8 or changed:
+            opaque = np.ones((*pixels.shape[:2], 1), np.float32)
+            self.environment_image = texture_2d(np.concatenate([pixels, opaque], axis=2))
+        else:
+            self.environment_image = self.images[image.uid]
+        self.uploads["environments"] += 1
+
+    def mesh_levels(self, uid):
+        """Return the buffers of a mesh at each level of detail that is here, from 0 up."""
+        return (self.meshes[uid], *self.levels.get(uid, ()))
+
+    def level_meshes(self, mesh):
+        """Return the snapshots of a mesh at each level of detail that is here, from 0 up."""
+        return (mesh, *self._level_meshes.get(mesh.uid, ()))
+
+    def add_levels(self, uid, levels):
+        """Upload the levels of detail of a mesh.
+
+        Parameters
+        ----------
+        uid : int
+            Of a mesh of the content.
+        levels : sequence of MeshLevel
+            From level 1 up.
+        """
+        self.levels[uid] = tuple(MeshBuffers(level) for level in levels)
+        self._level_meshes[uid] = tuple(levels)
+        self._merge_trees.pop(uid, None)
+        self.levels_version += 1
+
+    def merge_tree(self, uid):
+        """Return the `MergeTree` of a mesh whose levels are here, made at its first use."""
+        tree = self._merge_trees.get(uid)
+        if tree is None:
+            tree = MergeTree(self._content.meshes[uid], self._level_meshes[uid])
+            self._merge_trees[uid] = tree
+        return tree
+
+    def drop_levels(self):
+        """Give the levels of detail back; full detail is drawn until new ones come."""
+        for kept in (self.levels, self._level_meshes, self._merge_trees):
+            kept.clear()
+        self.levels_version += 1
+
+    def texture_bytes(self):
+        """Return how many bytes the images and the instance table take on the device."""
+        textures = [*self.images.values(), *([self.instances] if self.instances else [])]
+        return sum(map(size_of_texture, textures))
+
+    def geometry_bytes(self):
+        """Return how many bytes the meshes take on the device."""
+        levels = (level for levels in self.levels.values() for level in levels)
+        return sum(mesh.bytes for mesh in (*self.meshes.values(), *levels))
+
+    def neighbouring_instances(self, instances):
+        """Return the instance tables of the previous and the next frame.
+
+        They are uploaded when they are asked for; what has none stands still.
+
+        Parameters
+        ----------
+        instances : InstanceTable
+
+        Returns
+        -------
+        tuple of two GPUTexture
+        """
+        return tuple(
+            self.instances
+            if world is None
+            else texture_2d(instance_texels(replace(instances, world=world)))
+            for world in (instances.previous_world, instances.next_world)
+        )
+
+    def material_constants(self, uid, code):
+        """Return the uniform block of a material, uploading it at its first use."""
+        key = (uid, code.constants)
+        buffer = self._materials.get(key)
+        if buffer is None:
+            buffer = uniform_buffer(np.array(code.constants, np.float32).tobytes())
+            self._materials[key] = buffer
+            self.uploads["materials"] += 1
+        return buffer
+
+
+def instance_texels(instances, detail=None):
+    """Lay out the instance table as `lib/surface/instance_lib.glsl` reads it.
+
+    Parameters
+    ----------
+    instances : InstanceTable
+    detail : ndarray of shape (I, 2), optional
+        Level of detail and share of shared drawings.
+
+    Returns
+    -------
+    ndarray of shape (rows, 1024, 4)
+        float32.
+    """
+    count = len(instances.world)
+    rows = max(1, -(-count // INSTANCES_PER_ROW))
+    texels = np.zeros((rows * INSTANCES_PER_ROW, 4, 4), np.float32)
+    texels[:count, :3] = instances.world[:, :3]
+    texels[:count, 3, 0] = instances.cryptomatte_id
+    if detail is not None:
+        texels[:count, 3, 1:3] = detail
+    return texels.reshape(rows, INSTANCES_PER_ROW * 4, 4)

@@ -1,0 +1,375 @@
+"""Drawing the surfaces of a scene for one lens sample after another.
+
+Decides, from the plan, at which level of detail each instance is drawn for each sample, and which
+samples share a drawing.
+"""
+
+from contextlib import nullcontext
+from dataclasses import astuple, dataclass, replace
+
+import numpy as np
+
+from ...device import state
+from ...device.textures import texture_2d
+from ...levels.choosing import (
+    allowances,
+    allowed_levels,
+    blur_for_levels,
+    choose_levels,
+    extents,
+    level_for_sample,
+    world_corners,
+)
+from ...passes.surface import surface
+from . import culling
+from .graded_drawings import GradedDrawings
+from .scene_buffers import instance_texels
+from .shared_drawings import SharedDrawings
+
+
+@dataclass
+class DrawingCounts:
+    """Work done so far.
+
+    Attributes
+    ----------
+    draw_calls, triangles, sprites_drawn, sprites_copied : int
+    triangles_full_detail : int
+        What every instance for every sample would have taken.
+    """
+
+    draw_calls: int = 0
+    triangles: int = 0
+    triangles_full_detail: int = 0
+    sprites_drawn: int = 0
+    sprites_copied: int = 0
+
+    def __add__(self, other):
+        """Return the work of both."""
+        return DrawingCounts(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
+
+
+class SceneDrawing:
+    """Draws a content's surfaces.
+
+    Parameters
+    ----------
+    content : SceneContent
+    buffers : SceneBuffers
+        Updated to it.
+    target : passes.surface.SurfaceTarget
+    graded : dict
+        Graded meshes of earlier frames; see `GradedDrawings`.
+
+    Attributes
+    ----------
+    counts : DrawingCounts
+        Since the frame began.
+    nearest : float
+        Least depth of anything that can be seen, m.
+    levels : ndarray of shape (I,)
+        Level of detail of each instance in this frame.
+    full_detail : int
+        Triangles of everything at full detail, once.
+    """
+
+    def __init__(self, content, buffers, target, graded):
+        self._content = content
+        self._buffers = buffers
+        self._draws = surface.build_draws(content, buffers, target)
+        self._glows = surface.build_glow_draws(content, buffers, target)
+        self.full_detail = sum(
+            d.triangles * d.count for d in (*self._draws, *self._glows) if d.level == 0
+        )
+        bounds = {uid: mesh.bounds for uid, mesh in buffers.meshes.items()}
+        self._spheres = culling.BoundingSpheres(content, bounds)
+        self._corners = world_corners(content, bounds)
+        self._group_of = np.zeros(len(self._corners), np.int64)
+        for number, group in enumerate(content.groups):
+            self._group_of[group.first : group.first + group.count] = number
+        self._triangles = [
+            [level.triangles for level in buffers.mesh_levels(group.mesh)]
+            for group in content.groups
+        ]
+        self._blur_for_levels = [
+            blur_for_levels(*buffers.level_meshes(content.meshes[group.mesh]))
+            for group in content.groups
+        ]
+        self._by_level = _by_level(self._draws)
+        self._glows_by_level = _by_level(self._glows)
+        # Decided by chance a sample, or added to what is behind: such surfaces share nothing.
+        self._unshared = {d.group for d in self._draws if d.transparent}
+        self._unshared |= {d.group for d in self._glows}
+        self._shared = SharedDrawings("MATTES" in target.defines)
+        self._graded = GradedDrawings(content, buffers, graded)
+
+    def aim(self, plan, wavelengths=None, highlights=None, part=None):
+        """Prepare a frame or a round of it: levels, shared drawings, order of the instances.
+
+        Parameters
+        ----------
+        plan : FramePlan
+        wavelengths : callable, optional
+            From a sample, or None for the reference wavelength, to its
+            `passes.surface.chromatic.ChromaticSample`; for a target of `surface.in_wavelengths`.
+        highlights : GPUUniformBuf or None
+            `HighlightParams`, for a target that splits light.
+        part : tuple of 4 int, optional
+            x, y, width, height of the part of the raster that is needed; default: all of it.
+        """
+        self._plan = plan
+        self._part = part
+        self._wavelengths = wavelengths or (lambda _sample: None)
+        self._highlights = highlights
+        self.counts = DrawingCounts()
+        self._seen = self._visible = culling.seen(self._spheres, plan)
+        if part is not None:
+            self._visible = self._seen & culling.seen(self._spheres, plan, part)
+        seen = extents(self._corners, plan.view, plan.chromatic)
+        self.nearest = float(seen.nearest[self._seen].min(initial=np.inf))
+        self.levels = self._choose_levels(seen)
+        self._find_graded()
+        self._shared.forget()
+        if plan.reuse_grid:
+            candidates = [
+                int(row)
+                for row in np.flatnonzero(self._visible)
+                if self._group_of[row] not in self._unshared
+            ]
+            self._shared.find(
+                candidates, self._corners, seen, self.levels, self._triangles_of, plan
+            )
+        self._graded.settle(self._shared.drawings_of)
+        # What is not drawn together with its neighbours.
+        self._single = sorted({*self._shared.rows, *self._graded.rows})
+        self._order_rows()
+
+    def _triangles_of(self, row):
+        return self._graded.triangles(row, self._triangles[self._group_of[row]])
+
+    def _find_graded(self):
+        plan = self._plan
+        wanted = plan.level_bias is not None and plan.coc_scale != 0.0
+        rows = np.flatnonzero(self._visible & (self.levels == 0.0)) if wanted else ()
+        if plan.bokeh:
+            # Whose highlights are taken out of the samples exactly.
+            rows = [row for row in rows if self._group_of[row] not in plan.bokeh.uneven]
+        self._graded.find([int(row) for row in rows], self._group_of, plan)
+
+    def _choose_levels(self, seen):
+        plan = self._plan
+        deepest = np.array([len(counts) - 1 for counts in self._triangles], int)[self._group_of]
+        if plan.level_bias is None or not deepest.any():
+            return np.zeros(len(self._corners))
+        full = np.array([counts[0] for counts in self._triangles], float)[self._group_of]
+        bias = plan.level_bias + allowances(self._content, plan)
+        chosen = choose_levels(seen, full, plan, bias)
+        for number, group in enumerate(self._content.groups):
+            rows = slice(group.first, group.first + group.count)
+            chosen[rows] = allowed_levels(chosen[rows], self._blur_for_levels[number])
+        return np.minimum(chosen, deepest)
+
+    def _order_rows(self):
+        """Put rows in an order in which those of one level are neighbours, where levels differ."""
+        count = len(self._visible)
+        drawn = self._visible.copy()
+        drawn[self._single] = False
+        lower = np.floor(self.levels)
+        change = self.levels - lower
+        order = np.arange(count)
+        self._rows = []
+        for group in self._content.groups:
+            rows = np.arange(group.first, group.first + group.count)
+            kept = rows[drawn[rows]]
+            places = kept
+            if len(kept) and np.ptp(self.levels[kept]) > 0.0:
+                kept = kept[np.lexsort((change[kept], lower[kept]))]
+                order[rows] = np.concatenate([kept, rows[~drawn[rows]]])
+                places = group.first + np.arange(len(kept))
+            self._rows.append((places, lower[kept], change[kept]))
+        # The levels of all groups' rows together, and where each group's begin.
+        none = np.zeros(0)
+        self._row_levels = np.concatenate([none, *(low + part for _, low, part in self._rows)])
+        self._starts = np.cumsum([0, *(len(places) for places, _, _ in self._rows)]).tolist()
+        self._listed = {}
+        self._table = self._buffers.instances
+        self._place = np.arange(count)
+        if not np.array_equal(order, self._place):
+            instances = self._content.instances
+            ordered = replace(
+                instances,
+                world=instances.world[order],
+                cryptomatte_id=instances.cryptomatte_id[order],
+            )
+            self._table = texture_2d(instance_texels(ordered))
+            self._place[order] = np.arange(count)
+
+    def _list(self, draws, index):
+        """List the draw calls for a sample, without what shares drawings."""
+        levels = level_for_sample(self._row_levels, *self._plan.in_round(index))
+        ends = zip(self._starts, self._starts[1:], strict=False)
+        of_group = [levels[first:end].tobytes() for first, end in ends]
+        listed = []
+        for draw in draws:
+            # Most samples draw a group's rows at the levels of another sample.
+            key = (id(draw), of_group[draw.group])
+            if key not in self._listed:
+                first, end = self._starts[draw.group : draw.group + 2]
+                self._listed[key] = self._runs(draw, levels[first:end] == draw.level)
+            listed += self._listed[key]
+        return listed
+
+    def _runs(self, draw, chosen):
+        places = self._rows[draw.group][0]
+        # Between rows of one level only what cannot be seen may be drawn in passing.
+        passing = draw.triangles if chosen.all() else np.inf
+        return [
+            draw
+            if (first, count) == (draw.first, draw.count)
+            else replace(draw, first=first, count=count)
+            for first, count in culling.runs(places[chosen], passing)
+        ]
+
+    def _of_row(self, draws, row, level, index):
+        """List the draw calls of one row at a level, from those of all by group and level."""
+        place = int(self._place[row])
+        found = draws.get((int(self._group_of[row]), int(level)), ())
+        graded = self._graded.mesh(row, index) if level == 0 else None
+        if graded is None:
+            return [replace(draw, first=place, count=1) for draw in found]
+        own = [(draw, *graded.batches[draw.slot]) for draw in found if draw.slot in graded.batches]
+        return [
+            replace(draw, batch=batch, triangles=triangles, first=place, count=1)
+            for draw, batch, triangles in own
+        ]
+
+    def _of_single(self, draws, index):
+        """List the draw calls for a sample of what is not drawn together with its neighbours."""
+        copied = self._shared.rows_of(index)
+        listed = []
+        for row in self._single:
+            if row not in copied:
+                level = level_for_sample(self.levels[row], *self._plan.in_round(index))
+                listed += self._of_row(draws, row, level, index)
+        return listed
+
+    def _draw(self, listed, view, lens_sample, index, wavelength):
+        self.counts.draw_calls += len(listed)
+        self.counts.triangles += sum(d.triangles * d.count for d in listed)
+        state.opaque()
+        resources = {"highlights": self._highlights, "wavelength": wavelength}
+        surface.draw_sample(listed, view, self._table, lens_sample, index, **resources)
+
+    def confine(self, part):
+        """Let the samples that follow draw less: a part of the part that was aimed at."""
+        self._part = part
+
+    def confined(self):
+        """Return a `with` block that draws into the part of a sample's raster that is needed."""
+        if self._part is None:
+            return nullcontext()
+        return state.scissored(*(self._plan.subpixels * side for side in self._part))
+
+    def draw(self, index, framebuffer, view, targets):
+        """Draw the opaque surfaces for a lens sample.
+
+        Parameters
+        ----------
+        index : int
+        framebuffer : GPUFrameBuffer
+            The sample's, cleared.
+        view : GPUUniformBuf
+        targets : Targets
+            With those of `specs`.
+        """
+        plan, shared = self._plan, self._shared
+        listed = self._list(self._draws, index) + self._of_single(self._by_level, index)
+        with framebuffer.bind(), self.confined():
+            wavelength = self._wavelengths(index)
+            self._draw(listed, view, plan.lens_sample(index), index, wavelength)
+
+        def draw_parent(sprite):
+            drawn = self._of_row(self._by_level, sprite.row, sprite.level, index)
+            parent = sprite.parent
+            wavelength = self._wavelengths(parent)
+            self._draw(drawn, view, plan.lens_sample(parent), parent, wavelength)
+
+        before = shared.drawn + shared.copied
+        shared.copy(index, framebuffer, targets, draw_parent)
+        self.counts.draw_calls += shared.drawn + shared.copied - before
+        self.counts.sprites_drawn = shared.drawn
+        self.counts.sprites_copied = shared.copied
+
+    def draw_glows(self, index, framebuffer, view):
+        """Add the light of surfaces that glow to what a lens sample shows behind them."""
+        listed = self._list(self._glows, index) + self._of_single(self._glows_by_level, index)
+        self.counts.draw_calls += len(listed)
+        self.counts.triangles += sum(d.triangles * d.count for d in listed)
+        with framebuffer.bind(), self.confined():
+            lens_sample = self._plan.lens_sample(index)
+            resources = {"highlights": self._highlights, "wavelength": self._wavelengths(index)}
+            surface.draw_glows(listed, view, self._table, lens_sample, **resources)
+
+    @property
+    def content(self):
+        """The `SceneContent` that it draws."""
+        return self._content
+
+    def specs(self):
+        """Return the targets that drawing needs beside the sample's."""
+        return self._shared.specs()
+
+    def surfaces(self):
+        """Return group and slot of all surfaces."""
+        return frozenset((draw.group, draw.slot) for draw in (*self._draws, *self._glows))
+
+    def full_detail_draws(self, target, wanted=None):
+        """Return the draws, at full detail, of what can be seen, for another target.
+
+        Parameters
+        ----------
+        target : passes.surface.SurfaceTarget
+        wanted : set of (int, int) or None
+            See `passes.surface.surface.build_draws`.
+
+        Returns
+        -------
+        list of Draw
+            With rows of the content's own instance table.
+        """
+        draws = surface.build_draws(self._content, self._buffers, target, wanted)
+        return [
+            replace(draw, first=first, count=count)
+            for draw in draws
+            if draw.level == 0
+            for first, count in culling.runs(
+                draw.first + np.flatnonzero(self._seen[draw.first : draw.first + draw.count]),
+                draw.triangles,
+            )
+        ]
+
+    def detail_table(self):
+        """Return an instance table that also tells levels and shared drawings.
+
+        Returns
+        -------
+        GPUTexture
+            With rows of the content's own instance table.
+        """
+        detail = np.column_stack([self.levels, self._shared.shares(len(self.levels), self._plan)])
+        return texture_2d(instance_texels(self._content.instances, detail))
+
+    def geometry_bytes(self):
+        """Return how many bytes graded meshes take on the device."""
+        return self._graded.bytes
+
+    def texture_bytes(self):
+        """Return how many bytes shared drawings take on the device."""
+        return self._shared.bytes()
+
+
+def _by_level(draws):
+    found = {}
+    for draw in draws:
+        found.setdefault((draw.group, draw.level), []).append(draw)
+    return found

@@ -1,0 +1,401 @@
+"""The ordered passes of a frame, sample by sample.
+
+Only the sums of the samples and the Cryptomatte tables outlive a sample, so memory does not depend
+on their number.
+"""
+
+import time
+from contextlib import nullcontext
+from dataclasses import replace
+
+import numpy as np
+
+from ...device import geometry, keeping, readback
+from ...device.targets import Targets, TargetSpec
+from ...device.uniforms import uniform_buffer
+from ...passes import background, cryptomatte
+from ...passes.surface import chromatic, surface
+from ..bokeh.stage import BokehStage, highlight_buffer
+from ..drawing.scene_drawing import DrawingCounts, SceneDrawing
+from ..drawing.view_resources import chromatic_resources, view_params
+from ..planning.bokeh_plan import draft_of
+from ..planning.plan import extended
+from ..visibility.stage import SceneOccluders
+from . import render_passes, sample_sums
+from .frame_pictures import FramePictures
+from .readable_frame import ReadableFrame
+from .subsampling import SubsampleBlur
+from .tile_sampling import TileSampling
+
+# Samples that may wait in the device's queue: the queue's memory, too, is bounded.
+_SAMPLES_IN_FLIGHT = 32
+# A bokeh that takes no longer needs no draft, s.
+_QUICK = 0.03
+
+
+class FrameRenderer(ReadableFrame):
+    """Renders a frame progressively.
+
+    Parameters
+    ----------
+    plan : FramePlan
+    snapshot : SceneSnapshot
+    buffers : SceneBuffers
+        Updated to the snapshot's content.
+
+    Attributes
+    ----------
+    samples_done : int
+    bokeh_drafted : bool
+        What is shown is a draft of the bokeh, or none yet.
+    """
+
+    def __init__(self, plan, snapshot, buffers, drafts=False, leader=None):
+        self._buffers = buffers
+        self._fullscreen = geometry.fullscreen_batch()
+        self._content = self._levels = self._drawing = self._blur = self._plain = None
+        self._target = self._bokeh = self._occluders = self._pictures = None
+        self._graded = {}
+        self._targets = self._refining = None
+        self._bokeh_seconds = np.inf
+        self.restart(plan, snapshot, drafts, leader)
+
+    def restart(self, plan, snapshot, drafts=False, leader=None):
+        """Begin a frame anew, with another view or content; what still fits is kept.
+
+        Parameters
+        ----------
+        plan : FramePlan
+        snapshot : SceneSnapshot
+            The buffers must be updated to its content.
+        drafts : bool
+            Begin with a draft of the bokeh, unless the last whole one was quick, and leave the
+            whole to `refine_bokeh`.
+        leader : TileSampling or None
+            Whose tiles are drawn, with `automatic` sampling of a picture beside another.
+        """
+        keeping.let_go()
+        self._stop_refining()
+        self.plan = plan
+        self.samples_done = 0
+        self._stopped = False
+        self._earlier_rounds = DrawingCounts()
+        self._tiles = TileSampling(plan, self._fullscreen, leader) if plan.automatic else None
+        self._cryptomattes = render_passes.cryptomatte_kinds(plan.passes)
+        self._mattes = bool(render_passes.made_by(plan.passes, "MATTE", "CRYPTOMATTE"))
+        target = surface.COLOR_AND_MATTES if self._mattes else surface.COLOR
+        self._highlights = None
+        if plan.bokeh:
+            target = surface.without_highlights(target)
+            self._highlights = highlight_buffer(plan.bokeh)
+        if plan.chromatic:
+            target = surface.in_wavelengths(target)
+        levels = self._buffers.levels_version
+        if (snapshot.content, target, levels) != (self._content, self._target, self._levels):
+            self._content, self._target, self._levels = snapshot.content, target, levels
+            self._drawing = SceneDrawing(snapshot.content, self._buffers, target, self._graded)
+            self._occluders = SceneOccluders(snapshot.content, self._buffers)
+        self._field = chromatic_resources(plan.chromatic) if plan.chromatic else None
+        wavelengths = self._wavelength if plan.chromatic else None
+        self._drawing.aim(plan, wavelengths, self._highlights)
+        self._view = uniform_buffer(view_params(plan))
+        self._pixels = uniform_buffer(view_params(replace(plan, subpixels=1)))
+        world = snapshot.content.world
+        self._background = (0.0,) * 4 if snapshot.film.transparent else (*world.color, 1.0)
+        self._shows_image = bool(world.image) and not snapshot.film.transparent
+        self._blur = None
+        if plan.blurs:
+            self._blur = SubsampleBlur(plan, self._drawing.nearest, wavelengths)
+        # A draft of the bokeh comes and goes with the time that is left: it must decide nothing.
+        self._measures_bokeh = bool(plan.bokeh) and not drafts
+        self._bokeh = self._whole = self._draft = None
+        if plan.bokeh:
+            self._bokeh = self._whole = self._stage(plan)
+            if drafts and self._bokeh_seconds > _QUICK:
+                self._draft = self._stage(replace(plan, bokeh=draft_of(plan.bokeh)))
+        self.bokeh_drafted = self._draft is not None
+        self._prepare_targets()
+        self._pictures = FramePictures(
+            plan,
+            self._content,
+            self._buffers,
+            self._drawing,
+            self._view,
+            self._targets,
+            self._fullscreen,
+        )
+        self._restart_plain(plan, snapshot)
+
+    def _restart_plain(self, plan, snapshot):
+        """Begin the same frame without chromatic aberration, for Fringe."""
+        if plan.plain is None:
+            if self._plain:
+                self._plain.release()
+            self._plain = None
+        elif self._plain:
+            self._plain.restart(plan.plain, snapshot, leader=self._tiles)
+        else:
+            self._plain = FrameRenderer(plan.plain, snapshot, self._buffers, leader=self._tiles)
+
+    def _wavelength(self, index):
+        """Return a sample's `ChromaticSample`; that of the reference wavelength for None."""
+        if self.plan.chromatic is None:
+            return None
+        if index is None:
+            return chromatic.ChromaticSample((0.0, 0.0), (1.0,) * 4, self._field)
+        plan = self.plan.chromatic
+        tint = tuple(plan.weights[index].tolist())
+        return chromatic.ChromaticSample(plan.dispersion(index), tint, self._field)
+
+    def _stage(self, plan):
+        buffers, occluders = self._buffers, self._occluders
+        return BokehStage(plan, self._drawing, buffers, occluders, self._highlights, self._field)
+
+    @property
+    def counts(self):
+        """Work done since the frame began, as `DrawingCounts`."""
+        own = self._earlier_rounds + self._drawing.counts
+        return own if self._plain is None else own + self._plain.counts
+
+    @property
+    def highlights(self):
+        """What became of the frame's highlights, as `HighlightCounts`; None without bokeh."""
+        return self._bokeh.counts if self._bokeh else None
+
+    @property
+    def fates(self):
+        """As `BokehStage.fates`; empty without bokeh."""
+        return self._bokeh.fates if self._bokeh else {}
+
+    @property
+    def report(self):
+        """What is not drawn as the camera asks, one sentence each; known after a sample."""
+        return self._bokeh.report if self._bokeh else ()
+
+    def _prepare_targets(self):
+        size = (self.plan.width, self.plan.height)
+        specs = self._target_specs()
+        if (
+            self._targets is None
+            or (self._targets.width, self._targets.height) != size
+            or self._specs != specs
+        ):
+            self._release_targets()
+            self._targets = Targets(*size, specs)
+            self._specs = specs
+        self._targets.forget_framebuffers()
+        for name in ("sum", "focus_sum", "tables"):
+            if name in self._targets:
+                self._targets.clear(name, (0.0, 0.0, 0.0, 0.0))
+
+    def _target_specs(self):
+        fine = self.plan.subpixels
+        specs = [
+            TargetSpec("sample", "RGBA32F", scale=fine),
+            TargetSpec("sample_depth", "DEPTH_COMPONENT32F", scale=fine),
+            TargetSpec("sum", "RGBA32F"),
+            *FramePictures.target_specs(self.plan),
+        ]
+        if self.plan.bokeh:
+            specs.append(TargetSpec("bokeh", "RGBA32F"))
+        if self._mattes:
+            specs.append(TargetSpec("mattes", "RGBA32F", scale=fine))
+        if "Focus Matte" in self.plan.passes:
+            specs.append(TargetSpec("focus_sum", "R32F"))
+        if self._cryptomattes:
+            layers = len(self._cryptomattes) * cryptomatte.slot_pairs(self._cryptomattes)
+            specs.append(TargetSpec("tables", "RGBA32F", layers))
+        specs += self._drawing.specs()
+        if self._tiles:
+            specs += self._tiles.specs()
+        if self._blur:
+            specs += self._blur.specs()
+        return tuple(specs)
+
+    def advance(self, samples, stage=nullcontext):
+        """Render up to `samples` more lens samples.
+
+        Parameters
+        ----------
+        samples : int
+        stage : callable, optional
+            For measuring: called with the name of each part of a sample's work (``bokeh``,
+            ``surfaces``, ``sum``), it returns a context manager in which that is given
+            to the device. Within ``bokeh``, also with those of `BokehStage.run`.
+        """
+        keeping.let_go()
+        self._targets.forget_framebuffers()
+        end = self.samples_done + samples
+        while self.samples_done < end and not self.sampled:
+            if self.samples_done == self.plan.samples:
+                self._begin_round()
+            self._render_sample(self.samples_done, stage)
+            if self._plain:
+                self._plain.advance(1, stage)
+            self.samples_done += 1
+            if self.samples_done % _SAMPLES_IN_FLIGHT == 0:
+                self.wait()
+            if self._tiles and self._tiles.is_look(self.samples_done):
+                with stage("error"):
+                    self._look()
+
+    @property
+    def sampled(self):
+        """Whether no further lens samples are needed."""
+        if self._tiles:
+            return self._tiles.done
+        return self._stopped or self.samples_done >= self.plan.samples
+
+    def stop(self):
+        """Draw no further samples; what there is becomes the picture."""
+        self._stopped = True
+        if self._tiles:
+            self._tiles.note(self.plan, self.samples_done)
+            self._tiles.stop()
+
+    def _look(self):
+        """See whether the picture is good enough, and where it is not."""
+        if self._plain:
+            self._plain._tiles.note(self._plain.plan, self.samples_done)
+        bokeh = self._targets["bokeh"] if self._measures_bokeh else None
+        if self._tiles.look(self.plan, self.samples_done, self._targets, bokeh):
+            for renderer in filter(None, (self, self._plain)):
+                renderer._drawing.confine(renderer._part())
+
+    def _part(self):
+        reach = self._blur.reach if self._blur else 0
+        return self._tiles.part(reach)
+
+    def _begin_round(self):
+        """Plan the samples of the next round, for what is still looked at."""
+        self._earlier_rounds += self._drawing.counts
+        self.plan = extended(self.plan)
+        wavelengths = self._wavelength if self.plan.chromatic else None
+        if earlier := self._blur:
+            self._blur = SubsampleBlur(self.plan, self._drawing.nearest, wavelengths)
+            self._blur.limit(earlier)
+        self._drawing.aim(self.plan, wavelengths, self._highlights, self._part())
+        for spec in self._drawing.specs():
+            if spec.name not in self._targets:
+                self._targets.add(spec)
+        if self.plan.chromatic:
+            # More samples have wavelengths that reach a little further.
+            self._field = chromatic_resources(self.plan.chromatic)
+
+    def wait(self):
+        """Return when the device has drawn everything it was given."""
+        readback.wait(self._targets.framebuffer("sum"))
+
+    def _render_sample(self, index, stage):
+        if self._bokeh and index == 0:
+            with stage("bokeh"):
+                self._bokeh = self._draft or self._whole
+                start = time.perf_counter()
+                self._bokeh.run(self._fullscreen, self._targets, self._pixels, stage)
+                if self._bokeh is self._whole:
+                    self._bokeh_seconds = time.perf_counter() - start
+        with stage("surfaces"):
+            self._draw_sample(index)
+        with stage("sum"):
+            self._add_sample(index)
+        self._drawing.counts.triangles_full_detail += self._drawing.full_detail
+
+    def refine_bokeh(self):
+        """Make a part of the whole bokeh; the last part replaces the draft."""
+        if not self.bokeh_drafted:
+            return
+        self._targets.forget_framebuffers()
+        if self._refining is None:
+            self._refining = self._whole.steps(self._fullscreen, self._targets, self._pixels)
+            self._bokeh_seconds = 0.0
+        start = time.perf_counter()
+        done = next(self._refining, self) is self
+        self._bokeh_seconds += time.perf_counter() - start
+        if done:
+            self._refining = None
+            self._bokeh = self._whole
+            self.bokeh_drafted = False
+
+    def _stop_refining(self):
+        if self._refining is not None:
+            self._refining.close()
+            self._refining = None
+            self._bokeh_seconds = np.inf
+
+    def _draw_sample(self, index):
+        targets = self._targets
+        framebuffer = targets.framebuffer("sample", depth="sample_depth")
+        with framebuffer.bind():
+            framebuffer.clear(color=self._background, depth=1.0)
+        if self._mattes:
+            # What surrounds the scene has no id, and is as sharp as its distance makes it.
+            targets.clear("mattes", (0.0, 0.0, 0.0, self._empty_focus()))
+            framebuffer = targets.framebuffer("sample", "mattes", depth="sample_depth")
+        self._drawing.draw(index, framebuffer, self._view, targets)
+        if self._shows_image:
+            framebuffer_of_color = targets.framebuffer("sample", depth="sample_depth")
+            with framebuffer_of_color.bind(), self._drawing.confined():
+                self._draw_background(index)
+        self._drawing.draw_glows(index, framebuffer, self._view)
+
+    def _draw_background(self, index):
+        background.draw(
+            self._fullscreen,
+            self._view,
+            self._buffers.environment_buffer,
+            self._buffers.environment_image,
+            self.plan.lens_sample(index),
+            self._highlights,
+            self._wavelength(index),
+        )
+        self._drawing.counts.draw_calls += 1
+
+    def _add_sample(self, index):
+        tiles = self._tiles
+        batch = tiles.batch if tiles else self._fullscreen
+        self._drawing.counts.draw_calls += sample_sums.add(
+            batch,
+            self._targets,
+            self.plan,
+            index,
+            self._wavelength(index),
+            self._blur,
+            self._cryptomattes,
+            tiles and tiles.active,
+        )
+
+    def _empty_focus(self):
+        sharp = self.plan.sharp_radius
+        return (sharp / max(abs(self.plan.empty_coc), sharp)) ** 2
+
+    def finished(self):
+        """Whether every sample has been rendered, and the whole bokeh."""
+        return self.sampled and not self.bokeh_drafted
+
+    def texture_bytes(self):
+        """Return how many bytes targets, images and instances hold on the device."""
+        targets = self._targets.bytes if self._targets else 0
+        own = targets + self._drawing.texture_bytes()
+        if self._plain:
+            own += self._plain.texture_bytes() - self._buffers.texture_bytes()
+        return own + self._buffers.texture_bytes()
+
+    def geometry_bytes(self):
+        """Return how many bytes the meshes hold on the device."""
+        return self._buffers.geometry_bytes() + self._drawing.geometry_bytes()
+
+    def release(self):
+        """Give back to the device what nobody else holds; the renderer is of no use after it."""
+        self._stop_refining()
+        self._release_targets()
+        if self._plain:
+            self._plain.release()
+        self._plain = self._buffers = self._drawing = self._blur = self._graded = None
+        self._tiles = None
+        self._bokeh = self._whole = self._draft = self._occluders = self._pictures = None
+        keeping.let_go()
+
+    def _release_targets(self):
+        if self._targets is not None:
+            self._targets.release()
+            self._targets = None

@@ -1,0 +1,51 @@
+"""Adding a drawn lens sample to the sums of a frame: colours, Focus Matte, Cryptomattes."""
+
+import numpy as np
+
+from ...passes import accumulate, cryptomatte
+
+
+def add(batch, targets, plan, index, wavelength, blur, cryptomattes, active):
+    """Add a lens sample to the sums.
+
+    Parameters
+    ----------
+    batch : GPUBatch
+        Over the pixels that the sample is drawn for.
+    targets : Targets
+    plan : FramePlan
+    index : int
+        The sample.
+    wavelength : passes.chromatic.ChromaticSample or None
+        The sample's.
+    blur : SubsampleBlur or None
+    cryptomattes : dict of str to int
+        See `render_passes.cryptomatte_kinds`.
+    active : GPUTexture or None
+        Of the tiles that the sample is drawn for; see `passes.cryptomatte.count`.
+
+    Returns
+    -------
+    int
+        Number of draw calls.
+    """
+    weights = plan.subpixel_weights[index]
+    with targets.framebuffer("sum").bind():
+        if blur:
+            blur.add(batch, targets, index)
+        else:
+            tint = wavelength.tint if wavelength else None
+            accumulate.accumulate(batch, targets["sample"], weights, tint)
+    # The mattes are those of the sample's own place, with the weight of all it stands for.
+    places = np.array([[1.0 + plan.subsample_counts[index]], [1.0]])
+    if plan.chromatic:
+        # As its alpha.
+        places[0] *= plan.chromatic.weights[index, 3]
+    if "focus_sum" in targets:
+        with targets.framebuffer("focus_sum").bind():
+            accumulate.accumulate_focus(batch, targets["mattes"], weights * places)
+    if cryptomattes:
+        cryptomatte.count(
+            targets["mattes"], targets["tables"], cryptomattes, weights * places, active
+        )
+    return 1 + ("focus_sum" in targets)

@@ -1,0 +1,133 @@
+"""Subsample blur in the frame: each lens sample blurred over the part of the lens it stands for.
+
+References
+----------
+Jeong, Kim and Lee, CGF 2013, section 6.
+"""
+
+import numpy as np
+
+from ...device.targets import TargetSpec
+from ...device.textures import texture_2d
+from ...passes import pyramid, subsample
+from ...sampling.spectral_samples import GROUP
+
+# Of the pyramid: footprints wider than 64 texels are sampled too coarsely for any mean to help.
+_MOST_LEVELS = 6
+
+
+class SubsampleBlur:
+    """Blurs the lens samples of a frame.
+
+    Parameters
+    ----------
+    plan : FramePlan
+    nearest : float
+        Least depth of anything that can be seen, m; inf where nothing can.
+    wavelengths : callable, optional
+        From a sample to its `passes.surface.chromatic.ChromaticSample`, with chromatic aberration.
+    """
+
+    def __init__(self, plan, nearest, wavelengths=None):
+        self._plan = plan
+        self._wavelengths = wavelengths
+        self._sweep, self._gain = plan.sweep, None
+        if wavelengths:
+            self._sweep, self._gain = plan.sweep_parts
+        self._nearest = float(self._window_depth(max(nearest, 0.0)))
+        offsets = np.zeros((*plan.subsample_offsets.shape[:2], 4))
+        offsets[..., :2] = plan.subsample_offsets
+        self._offsets = texture_2d(offsets)
+        self._spread = np.abs(plan.subsample_offsets[plan.first :]).max(axis=(0, 1))
+        blur = max(abs(self._coc(self._nearest)), abs(self._coc(1.0)))
+        places = plan.samples + int(plan.subsample_counts.sum())
+        if wavelengths:
+            # Those of the samples that share their places count once.
+            places /= GROUP
+        self._cell = float(np.sqrt(np.pi * plan.lens_extent.prod() / places))
+        # As many levels as the widest footprint of a cell asks for.
+        widest = self._cell / plan.lens_extent.max() * blur
+        self._top = min(max(0, int(np.ceil(np.log2(max(widest, 1.0))))), _MOST_LEVELS)
+        self._levels = max(self._top, self._levels_in_reach())
+
+    def _window_depth(self, depth):
+        if np.isinf(depth):
+            # Nothing is in view: no depth but that of the background.
+            return 1.0
+        plan = self._plan
+        clip = plan.projection @ np.array([0.0, 0.0, -depth, 1.0])
+        return np.clip(clip[2] / max(clip[3], 1e-9) * 0.5 + 0.5, 0.0, 1.0)
+
+    def _coc(self, window_depth, opening=None):
+        """Return the largest movement of a depth along an axis across an opening, in texels."""
+        opening = self._plan.lens_extent if opening is None else opening
+        sweeps = [self._sweep]
+        if self._wavelengths:
+            sweeps = [
+                self._sweep + self._gain * focus
+                for focus in self._plan.chromatic.overall().inverse_focus
+            ]
+        return max(
+            np.abs(opening * (sweep[:2] + sweep[2:] * window_depth)).max() for sweep in sweeps
+        )
+
+    @property
+    def reach(self):
+        """How far from a pixel a sample's colours are looked at, in texels."""
+        moved = max(self._coc(depth, self._spread) for depth in (self._nearest, 1.0))
+        # A texel on either side, and those that a mean of the top level takes in.
+        return int(np.ceil(moved)) + 2 + (2 << self._top)
+
+    def _levels_in_reach(self):
+        """Return how many levels hold the depths of all that a ray of a pixel may meet."""
+        plan = self._plan
+        reach = max(self._coc(depth, self._spread) for depth in (self._nearest, 1.0))
+        side = min(2.0 * (reach + 1.0), max(plan.width, plan.height) * plan.subpixels)
+        return int(np.ceil(np.log2(side)))
+
+    def limit(self, earlier):
+        """Take no more levels than an earlier round, whose targets are used.
+
+        Parameters
+        ----------
+        earlier : SubsampleBlur
+        """
+        self._top = min(self._top, earlier._top)
+        self._levels = min(self._levels, earlier._levels)
+
+    def specs(self):
+        """Return the targets that it needs beside the sample's."""
+        return (
+            # A pyramid of no level still has to be bound.
+            TargetSpec("sample_means", "RGBA32F", max(self._top, 1), 0.5),
+            TargetSpec("sample_ranges", "RG32F", max(self._levels, 1), 0.5),
+        )
+
+    def add(self, fullscreen, targets, index):
+        """Blur a lens sample and add it to the bound frame buffer.
+
+        Parameters
+        ----------
+        fullscreen : GPUBatch
+        targets : Targets
+        index : int
+        """
+        plan = self._plan
+        sample = (targets["sample"], targets["sample_depth"])
+        levels = (targets["sample_means"], targets["sample_ranges"])
+        pyramid.build(*sample, *levels, self._top, self._levels)
+        subsample.blur(
+            fullscreen,
+            (*sample, self._offsets, *levels),
+            sweep=self._sweep,
+            spread=self._spread,
+            depths=(self._nearest, 1.0),
+            cell=self._cell,
+            top=self._top,
+            levels=self._levels,
+            weight=float(plan.subpixel_weights[index].prod()),
+            index=index,
+            count=int(plan.subsample_counts[index]),
+            gain=self._gain,
+            wavelength=self._wavelengths and self._wavelengths(index),
+        )

@@ -1,0 +1,1 @@
+"""What is decided before a frame is drawn: samples, wavelengths, highlights, quality."""

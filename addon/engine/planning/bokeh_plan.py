@@ -1,0 +1,308 @@
+"""The part of a frame plan that concerns highlights: what is peeled, split and splatted.
+
+Highlights are searched from the lens' centre in a raster that reaches beyond the frame, as far as
+the blur of what lies out there reaches in. A pixel of it is a pixel of the picture, divided into
+sub-pixels so that small emitters are met.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...levels.choosing import coc_radius, extents
+from ...sampling.highlights import highlight_share, least_coc
+from ...sampling.iris import Iris
+from ...sampling.pixel_filter import filter_density
+from ...snapshot.brightness import brightest, mirrors
+from ...snapshot.scene import BokehSettings, LensSettings
+from ...snapshot.surface_graph import Constant
+from .bokeh_colors import BokehColors, plan_colors
+from .bokeh_search import (
+    LEAST_SUBPIXELS,
+    corners_of,
+    emitting,
+    graph_of,
+    part_of,
+    rectangles_of,
+    rows_of,
+    subpixels_of_lamps,
+    subpixels_of_triangles,
+)
+
+# Depth that stands for infinity, in focus distances: the circle of confusion differs by 1e-6.
+_INFINITY = 1e6
+# Around the frame, px, for the edges of discs that end just outside.
+_RIM = 2
+# Of drafts: highlights behind one another, and sub-pixels that are afforded.
+_DRAFT_LAYERS = 2
+_DRAFT_RASTER = 1 << 20
+
+
+@dataclass(frozen=True, eq=False)
+class BokehPlan:
+    """How the highlights of a frame are found and drawn.
+
+    Parameters
+    ----------
+    settings : BokehSettings
+    shining : frozenset of (int, int)
+        Group and slot of the surfaces that may be brighter than the threshold.
+    mirroring : frozenset of (int, int)
+        Those of them that look different from different places on the lens.
+    uneven : frozenset of int
+        Groups with shining surfaces whose light differs from place to place.
+    least_coc : float
+        Radius of the circle of confusion from which on light is splatted, px.
+    width, height : int
+        Of the peeled raster in pixels of the picture.
+    margin : tuple of 2 int
+        How far it reaches beyond the frame on the left and below, px; the same on the other sides.
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the peeled raster.
+    subpixels : int
+        Along each side of a pixel of the peeled raster.
+    part : tuple of 4 int
+        x, y, width and height of the part of the raster that has all that shines and does not
+        mirror, px.
+    world : bool
+        The world's image may give highlights.
+    world_share : float
+        Share of its light above the threshold that is splatted.
+    world_depth : float
+        That stands for infinity, m.
+    iris : Iris
+        The lens' opening.
+    real_lens : LensSettings or None
+        That shapes the discs; None: the thin lens.
+    filter_width : float
+        Side of the square that blurs as the pixel filter does, px.
+    colors : BokehColors or None
+        None: one disc for all wavelengths.
+    draft : bool
+        Bounded work, for a view that moves; see `draft_of`.
+    """
+
+    settings: BokehSettings
+    shining: frozenset[tuple[int, int]]
+    mirroring: frozenset[tuple[int, int]]
+    uneven: frozenset[int]
+    least_coc: float
+    width: int
+    height: int
+    margin: tuple[int, int]
+    projection: np.ndarray
+    subpixels: int
+    part: tuple[int, int, int, int]
+    world: bool
+    world_share: float
+    world_depth: float
+    iris: Iris
+    real_lens: LensSettings | None
+    filter_width: float
+    colors: BokehColors | None = None
+    draft: bool = False
+
+    @property
+    def lens_views(self):
+        """Places on the lens that mirroring highlights are looked for from.
+
+        Returns
+        -------
+        ndarray of shape (n^2, 2)
+            In units of half the opening, row by row: the centres of n x n regions; one where
+            nothing mirrors.
+        """
+        side = max(1, int(np.sqrt(self.settings.lens_views))) if self.mirroring else 1
+        axis = (2.0 * np.arange(side) + 1.0) / side - 1.0
+        return np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+
+    @property
+    def mirroring_subpixels(self):
+        """As `subpixels`, of what mirrors: the views together are as many as one would be."""
+        if self.draft:
+            return 1
+        return max(1, LEAST_SUBPIXELS // int(np.sqrt(len(self.lens_views))))
+
+    @property
+    def world_subpixels(self):
+        """As `subpixels`, of the world, whose image has no edges finer than its own pixels."""
+        return 1 if self.draft else LEAST_SUBPIXELS
+
+    @property
+    def whole(self):
+        """The peeled raster as a part of itself: x, y, width and height."""
+        return (0, 0, self.width, self.height)
+
+    @property
+    def layers(self):
+        """Number of highlights behind one another that are found, the world's not counted."""
+        return self.settings.layers
+
+
+def plan_bokeh(snapshot, plan):
+    """Plan the highlights of a frame.
+
+    Parameters
+    ----------
+    snapshot : SceneSnapshot
+    plan : FramePlan
+        Without them.
+
+    Returns
+    -------
+    BokehPlan or None
+        None where nothing is splatted: the settings ask for nothing, or everything is sharp.
+    """
+    settings, lens = snapshot.camera.bokeh, snapshot.camera.lens
+    real_lens = snapshot.camera.real_lens
+    if plan.orthographic or (real_lens and not real_lens.shapes_bokeh):
+        real_lens = None
+    sampling = snapshot.sampling
+    wanted = sampling.method != "REFERENCE" or sampling.reference_bokeh
+    if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
+        return None
+    least = least_coc(plan.samples / (plan.chromatic.samples_for_one if plan.chromatic else 1.0))
+    shining = _shining(snapshot.content, settings.threshold)
+    rows, _ = rows_of(snapshot.content, shining)
+    seen = extents(corners_of(snapshot.content, rows), plan.view)
+    colors = None
+    if plan.chromatic:
+        farthest = float(seen.farthest.max(initial=plan.focus_distance))
+        aberration = snapshot.camera.chromatic
+        colors = plan_colors(aberration, plan.chromatic, plan.coc_scale, farthest)
+    largest = _largest_coc(snapshot.content, plan, seen, colors)
+    if largest <= least:
+        return None
+    margin = _margin(plan, settings, largest, colors)
+    width, height = plan.width + 2 * margin[0], plan.height + 2 * margin[1]
+    # Of a parallel camera, all pixels show the same point at infinity: it is no highlight.
+    world = settings.world and bool(snapshot.content.world.image)
+    world = world and not snapshot.film.transparent
+    world = world and not plan.orthographic
+    film = snapshot.film
+    projection = np.diag([plan.width / width, plan.height / height, 1.0, 1.0]) @ plan.projection
+    mirroring = _mirroring(snapshot.content, shining)
+    rows, _ = rows_of(snapshot.content, shining - mirroring)
+    part = part_of(rectangles_of(snapshot.content, rows, plan, projection, (width, height)))
+    rows, of_group = rows_of(snapshot.content, emitting(snapshot.content, shining))
+    lamps = rectangles_of(snapshot.content, rows, plan, projection, (width, height))
+    return BokehPlan(
+        settings=settings,
+        shining=shining,
+        mirroring=mirroring,
+        uneven=_uneven(snapshot.content, shining),
+        least_coc=least,
+        width=width,
+        height=height,
+        margin=margin,
+        projection=projection,
+        subpixels=max(
+            subpixels_of_triangles(snapshot.content, plan, rows, of_group, (width, height)),
+            subpixels_of_lamps(lamps, part),
+        ),
+        part=part,
+        world=world,
+        world_share=float(highlight_share(plan.empty_coc, least)) if world else 0.0,
+        world_depth=_INFINITY * max(plan.focus_distance, 1.0),
+        iris=lens.iris,
+        real_lens=real_lens,
+        filter_width=filter_width(film.filter_kind, film.filter_size_px),
+        colors=colors,
+    )
+
+
+def draft_of(bokeh):
+    """Return a plan of the same light with little work: few sources, few layers, coarse masks.
+
+    What is splatted, and what the lens samples keep, is divided as before, so that the same
+    samples go with either.
+
+    Parameters
+    ----------
+    bokeh : BokehPlan
+
+    Returns
+    -------
+    BokehPlan
+    """
+    settings = bokeh.settings
+    _, _, width, height = bokeh.part
+    affordable = int(np.sqrt(_DRAFT_RASTER / max(width * height, 1)))
+    return replace(
+        bokeh,
+        settings=replace(
+            settings,
+            model="CLUSTERED",
+            similarity=max(settings.similarity, 1.0),
+            global_merge=False,
+            visibility="WARP",
+            layers=min(settings.layers, _DRAFT_LAYERS),
+            lens_views=1,
+        ),
+        subpixels=max(1, min(bokeh.subpixels, LEAST_SUBPIXELS, affordable)),
+        colors=bokeh.colors and bokeh.colors.draft(),
+        draft=True,
+    )
+
+
+def _shining(content, threshold):
+    """Return which surfaces may be brighter than the threshold: (group, slot)."""
+    return frozenset(
+        (number, slot)
+        for number, (group, bounds) in enumerate(
+            zip(content.groups, brightest(content), strict=True)
+        )
+        for (slot, _, _), bound in zip(content.meshes[group.mesh].slots, bounds, strict=True)
+        if bound > threshold
+        and content.materials[group.materials[slot]].highlights
+        and not group.holdout
+    )
+
+
+def _mirroring(content, shining):
+    """Return which of the surfaces look different from different places on the lens."""
+    return frozenset(key for key in shining if mirrors(graph_of(content, key)))
+
+
+def _uneven(content, shining):
+    """Return the groups with shining surfaces that are more than one even emission."""
+    return frozenset(
+        key[0]
+        for key in shining
+        if not all(
+            node.kind == "emission"
+            and all(isinstance(source, Constant) for _, source in node.inputs)
+            for node in graph_of(content, key).nodes
+        )
+    )
+
+
+def _largest_coc(content, plan, seen, colors):
+    changes = (0.0,) if colors is None else colors.focus_changes[:2]
+    largest = 0.0
+    if content.world.image:
+        largest = max(abs(plan.empty_coc + plan.coc_scale * change) for change in changes)
+    front = seen.farthest > 0.0
+    near = np.maximum(seen.nearest[front], 1e-3 * plan.focus_distance)
+    for depth in (near, seen.farthest[front]):
+        coc = coc_radius(depth, plan)
+        for change in changes:
+            moved = coc + plan.coc_scale * change * (depth if plan.orthographic else 1.0)
+            largest = max(largest, float(np.abs(moved).max(initial=0.0)))
+    return largest
+
+
+def _margin(plan, settings, largest, colors):
+    narrowing = plan.lens_extent / plan.lens_extent[1]
+    limit = settings.overscan * max(plan.width, plan.height)
+    # From where a smaller scale brings discs in.
+    moved = colors.growth * max(plan.width, plan.height) if colors else 0.0
+    return tuple(int(np.ceil(min(largest * n + moved, limit))) + _RIM for n in narrowing)
+
+
+def filter_width(kind, size_px):
+    """Return the width of the box with the variance of a pixel filter along an axis, px."""
+    reach = 2.0 * size_px
+    places = (np.arange(1024) + 0.5) / 1024 * 2.0 * reach - reach
+    density = filter_density(places, kind, size_px)
+    return float(np.sqrt(12.0 * (density * places**2).sum() / density.sum()))

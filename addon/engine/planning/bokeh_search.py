@@ -1,0 +1,177 @@
+"""Where a frame's highlights are searched, and how finely.
+
+The raster of the search has a texel for each sub-pixel; only the part where surfaces may shine is
+drawn, tile by tile.
+"""
+
+import numpy as np
+
+from ...levels.choosing import extents, world_corners
+from ...snapshot.brightness import emits
+
+# Of the raster that highlights are searched in, in sub-pixels, and of a tile of it (20 bytes each a
+# layer).
+_LARGEST_RASTER = 1 << 26
+_LARGEST_TILE = 1 << 22
+LEAST_SUBPIXELS, _MOST_SUBPIXELS = 2, 4
+# Sub-pixels along a side of a triangle that shines: a lamp of one is met within a few per cent.
+_HITS_A_SIDE = 6.0
+# Across a lamp that stands alone: its light is met within one per cent. The error of m sub-pixels
+# of a lamp falls with m^(3/4); that of the sum of k lamps as if each had k^(2/3) times as many.
+_HITS_A_LAMP = 45.0
+# Sub-pixels along a side of a pixel, and all of them, for the sake of single lamps.
+_FINEST = 64
+_FINE_RASTER = 1 << 21
+# Of a tile's longer side, in sub-pixels.
+_LONGEST_TILE = 8192
+
+
+def graph_of(content, key):
+    """Return the `SurfaceGraph` of a surface, given as group and slot."""
+    number, slot = key
+    return content.materials[content.groups[number].materials[slot]].graph
+
+
+def tiles_of(part, subpixels):
+    """Divide a part of the raster into tiles that are searched one after another.
+
+    Parameters
+    ----------
+    part : tuple of 4 int
+        x, y, width and height, px; one without area has no tiles.
+    subpixels : int
+        Along each side of a pixel.
+
+    Returns
+    -------
+    list of tuple of 4 int
+        x, y, width and height in pixels; the first is as large as any.
+    """
+    left, below, width, height = part
+    if width == 0 or height == 0:
+        return []
+    most = max(_LARGEST_TILE // subpixels**2, 1)
+    longest = max(_LONGEST_TILE // subpixels, 1)
+    if width * height > most:
+        longest = min(longest, int(np.sqrt(most)))
+    w = -(-width // -(-width // longest))
+    h = min(max(most // w, 1), height, max(_LONGEST_TILE // subpixels, 1))
+    return [
+        (left + x, below + y, min(w, width - x), min(h, height - y))
+        for y in range(0, height, h)
+        for x in range(0, width, w)
+    ]
+
+
+def emitting(content, shining):
+    """Return which of the surfaces have light of their own."""
+    return frozenset(key for key in shining if emits(graph_of(content, key)))
+
+
+def rows_of(content, shining):
+    """Return the rows of the instance table that have shining surfaces, and their groups."""
+    groups = [(number, content.groups[number]) for number in sorted({n for n, _ in shining})]
+    rows = [np.arange(g.first, g.first + g.count) for _, g in groups]
+    of_group = [np.full(g.count, number) for number, g in groups]
+    empty = [np.zeros(0, int)]
+    return np.concatenate(empty + rows), np.concatenate(empty + of_group)
+
+
+def corners_of(content, rows):
+    """Return the corners of the boxes of instances in the world, shape (R, 8, 3)."""
+    bounds = {group.mesh: content.meshes[group.mesh].bounds for group in content.groups}
+    return world_corners(content, bounds)[rows]
+
+
+def rectangles_of(content, rows, plan, projection, size):
+    """Return where in the raster the boxes of instances are seen.
+
+    Parameters
+    ----------
+    content : SceneContent
+    rows : ndarray of shape (R,)
+        Of the instance table.
+    plan : FramePlan
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the raster.
+    size : tuple of 2 int
+        Of the raster, px.
+
+    Returns
+    -------
+    lower, upper : ndarray of shape (K, 2)
+        Of the boxes that are seen, px; of those that reach behind the camera, the whole raster's.
+    size : tuple of 2 int
+    """
+    corners = corners_of(content, rows) @ plan.view[:3, :3].T + plan.view[:3, 3]
+    clip = np.concatenate([corners, np.ones((*corners.shape[:2], 1))], axis=2) @ projection.T
+    w = clip[..., 3:]
+    ahead = (w > 1e-6).all(axis=(1, 2))
+    places = (clip[..., :2] / np.where(w > 1e-6, w, 1.0) * 0.5 + 0.5) * size
+    lower = np.where(ahead[:, None], places.min(axis=1), 0.0)
+    upper = np.where(ahead[:, None], places.max(axis=1), size)
+    seen = (w > 1e-6).any(axis=(1, 2)) & (upper > 0.0).all(axis=1) & (lower < size).all(axis=1)
+    return lower[seen], upper[seen], size
+
+
+def part_of(rectangles):
+    """Return the part of the raster that holds all rectangles: x, y, width, height."""
+    lower, upper, size = rectangles
+    if len(lower) == 0:
+        return (0, 0, 0, 0)
+    # A pixel more, for rounding.
+    x, y = (max(int(np.floor(v)) - 1, 0) for v in lower.min(axis=0))
+    right, top = (min(int(np.ceil(v)) + 1, s) for v, s in zip(upper.max(axis=0), size, strict=True))
+    return (x, y, right - x, top - y)
+
+
+def subpixels_of_triangles(content, plan, rows, of_group, size):
+    """Return how finely highlights are searched: several times in small triangles that emit.
+
+    Parameters
+    ----------
+    content : SceneContent
+    plan : FramePlan
+    rows, of_group : ndarray of shape (R,)
+        Instances with emitting surfaces, and their groups.
+    size : tuple of 2 int
+        Of the raster in pixels.
+
+    Returns
+    -------
+    int
+    """
+    width, height = size
+    seen = extents(corners_of(content, rows), plan.view)
+    affordable = int(np.sqrt(_LARGEST_RASTER / (width * height)))
+    area = np.array([content.meshes[g.mesh].triangle_area for g in content.groups])[of_group]
+    stretch = np.abs(np.linalg.det(content.instances.world[rows, :3, :3].astype(float)))
+    side = np.sqrt(area) * np.cbrt(stretch) * plan.projection[1, 1] * plan.height / 2.0
+    if not plan.orthographic:
+        side = side / np.maximum(seen.center_depth, 1e-3 * plan.focus_distance)
+    front = (seen.farthest > 0.0) & (side > 0.0)
+    wanted = np.ceil(_HITS_A_SIDE / side[front].min(initial=np.inf)) if front.any() else 0
+    return max(1, min(affordable, max(int(min(wanted, _MOST_SUBPIXELS)), LEAST_SUBPIXELS)))
+
+
+def subpixels_of_lamps(rectangles, part):
+    """Return how finely small lamps are searched so that each keeps its energy.
+
+    Parameters
+    ----------
+    rectangles : tuple
+        Of the instances that emit; see `rectangles_of`.
+    part : tuple of 4 int
+        That is searched.
+
+    Returns
+    -------
+    int
+    """
+    lower, upper, _ = rectangles
+    if len(lower) == 0:
+        return 1
+    width = max(float((upper - lower).max(axis=1).min()), 1e-3)
+    wanted = np.ceil(_HITS_A_LAMP / (width * np.cbrt(len(lower))))
+    affordable = int(np.sqrt(_FINE_RASTER / (part[2] * part[3])))
+    return int(min(wanted, affordable, _FINEST))

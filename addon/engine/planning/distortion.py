@@ -1,0 +1,205 @@
+"""Distortion of the picture: a larger raster without it, and where each pixel lies in that.
+
+Everything is drawn without distortion, in a raster that covers what the distorted picture shows;
+the picture is then sampled from it, once, when it is made. Division model (methods 13) over the
+field, the plane at 1 m from the lens (see `engine.planning.chromatic`): what is seen at d is what
+lies at ``u = d / (1 + K |d|^2)`` without distortion. The middle is the optical axis; K is in units
+of the distance of the picture's outermost corner from it. Farther out, where only a viewport looks,
+the scale stays what it is at the corner.
+
+A barrel shows more of the scene than the frame holds. A pincushion enlarges its corners: the raster
+is as fine as they need, within a limit. The pixel filter is that of a pixel of the raster; where
+those are smaller than the picture's, the sampling is blurred by the rest.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .bokeh_plan import filter_width
+from .chromatic import field_of_raster, picture_radius
+
+# Pixels of the raster along one of the picture, at most: four times the work.
+_FINEST = 2.0
+# Around what the picture shows, px: the reach of the sampling and of its blur.
+_RIM = 4
+
+
+@dataclass(frozen=True, eq=False)
+class DistortionPlan:
+    """Where the pixels of a distorted picture lie in the raster without distortion.
+
+    Parameters
+    ----------
+    k : float
+        Of the division model, per square of the field's unit.
+    radius : float
+        Of the picture's outermost corner in the field.
+    width, height : int
+        Of the picture, px.
+    to_field : ndarray of shape (4,)
+        From places in the picture, px, to the field: scale and offset, x and y each.
+    from_field : ndarray of shape (4,)
+        From the field to places in the raster, px.
+    fineness : float
+        Pixels of the raster along one of the picture, where nothing is distorted.
+    filter_width : float
+        Side of the square that blurs as the pixel filter does, px.
+    """
+
+    k: float
+    radius: float
+    width: int
+    height: int
+    to_field: np.ndarray
+    from_field: np.ndarray
+    fineness: float
+    filter_width: float
+
+    def sources(self, places):
+        """Return where places of the picture lie in the raster.
+
+        Parameters
+        ----------
+        places : ndarray of shape (..., 2)
+            In px.
+
+        Returns
+        -------
+        ndarray of shape (..., 2)
+            In px.
+        """
+        field = places * self.to_field[:2] + self.to_field[2:]
+        return field * self._factor(field) * self.from_field[:2] + self.from_field[2:]
+
+    def pictured(self, sources):
+        """Return where places of the raster lie in the picture; the inverse of `sources`."""
+        field = (sources - self.from_field[2:]) / self.from_field[:2]
+        square = np.sum(field**2, axis=-1, keepdims=True)
+        corner = 1.0 + self.k * self.radius**2
+        root = np.sqrt(np.maximum(1.0 - 4.0 * self.k * square, 0.0))
+        inside = square <= (self.radius / corner) ** 2
+        field = field * np.where(inside, 2.0 / (1.0 + root), corner)
+        return (field - self.to_field[2:]) / self.to_field[:2]
+
+    def growth(self, places):
+        """Return how many pixels of the raster lie along a pixel of the picture.
+
+        Parameters
+        ----------
+        places : ndarray of shape (..., 2)
+            In the picture, px.
+
+        Returns
+        -------
+        ndarray of shape (..., 2)
+            Away from the axis and across.
+        """
+        field = places * self.to_field[:2] + self.to_field[2:]
+        square = np.sum(field**2, axis=-1, keepdims=True)
+        across = self._factor(field)
+        along = np.where(square < self.radius**2, across**2 * (1.0 - self.k * square), across)
+        return self.fineness * np.concatenate([along, across], axis=-1)
+
+    def centres(self):
+        """Return the middles of the picture's pixels, shape (height, width, 2), px."""
+        x, y = np.arange(self.width) + 0.5, np.arange(self.height) + 0.5
+        return np.stack(np.meshgrid(x, y), axis=-1)
+
+    def nearest(self, size):
+        """Return which pixel of the raster each of the picture's shows: rows and columns.
+
+        Parameters
+        ----------
+        size : tuple of 2 int
+            Width and height of the raster.
+
+        Returns
+        -------
+        tuple of 2 ndarray of shape (height, width)
+        """
+        places = np.floor(self.sources(self.centres())).astype(int)
+        places = np.clip(places, 0, np.array(size) - 1)
+        return places[..., 1], places[..., 0]
+
+    def _factor(self, field):
+        square = np.sum(field**2, axis=-1, keepdims=True)
+        return 1.0 / (1.0 + self.k * np.minimum(square, self.radius**2))
+
+
+def plan_distortion(snapshot):
+    """Plan the distortion of a frame.
+
+    Parameters
+    ----------
+    snapshot : SceneSnapshot
+
+    Returns
+    -------
+    distortion : DistortionPlan or None
+        None where there is none.
+    snapshot : SceneSnapshot
+        What is drawn: of the larger raster where there is distortion, else the one given.
+    """
+    camera, film = snapshot.camera, snapshot.film
+    k = camera.bokeh.distortion if camera.bokeh else 0.0
+    if k == 0.0:
+        return None, snapshot
+    x, y, width, height = film.region
+    radius = camera.field_radius or picture_radius(camera.projection, camera.orthographic)
+    # Of the whole frame, so that all its parts have the same pixels.
+    fineness = min(max(1.0, (1.0 + k) ** 2 / (1.0 - k)), _FINEST)
+    to_field = field_of_raster(camera.projection, film)
+    whole = field_of_raster(camera.projection, replace(film, region=(0, 0, *film.region[2:])))
+    from_field = np.concatenate([fineness / whole[:2], -fineness * whole[2:] / whole[:2]])
+    distortion = DistortionPlan(
+        k=k / radius**2,
+        radius=radius,
+        width=width,
+        height=height,
+        to_field=to_field,
+        from_field=from_field,
+        fineness=fineness,
+        filter_width=filter_width(film.filter_kind, film.filter_size_px),
+    )
+    low, high = _covered(distortion)
+    distortion = replace(distortion, from_field=from_field - (0.0, 0.0, *low))
+    columns, rows = (high - low).tolist()
+    crop = _crop(fineness * np.array([film.width, film.height]), low, high)
+    wide = replace(
+        camera,
+        projection=crop @ camera.projection,
+        previous=camera.previous and (camera.previous[0], crop @ camera.previous[1]),
+        next=camera.next and (camera.next[0], crop @ camera.next[1]),
+        field_radius=radius,
+    )
+    film = replace(film, width=columns, height=rows, region=(0, 0, columns, rows))
+    return distortion, replace(snapshot, camera=wide, film=film)
+
+
+def _covered(distortion):
+    """Return the corners, in whole pixels, of what the picture shows of the raster."""
+    across, up = (np.linspace(0.0, n, 4 * n + 1) for n in (distortion.width, distortion.height))
+    # The map is continuous and has an inverse: the edge shows how far it reaches.
+    edge = np.concatenate(
+        [
+            np.stack(np.broadcast_arrays(x, y), axis=-1)
+            for x, y in (
+                (across, 0.0),
+                (across, float(distortion.height)),
+                (0.0, up),
+                (float(distortion.width), up),
+            )
+        ]
+    )
+    reached = distortion.sources(edge)
+    low = np.floor(reached.min(axis=0)).astype(int) - _RIM
+    return low, np.ceil(reached.max(axis=0)).astype(int) + _RIM
+
+
+def _crop(size, low, high):
+    """Return what restricts the clip space of a picture of a size to a part, both in px."""
+    crop = np.eye(4)
+    crop[[0, 1], [0, 1]] = size / (high - low)
+    crop[:2, 3] = (size - low - high) / (high - low)
+    return crop

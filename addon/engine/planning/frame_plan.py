@@ -1,0 +1,223 @@
+"""What the pipeline carries out: every number a frame needs, as a value."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .bokeh_plan import BokehPlan
+from .chromatic import ChromaticPlan
+from .distortion import DistortionPlan
+from .frame_samples import SampleSource
+
+
+@dataclass(frozen=True)
+class AutomaticSampling:
+    """How a frame finds its number of samples while it is drawn.
+
+    Parameters
+    ----------
+    error : float
+        Of the picture, 1 - SSIM.
+    least, most : int
+        Lens samples.
+    unit : int
+        Samples that share a place on the lens; see `sampling.rounds`.
+    """
+
+    error: float
+    least: int
+    most: int
+    unit: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class FramePlan:
+    """What the pipeline carries out.
+
+    Parameters
+    ----------
+    width, height : int
+        Of the rendered region, in pixels; with distortion those of the raster that is drawn.
+    origin : tuple of 2 int
+        Lower left pixel of the region in the picture.
+    view : ndarray of shape (4, 4)
+        World to camera space.
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the region.
+    orthographic : bool
+    focus_distance : float
+        In m.
+    lens_positions : ndarray of shape (N, 2)
+        Places on the lens, in m.
+    jitter : ndarray of shape (N, 2)
+        Sub-pixel movement in clip units of the region.
+    subpixels : int
+        Sub-pixels along each side of a pixel in a lens sample's raster; see `subpixels`.
+    subpixel_weights : ndarray of shape (N, 2, subpixels)
+        Of the columns and rows of sub-pixels; see `sampling.pixel_filter.subpixel_weights`.
+    subsample_offsets : ndarray of shape (N, K, 2)
+        Places on the lens that a sample stands for besides its own, relative to it, in m.
+    subsample_counts : ndarray of shape (N,)
+        int; how many of them each sample has.
+    level_bias : float or None
+        Subtracted from the level of detail; None draws everything in full detail.
+    least_triangles : int
+        No level of detail has fewer.
+    reuse_grid : int
+        Cells along a pixel in which samples share a drawing; 0 shares none.
+    progressive : bool
+        The frame may be given up before all its samples are drawn.
+    lens_extent : ndarray of shape (2,)
+        Half the width and height of the opening, in m.
+    coc_scale : float
+        Radius of the circle of confusion in pixels, for `lib/lens_lib.glsl`.
+    sharp_radius : float
+        Largest radius that counts as sharp, in pixels; see `sharp_radius`.
+    empty_coc : float
+        Radius of the circle of confusion where nothing is, in pixels.
+    passes : tuple of str
+    alpha_threshold : float
+        Opacity below which a surface is left out of the data passes.
+    previous, next : ndarray of shape (4, 4)
+        World to clip space of the region in the neighbouring frames.
+    bokeh : BokehPlan or None
+        None draws highlights as everything else.
+    chromatic : ChromaticPlan or None
+        None: every sample stands for all wavelengths.
+    plain : FramePlan or None
+        The same frame without chromatic aberration, where Fringe needs it.
+    distortion : DistortionPlan or None
+        How the picture is made of the raster that is drawn; None: it is that raster.
+    source : SampleSource or None
+        What the samples are drawn from.
+    automatic : AutomaticSampling or None
+        The plan is then that of the samples up to the end of a round; see `plan.extended`.
+    first : int
+        First sample of the round: what samples have in common, levels of detail and drawings, is
+        divided among those from here on.
+    time_limit : float or None
+        Seconds of drawing after which no further samples are drawn.
+    """
+
+    width: int
+    height: int
+    origin: tuple[int, int]
+    view: np.ndarray
+    projection: np.ndarray
+    orthographic: bool
+    focus_distance: float
+    lens_positions: np.ndarray
+    jitter: np.ndarray
+    subpixels: int
+    subpixel_weights: np.ndarray
+    subsample_offsets: np.ndarray
+    subsample_counts: np.ndarray
+    level_bias: float | None
+    least_triangles: int
+    reuse_grid: int
+    progressive: bool
+    lens_extent: np.ndarray
+    coc_scale: float
+    sharp_radius: float
+    empty_coc: float
+    passes: tuple[str, ...]
+    alpha_threshold: float
+    previous: np.ndarray
+    next: np.ndarray
+    bokeh: BokehPlan | None = None
+    chromatic: ChromaticPlan | None = None
+    plain: "FramePlan | None" = None
+    distortion: DistortionPlan | None = None
+    source: SampleSource | None = None
+    automatic: AutomaticSampling | None = None
+    first: int = 0
+    time_limit: float | None = None
+
+    @property
+    def size(self):
+        """Width and height of the picture, in pixels."""
+        made = self.distortion or self
+        return made.width, made.height
+
+    @property
+    def samples(self):
+        """Number of lens samples."""
+        return len(self.lens_positions)
+
+    def weight(self, samples):
+        """Return the summed weight of the first `samples` lens samples.
+
+        Parameters
+        ----------
+        samples : int
+
+        Returns
+        -------
+        float or tuple of 4 float
+            With chromatic aberration that of red, green, blue and alpha.
+        """
+        found = self.sample_weights(0, samples).sum(axis=0)
+        return float(found[0]) if self.chromatic is None else tuple(found.tolist())
+
+    def sample_weights(self, first, end):
+        """Return the weights of samples `first` to `end - 1` in red, green, blue and alpha.
+
+        Returns
+        -------
+        ndarray of shape (end - first, 4)
+        """
+        own = self.subpixel_weights[first:end].sum(axis=2).prod(axis=1)
+        own = own * (1 + self.subsample_counts[first:end])
+        if self.chromatic is None:
+            return np.repeat(own[:, None], 4, axis=1)
+        return own[:, None] * self.chromatic.weights[first:end]
+
+    def in_round(self, sample):
+        """Return which sample of its round a sample is, and how many the round has."""
+        return sample - self.first, self.samples - self.first
+
+    def lens_sample(self, index):
+        """Return a sample's place on the lens in m and its jitter in clip units, 4 numbers."""
+        return (*self.lens_positions[index].tolist(), *self.jitter[index].tolist())
+
+    @property
+    def blurs(self):
+        """Whether any lens sample is blurred over subsamples."""
+        return bool(self.subsample_counts.any())
+
+    @property
+    def sweep(self):
+        """How far surfaces move between two places on the lens; see ``lib/bokeh/sweep_lib.glsl``.
+
+        Returns
+        -------
+        ndarray of shape (4,)
+            In texels a metre: constant, x and y, and per unit of the depth buffer.
+        """
+        size = np.array([self.width, self.height]) * self.subpixels
+        scale = np.diag(self.projection)[:2] * size / 2.0
+        slope, offset = self.projection[2, 2:]
+        focus = self.focus_distance
+        if self.orthographic:
+            constant, linear = (offset + 1.0) / (slope * focus) - 1.0, -2.0 / (slope * focus)
+        else:
+            constant, linear = 1.0 / focus - (slope - 1.0) / offset, -2.0 / offset
+        return np.concatenate([scale * constant, scale * linear])
+
+    @property
+    def sweep_parts(self):
+        """The `sweep` in two parts, for a focus that varies over the field.
+
+        Returns
+        -------
+        base, gain : ndarray of shape (4,)
+            The sweep is ``base + gain / focus_distance``.
+        """
+        size = np.array([self.width, self.height]) * self.subpixels
+        scale = np.diag(self.projection)[:2] * size / 2.0
+        slope, offset = self.projection[2, 2:]
+        if self.orthographic:
+            base, gain = (-1.0, 0.0), ((offset + 1.0) / slope, -2.0 / slope)
+        else:
+            base, gain = (-(slope - 1.0) / offset, -2.0 / offset), (1.0, 0.0)
+        return tuple(np.outer(part, scale).ravel() for part in (base, gain))

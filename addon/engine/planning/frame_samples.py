@@ -1,0 +1,109 @@
+"""The samples of a frame: places on the lens and in the pixel, wavelengths, further places."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...sampling.chromatic import ChromaticAberration
+from ...sampling.pixel_filter import subpixel_weights
+from ...sampling.rounds import FURTHER_PLACES
+from ...sampling.sequence import lens_samples, pixel_offsets
+from ...sampling.spectral_samples import SpectralSamples, wavelengths_for
+from ...sampling.subsamples import subsample_offsets
+from ...sampling.thin_lens import ThinLens
+
+
+@dataclass(frozen=True, eq=False)
+class FrameSamples:
+    """N lens samples.
+
+    Parameters
+    ----------
+    lens_positions : ndarray of shape (N, 2)
+        In m.
+    pixel_offsets : ndarray of shape (N, 2)
+        From the pixel's centre, px.
+    subpixel_weights : ndarray of shape (N, 2, subpixels)
+        See `sampling.pixel_filter.subpixel_weights`.
+    subsample_offsets, subsample_counts : ndarray
+        See `sampling.subsamples.subsample_offsets`; in m.
+    colors : SpectralSamples or None
+    """
+
+    lens_positions: np.ndarray
+    pixel_offsets: np.ndarray
+    subpixel_weights: np.ndarray
+    subsample_offsets: np.ndarray
+    subsample_counts: np.ndarray
+    colors: SpectralSamples | None
+
+
+@dataclass(frozen=True, eq=False)
+class SampleSource:
+    """What the samples of a frame are drawn from.
+
+    Parameters
+    ----------
+    lens : ThinLens or None
+        None sees everything from one place.
+    aberration : ChromaticAberration or None
+    subsamples : int
+        Further places of each sample, on the average.
+    filter_kind : str
+    filter_size_px : float
+    subpixels, seed : int
+    progressive : bool
+        The picture may be looked at before it is done.
+    endless : bool
+        Its number of samples is not known yet: the samples of a smaller number are the first ones
+        of a larger, with their further places and weights (`sampling.rounds`).
+    """
+
+    lens: ThinLens | None
+    aberration: ChromaticAberration | None
+    subsamples: int
+    filter_kind: str
+    filter_size_px: float
+    subpixels: int
+    seed: int
+    progressive: bool
+    endless: bool
+
+    def draw(self, count):
+        """Return the first `count` samples, as `FrameSamples`."""
+        colors = None
+        taken = np.arange(count)
+        if self.aberration is not None:
+            colors = wavelengths_for(
+                self.aberration, count, self.seed, in_proportion=not self.endless
+            )
+            # Samples of several wavelengths may look from the same place.
+            taken = colors.lens_indices
+        different = int(taken.max()) + 1
+        positions, offsets, counts = self._places(different)
+        pixel = pixel_offsets(
+            0, different, self.filter_kind, self.filter_size_px, self.seed, self.subpixels
+        )[taken]
+        weights = [
+            subpixel_weights(axis, self.filter_kind, self.filter_size_px, self.subpixels)
+            for axis in pixel.T
+        ]
+        return FrameSamples(
+            lens_positions=positions[taken],
+            pixel_offsets=pixel,
+            subpixel_weights=np.stack(weights, axis=1),
+            subsample_offsets=offsets[taken],
+            subsample_counts=counts[taken],
+            colors=colors,
+        )
+
+    def _places(self, count):
+        if self.lens is None:
+            return np.zeros((count, 2)), np.zeros((count, 0, 2)), np.zeros(count, int)
+        further = count * self.subsamples
+        first = FURTHER_PLACES if self.endless else count
+        positions, others = (
+            lens_samples(start, number, self.lens.iris, self.seed) * self.lens.aperture_radius
+            for start, number in ((0, count), (first, further))
+        )
+        return positions, *subsample_offsets(positions, others, self.progressive or self.endless)

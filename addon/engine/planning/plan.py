@@ -1,0 +1,278 @@
+"""From a snapshot to a frame plan: every number a frame needs, decided before anything is drawn."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...sampling.pixel_filter import filter_support
+from ...sampling.rounds import first_look
+from ...sampling.spectral_samples import GROUP
+from .bokeh_plan import plan_bokeh
+from .chromatic import plan_chromatic
+from .distortion import plan_distortion
+from .frame_plan import AutomaticSampling, FramePlan
+from .frame_samples import SampleSource
+from .quality import LEAST_ERROR, settle
+
+# Diagonals of the picture over the diameter of the largest circle of confusion that counts as
+# sharp: the usual criterion of depth-of-field tables (0.029 mm for 36 x 24 mm).
+_SHARP_CIRCLES_PER_DIAGONAL = 1500.0
+
+# Their wavelengths reach as far as those of many.
+_TYPICAL_SAMPLES = 64
+
+# Sub-pixels along a side of a pixel: as many as two vectors of weights hold.
+_MOST_SUBPIXELS = 4
+# A lens sample's raster, in pixels (20 bytes each), and its longer side: within any device's means.
+_LARGEST_RASTER = 1 << 24
+_LONGEST_RASTER = 8192
+
+
+def region_projection(projection, film):
+    """Restrict a projection to the rendered region of the film.
+
+    Parameters
+    ----------
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the whole picture.
+    film : Film
+
+    Returns
+    -------
+    ndarray of shape (4, 4)
+    """
+    x, y, width, height = film.region
+    crop = np.eye(4)
+    crop[0, 0] = film.width / width
+    crop[1, 1] = film.height / height
+    crop[0, 3] = (film.width - 2 * x - width) / width
+    crop[1, 3] = (film.height - 2 * y - height) / height
+    return crop @ projection
+
+
+def subpixels(content, width, height, support=1.0):
+    """Choose how finely a lens sample is rasterised.
+
+    Where triangles are smaller than pixels, one place a pixel sees one triangle of many, and the
+    average over the lens samples stays noisy. The raster is therefore made about as fine as the
+    geometry, so that its cost stays in proportion to that of the triangles.
+
+    Parameters
+    ----------
+    content : SceneContent
+    width, height : int
+        Of the rendered region, in pixels.
+    support : float
+        Width of the pixel filter, in pixels: what lies outside of it would be drawn for nothing.
+
+    Returns
+    -------
+    int
+        Sub-pixels along each side of a pixel.
+    """
+    triangles = sum(len(content.meshes[g.mesh].triangles) * g.count for g in content.groups)
+    wanted = min(int(np.ceil(np.sqrt(triangles / (width * height)))), _MOST_SUBPIXELS)
+    wanted = int(wanted * min(support, 1.0))
+    affordable = min(
+        int(np.sqrt(_LARGEST_RASTER / (width * height))), _LONGEST_RASTER // max(width, height)
+    )
+    return max(1, min(wanted, affordable))
+
+
+def sharp_radius(width, height):
+    """Return the largest radius of a circle of confusion that counts as sharp.
+
+    A circle whose diameter is 1/1500 of the picture's diagonal, but at least one pixel, so that the
+    matte of a small picture is not decided by less than it can show. Focus Matte is the share of a
+    point's light that falls inside that circle: 1 up to this radius, then falling with its square.
+
+    Parameters
+    ----------
+    width, height : int
+        Of the whole picture, in pixels.
+
+    Returns
+    -------
+    float
+        In pixels.
+    """
+    return 0.5 * max(1.0, float(np.hypot(width, height)) / _SHARP_CIRCLES_PER_DIAGONAL)
+
+
+def coc_scale(projection, film, lens):
+    """Return the factor from defocus to pixels of the circle of confusion.
+
+    The radius is that along the picture's vertical, which an anamorphic iris leaves alone.
+
+    Parameters
+    ----------
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the whole picture.
+    film : Film
+    lens : ThinLens or None
+
+    Returns
+    -------
+    float
+        In pixels times the unit of the depth for a perspective camera (aperture radius times focal
+        length in pixels), in pixels for an orthographic one.
+    """
+    if lens is None:
+        return 0.0
+    return float(lens.aperture_radius * projection[1, 1] * film.height / 2.0)
+
+
+def plan_frame(snapshot):
+    """Plan a frame.
+
+    Parameters
+    ----------
+    snapshot : SceneSnapshot
+
+    Returns
+    -------
+    FramePlan
+    """
+    distortion, drawn = plan_distortion(snapshot)
+    plan = _plan_raster(drawn)
+    if distortion is None:
+        return plan
+    film = snapshot.film
+    sharp = sharp_radius(film.width, film.height) * distortion.fineness
+    bent = {"distortion": distortion, "sharp_radius": sharp}
+    return replace(plan, plain=plan.plain and replace(plan.plain, **bent), **bent)
+
+
+def _plan_raster(snapshot):
+    sampling = snapshot.sampling
+    automatic = None
+    if sampling.method == "ADAPTIVE" and sampling.target_error is not None:
+        # Of wavelengths, several tell how far they reach.
+        count = 1 if snapshot.camera.chromatic is None else _TYPICAL_SAMPLES
+        first = _plan(snapshot, replace(sampling, lens_samples=count, subsamples=0))
+        automatic = AutomaticSampling(
+            max(sampling.target_error, LEAST_ERROR),
+            sampling.least_samples,
+            sampling.most_samples,
+            1 if first.chromatic is None else GROUP,
+        )
+        sampling = settle(sampling, snapshot, first)
+        sampling = replace(sampling, lens_samples=first_look(automatic.unit))
+    plan = _plan(snapshot, sampling, automatic)
+    plan = replace(plan, bokeh=plan_bokeh(snapshot, plan))
+    if plan.chromatic is None or "Fringe" not in snapshot.passes:
+        return plan
+    camera = replace(snapshot.camera, chromatic=None)
+    achromatic = replace(snapshot, camera=camera, passes=("Combined",))
+    plain = _plan(achromatic, sampling, automatic)
+    return replace(plan, plain=replace(plain, bokeh=plan_bokeh(achromatic, plain)))
+
+
+def _plan(snapshot, sampling, automatic=None):
+    film, camera = snapshot.film, snapshot.camera
+    x, y, width, height = film.region
+    lens = camera.lens
+    adaptive = sampling.method == "ADAPTIVE"
+    if lens is not None and lens.aperture_radius == 0.0:
+        lens = None
+    aberration = camera.chromatic
+    if aberration is not None and not aberration.lateral and (lens is None or not aberration.axial):
+        aberration = None
+    support = filter_support(film.filter_kind, film.filter_size_px)
+    source = SampleSource(
+        lens=lens,
+        aberration=aberration,
+        subsamples=sampling.subsamples if adaptive else 0,
+        filter_kind=film.filter_kind,
+        filter_size_px=film.filter_size_px,
+        # Subsamples and levels of detail take the place of a finer raster.
+        subpixels=1 if adaptive else subpixels(snapshot.content, width, height, support),
+        seed=sampling.seed,
+        progressive=sampling.progressive,
+        endless=automatic is not None,
+    )
+    drawn = source.draw(sampling.lens_samples)
+    focus, extent = 1.0, np.zeros(2)
+    if lens is not None:
+        focus = lens.focus_distance
+        extent = lens.aperture_radius * np.array([1.0 / lens.iris.ratio, 1.0])
+    projection = region_projection(camera.projection, film)
+    current = (camera.view, camera.projection)
+    previous, following = (
+        region_projection(frame_projection, film) @ frame_view
+        for frame_view, frame_projection in (camera.previous or current, camera.next or current)
+    )
+    scale = coc_scale(camera.projection, film, camera.lens)
+    colors = drawn.colors
+    return FramePlan(
+        width=width,
+        height=height,
+        origin=(x, y),
+        view=camera.view,
+        projection=projection,
+        orthographic=camera.orthographic,
+        focus_distance=focus,
+        subpixels=source.subpixels,
+        **_arrays(drawn, width, height),
+        level_bias=sampling.level_bias if adaptive and sampling.uses_levels else None,
+        least_triangles=sampling.least_triangles,
+        reuse_grid=sampling.reuse_grid if adaptive else 0,
+        progressive=sampling.progressive,
+        lens_extent=extent,
+        coc_scale=scale,
+        sharp_radius=sharp_radius(film.width, film.height),
+        empty_coc=_empty_coc(camera, scale, focus),
+        passes=snapshot.passes,
+        alpha_threshold=snapshot.alpha_threshold,
+        previous=previous,
+        next=following,
+        chromatic=plan_chromatic(aberration, colors, camera, film, focus) if aberration else None,
+        source=source,
+        automatic=automatic,
+        time_limit=sampling.time_limit,
+    )
+
+
+def _arrays(drawn, width, height):
+    return {
+        "lens_positions": drawn.lens_positions,
+        # A sample at +x in the pixel sees what lies to its right: the picture moves to the left.
+        "jitter": -2.0 * drawn.pixel_offsets / np.array([width, height]),
+        "subpixel_weights": drawn.subpixel_weights,
+        "subsample_offsets": drawn.subsample_offsets,
+        "subsample_counts": drawn.subsample_counts,
+    }
+
+
+def extended(plan):
+    """Return the plan of the next round as well: twice the samples, the first half the same.
+
+    Parameters
+    ----------
+    plan : FramePlan
+        With `automatic` sampling; what Fringe compares with has a plan of its own.
+
+    Returns
+    -------
+    FramePlan
+    """
+    drawn = plan.source.draw(2 * plan.samples)
+    chromatic = plan.chromatic
+    if chromatic is not None:
+        chromatic = chromatic.with_samples(plan.source.aberration, drawn.colors)
+    return replace(
+        plan,
+        **_arrays(drawn, plan.width, plan.height),
+        first=plan.samples,
+        chromatic=chromatic,
+    )
+
+
+def _empty_coc(camera, scale, focus):
+    if not camera.orthographic:
+        # The limit of scale (d - focus) / (d focus).
+        return scale / focus
+    # It grows without bound with the depth; what is not there is taken to be at the far plane.
+    inverse = np.linalg.inv(camera.projection)
+    far = -(inverse @ np.array([0.0, 0.0, 1.0, 1.0]))[2]
+    return float(scale * (far - focus) / focus)

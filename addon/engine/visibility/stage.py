@@ -1,0 +1,369 @@
+"""From which places on the lens each highlight of a frame is seen (methods 10, 11).
+
+Tests sort out what needs no mask. What is left gets a mask over the lens in an atlas, drawn by
+projecting the scene (RASTER) or by rays through the peeled layers (WARP), or is left to rays that
+the splat casts pixel by pixel (SPLAT).
+
+The layers cost as much as the scene has triangles, how few highlights there may be; so for RASTER
+the triangles alone decide. AUTO tests highlights against triangles first and draws the masks from
+what it meets, unless that is more work than layers and rays are, by counts. Where highlights are
+very many, it takes the layers without asking for triangles.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...device import geometry, state
+from ...device.targets import Targets, TargetSpec
+from ...device.uniforms import uniform_buffer
+from ...passes.visibility import cones, culling, visibility_raster, visibility_warp
+from ...passes.visibility.prefix_sums import COLUMNS
+from .occluder_layers import cull_by_layers, draw_layers, number_of, texels_per_pixel
+from .plan import (
+    LARGEST_ATLAS,
+    VisibilityCounts,
+    choose,
+    lay_out,
+    lay_out_more,
+    layers_cost,
+    note,
+    visibility_params,
+)
+from .scene_occluders import SceneOccluders
+
+__all__ = ("BokehVisibility", "SceneOccluders", "Visibility", "VisibilityCounts", "lay_out")
+
+# Pairs that are listed at once, and least room for them.
+_WINDOW = 1 << 20
+_LEAST_PAIRS = 1 << 18
+# More sources are left to the layers alone, which cost the less a source the smaller the masks are.
+_MOST_CONES = 1 << 17
+# Texels of the atlas where sources are many, and of that of drafts.
+_MANY = 1 << 15
+_ATLAS_OF_MANY = 1 << 23
+_DRAFT_ATLAS = 1 << 19
+
+MASKED, IN_SPLAT = 2, 3
+
+
+@dataclass(frozen=True, eq=False)
+class Visibility:
+    """What the splat reads.
+
+    Parameters
+    ----------
+    tiles : GPUTexture
+        A texel for each source: place and side of its mask, kind (see
+        lib/bokeh/visibility_lib.glsl).
+    masks : GPUTexture
+        The atlas.
+    layers, opacity : GPUTexture or None
+        The peeled layers, if there are any, for rays that the splat casts.
+    states : GPUTexture
+        How far each source's rays go, and how its parts see what hides it (see
+        passes/bokeh_culling_comp).
+    parameters : GPUUniformBuf
+        `VisibilityParams`.
+    counts : VisibilityCounts
+    bytes : int
+        Of its textures.
+    """
+
+    tiles: object
+    masks: object
+    layers: object
+    opacity: object
+    states: object
+    parameters: object
+    counts: VisibilityCounts
+    bytes: int
+
+
+class BokehVisibility:
+    """Finds what hides the highlights of a frame.
+
+    Parameters
+    ----------
+    plan : FramePlan
+        With a `bokeh`.
+    occluders : SceneOccluders
+    buffers : SceneBuffers
+    reach : float
+        How far a disc reaches in units of its radius.
+    """
+
+    def __init__(self, plan, occluders, buffers, reach=1.0):
+        self._plan = plan
+        self._occluders = occluders
+        self._buffers = buffers
+        self._fine = texels_per_pixel(plan.bokeh)
+        self._values = visibility_params(plan, self._fine, reach)
+        self._parameters = uniform_buffer(culling.VISIBILITY_PARAMS.pack(**self._values))
+
+    def find(self, sources, count, drawing, targets, method=None, culls=True):
+        """Test the sources and make the masks of those that need one.
+
+        Parameters
+        ----------
+        sources : GPUTexture
+            First texture of the list of highlights.
+        count : int
+        drawing : SceneDrawing
+            Aimed at the frame.
+        targets : list
+            Gets the `Targets` that the result lives in, for the caller to release.
+        method : {'AUTO', 'RASTER', 'WARP', 'SPLAT'}, optional
+            Default: the plan's.
+        culls : bool
+            False gives every source a mask, for comparison: those that the tests sort out as well.
+
+        Returns
+        -------
+        Visibility
+        """
+        method = method or self._plan.bokeh.settings.visibility
+        if method == "AUTO" and count > _MOST_CONES:
+            method = "WARP"
+        search = _Search(self, sources, count, drawing, culls)
+        try:
+            return search.run(method, targets)
+        finally:
+            search.release()
+
+
+class _Search:
+    """One run of `BokehVisibility.find`."""
+
+    def __init__(self, owner, sources, count, drawing, culls):
+        self._plan = owner._plan
+        self._occluders = owner._occluders
+        self._buffers = owner._buffers
+        self._fine = owner._fine
+        self._values = owner._values
+        self._parameters = owner._parameters
+        self._sources = sources
+        self._count = count
+        self._drawing = drawing
+        self._culls = culls
+        self._own = []
+        self._raster = None
+
+    def release(self):
+        """Give back what the result does not need."""
+        for targets in self._own:
+            targets.release()
+
+    def run(self, method, targets):
+        """Find what hides the sources; parameters and result as of `BokehVisibility.find`."""
+        rows = max(1, -(-self._count // COLUMNS))
+        specs = [TargetSpec(n, "RGBA32F") for n in ("tiles", "masked", "states")]
+        lists = self._lists = Targets(COLUMNS, rows, specs)
+        targets.append(lists)
+        self._make_tables(rows)
+        if method in {"AUTO", "RASTER"}:
+            counts = self._test_by_triangles()
+            counts.method = choose(counts, method, self._layers_cost())
+            if counts.method == "WARP":
+                counts = replace(self._test_by_layers(again=True), method="WARP")
+        else:
+            counts = self._test_by_layers()
+            counts.method = method if counts.masked else ""
+        if self._raster:
+            targets.append(self._raster)
+        base, whole = self._lay_out(counts)
+        layout = uniform_buffer(whole.packed())
+        culling.scan(self._tables)
+        kind = IN_SPLAT if counts.method == "SPLAT" else MASKED
+        culling.place_tiles(
+            self._sources,
+            self._count,
+            self._parameters,
+            layout,
+            kind,
+            self._tables,
+            lists["tiles"],
+            lists["masked"],
+        )
+        masks = Targets(whole.width, whole.height, [TargetSpec("masks", self._format())])
+        targets.append(masks)
+        self._draw_masks(counts, masks.framebuffer("masks"), base, whole)
+        if counts.texels and self._culls:
+            tables = (masks["masks"], lists["tiles"], self._tables.counts)
+            culling.cull_masks(self._count, *tables)
+        # What is given back now is given back only after the device has read it.
+        self._note_masks(counts)
+        held = [*self._own, lists, masks, *([self._raster] if self._raster else [])]
+        return Visibility(
+            tiles=lists["tiles"],
+            masks=masks["masks"],
+            layers=self._raster and self._raster["layers"],
+            opacity=self._raster and self._raster["opacity"],
+            states=lists["states"],
+            parameters=self._parameters,
+            counts=counts,
+            bytes=sum(each.bytes for each in held),
+        )
+
+    def _make_tables(self, rows):
+        groups = len(self._occluders.groups)
+        height = culling.segments(groups, self._culls) * rows
+        width = culling.COUNT_GROUPS + groups
+        tables = Targets(
+            COLUMNS,
+            height,
+            [
+                TargetSpec("keys", "R32UI"),
+                TargetSpec("totals", "R32UI", size=(COLUMNS, -(-height // COLUMNS))),
+                TargetSpec("counts", "R32UI", size=(width, 1)),
+            ],
+        )
+        self._own.append(tables)
+        self._tables = culling.CullingTables(
+            rows,
+            self._culls,
+            self._lists["states"],
+            tables["keys"],
+            tables["totals"],
+            tables["counts"],
+        )
+        self._pairs = None
+
+    def _scene(self):
+        return cones.ConeScene(
+            self._sources,
+            self._count,
+            self._parameters,
+            self._occluders.opaque,
+            self._buffers.instances,
+            self._occluders.groups,
+            self._culls,
+        )
+
+    def _test_by_triangles(self):
+        self._clear_counts()
+        args = (self._sources, self._count, self._parameters)
+        culling.cull_frame(*args, self._tables.states)
+        room = max(_LEAST_PAIRS, min(self._buffers.expected_pairs, _WINDOW))
+        cones.count_pairs(self._scene(), self._tables, self._pair_list(room))
+        culling.mark_sizes(*args, self._tables)
+        return self._read_counts()
+
+    def _test_by_layers(self, again=False):
+        plan = self._plan
+        self._clear_counts()
+        self._raster = draw_layers(plan, self._drawing, self._buffers.instances, self._fine)
+        args = (self._sources, self._count, self._parameters)
+        self._own.append(cull_by_layers(*args, self._raster, again, self._tables.states))
+        if self._count <= _MOST_CONES and not plan.bokeh.draft:
+            cones.find_edges(self._scene(), self._tables)
+            if not again:
+                room = _LEAST_PAIRS
+                cones.count_pairs(self._scene(), self._tables, self._pair_list(room))
+        culling.mark_sizes(*args, self._tables)
+        return self._read_counts()
+
+    def _pair_list(self, room):
+        pairs = Targets(COLUMNS, -(-room // COLUMNS), [TargetSpec("pairs", "RGBA32F")])
+        self._own.append(pairs)
+        self._pairs = pairs["pairs"]
+        return self._pairs
+
+    def _clear_counts(self):
+        self._tables.counts.clear(format="UINT", value=(0,))
+
+    def _read_counts(self):
+        self._found = np.asarray(self._tables.counts.read()).ravel().astype(np.int64)
+        return note(self._found)
+
+    def _note_masks(self, counts):
+        found = np.asarray(self._tables.counts.read()).ravel()
+        counts.whole = int(found[culling.COUNT_WHOLE])
+        counts.empty = int(found[culling.COUNT_EMPTY])
+        counts.visible += counts.whole
+        counts.hidden += counts.empty
+        counts.masked -= counts.whole + counts.empty
+
+    def _layers_cost(self):
+        bokeh = self._plan.bokeh
+        texels = bokeh.width * bokeh.height * self._fine**2
+        return layers_cost(self._drawing.full_detail, texels, number_of(bokeh))
+
+    def _lay_out(self, counts):
+        """Return the layout of the masks, and the same with those for comparison."""
+        drawn = self._found[culling.COUNT_SIZES :][: self._tables.kinds]
+        if counts.method not in {"RASTER", "WARP"}:
+            drawn = drawn * 0
+        first, more = drawn[: culling.SIZES], drawn[culling.SIZES :]
+        base = lay_out(first, self._room())
+        counts.texels = int((first * base.sizes[:, 2] ** 2).sum())
+        if self._culls:
+            return base, base
+        counts.masked = int(drawn.sum())
+        return base, lay_out_more(base, int(first.sum()), more)
+
+    def _room(self):
+        """Return how many texels masks may take."""
+        if self._plan.bokeh.draft:
+            return _DRAFT_ATLAS
+        return LARGEST_ATLAS if self._count <= _MANY else _ATLAS_OF_MANY
+
+    def _format(self):
+        # Products of several surfaces must not be rounded to 8 bits each.
+        return "R16F" if self._occluders.groups else "R8"
+
+    def _draw_masks(self, counts, atlas, base, whole):
+        with atlas.bind():
+            atlas.clear(color=(1.0, 1.0, 1.0, 1.0))
+        draw = {"WARP": self._warp, "RASTER": self._rasterise}.get(counts.method)
+        if draw is None:
+            return
+        # Where a triangle lands depends on the size of the atlas in the last bits. Masks for
+        # comparison have a part of their own, so that the others are the same without them.
+        with atlas.bind(), state.confined(0, 0, base.width, base.height):
+            draw(counts, atlas, uniform_buffer(base.packed()))
+        if whole is not base:
+            above = (0, base.height, whole.width, whole.height - base.height)
+            with atlas.bind(), state.scissored(*above):
+                draw(counts, atlas, uniform_buffer(whole.packed()))
+
+    def _warp(self, counts, _, layout):
+        tables = {name: self._lists[name] for name in ("masked", "tiles", "states")}
+        tables["sources"] = self._sources
+        tables |= {name: self._raster[name] for name in ("layers", "opacity")}
+        square = geometry.square_batch()
+        visibility_warp.draw_masks(square, counts.masked, tables, self._parameters, layout)
+
+    def _rasterise(self, counts, atlas, layout):
+        shared = {
+            "sources": self._sources,
+            "tiles": self._lists["tiles"],
+            "instances": self._buffers.instances,
+        }
+        batch = geometry.numbered_batch(visibility_raster.BATCH_CORNERS)
+        self._buffers.expected_pairs = counts.pairs + counts.pairs // 4
+        # Places of the prefix sums begin behind the masks'.
+        first = counts.masked
+        numbers = [counts.pairs, *self._found[culling.COUNT_GROUPS :].tolist()]
+        listed = counts.pairs <= cones.room_of(self._pairs)
+        for number, total in enumerate(numbers, start=-1):
+            for start in range(0, total, _WINDOW):
+                drawn = min(total - start, _WINDOW)
+                if number >= 0 or not listed:
+                    if drawn > cones.room_of(self._pairs):
+                        self._pair_list(drawn)
+                    window = (first + start, drawn)
+                    cones.fill_pairs(self._scene(), number, self._tables, self._pairs, window)
+                tables = {**shared, "pairs": self._pairs}
+                with atlas.bind():
+                    if number < 0:
+                        tables["corners"] = self._occluders.opaque.corners
+                        visibility_raster.draw_clusters(
+                            batch, drawn, tables, self._parameters, layout
+                        )
+                    else:
+                        draws = self._occluders.draws_of(number)
+                        visibility_raster.draw_surfaces(
+                            draws, drawn, tables, self._parameters, layout
+                        )
+            first += total

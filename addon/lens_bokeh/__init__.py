@@ -1,0 +1,1 @@
+"""The bokeh of a lens: what its discs look like."""

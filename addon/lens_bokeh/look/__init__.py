@@ -1,0 +1,1 @@
+"""What an artist adds to a disc, and the disc as pictures."""

@@ -1,0 +1,204 @@
+"""Onion rings: the turning marks of aspheric surfaces, seen in a defocused point.
+
+An asphere that was turned, or moulded from a turned die, carries a ripple ``A cos(2 pi r / p)``.
+Each groove is a weak lens: it bends the beam by ``(n - 1) A (2 pi / p) sin(2 pi r / p)``, and on a
+sensor away from focus light gathers behind the crests and thins out behind the grooves. To first
+order the density changes by the factor ``1 + C cos(2 pi r / p)`` with
+
+``C = dn A (2 pi / p)^2 a^2 / (lambda N)``
+
+where a is the beam's radius on the surface, dn the step of the index and N the Fresnel number of
+the defocus (a^2 / (lambda N) is the distance over which a parallel beam of that radius would be as
+far out of focus). Rings are centred on the axis of the surface, which moves across the pupil with
+the field. Lengths in a pattern are in units of the opening's radius.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import InputError
+from ...optics.glass import REFERENCE_WAVELENGTH_NM
+from ...optics.media import indices
+from ...optics.paraxial import entrance_pupil, ray_matrix
+
+# Rings of this amplitude and width on a moulded asphere give the contrast of a few per cent that
+# onion rings in photographs have (C = 0.1 for a 10 mm beam, dn = 0.6, N = 100).
+DEFAULT_AMPLITUDE_NM = 1.0
+DEFAULT_PITCH_MM = 0.45
+
+
+@dataclass(frozen=True)
+class OnionRings:
+    """Rings in the pattern.
+
+    Parameters
+    ----------
+    contrast : float
+        Largest relative change of the density, 0 to 1; see `ring_contrast`.
+    pitch : float
+        Distance of rings in units of the opening's radius.
+    irregularity : float
+        0: all rings alike; 1: depth and place of each ring are random, as a tool leaves them.
+    shift : float
+        Displacement of the centre for a chief ray of tangent 1, in units of the opening's radius.
+    seed : int
+    """
+
+    contrast: float = 0.08
+    pitch: float = 0.045
+    irregularity: float = 0.5
+    shift: float = 0.0
+    seed: int = 0
+
+    def __post_init__(self):
+        """Refuse values outside their range."""
+        for name, low, high in (
+            ("contrast", 0.0, 1.0),
+            ("pitch", 1e-3, 10.0),
+            ("irregularity", 0.0, 1.0),
+            ("shift", -1e3, 1e3),
+            ("seed", 0, 2**63 - 1),
+        ):
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise InputError(
+                    f"onion rings: {name} is {value:g}; it must be from {low:g} to {high:g}"
+                )
+
+
+def ring_contrast(
+    index_step,
+    beam_radius,
+    fresnel_number,
+    amplitude_nm=DEFAULT_AMPLITUDE_NM,
+    pitch_mm=DEFAULT_PITCH_MM,
+    wavelength_nm=REFERENCE_WAVELENGTH_NM,
+):
+    """Contrast of the rings that a ripple makes.
+
+    Parameters
+    ----------
+    index_step : float
+        Difference of the index across the surface.
+    beam_radius : float
+        Of the beam on the surface, mm.
+    fresnel_number : float
+        Of the defocus, > 0; see `addon.lens_bokeh.look.diffraction.fresnel_number`.
+    amplitude_nm, pitch_mm : float
+        Of the ripple.
+    wavelength_nm : float
+
+    Returns
+    -------
+    float
+        At most 1: nearer to focus the rings are caustics and the first order ends.
+    """
+    distance = beam_radius**2 / (wavelength_nm * 1e-6 * max(fresnel_number, 1e-12))
+    ripple = amplitude_nm * 1e-6 * (2.0 * np.pi / pitch_mm) ** 2
+    return float(min(abs(index_step) * ripple * distance, 1.0))
+
+
+def aspheric_surfaces(configuration):
+    """Numbers of the surfaces that are turned: those with an asphere or a conic.
+
+    Parameters
+    ----------
+    configuration : Configuration
+
+    Returns
+    -------
+    tuple of int
+        From 1.
+    """
+    return tuple(
+        number
+        for number, surface in enumerate(configuration.surfaces, 1)
+        if surface.conic != 0.0 or any(value != 0.0 for _, value in surface.asphere)
+    )
+
+
+def rings_of_lens(
+    configuration,
+    fresnel_number,
+    amplitude_nm=DEFAULT_AMPLITUDE_NM,
+    pitch_mm=DEFAULT_PITCH_MM,
+    irregularity=0.5,
+    seed=0,
+):
+    """Rings that the turned surface of a lens makes which shows most.
+
+    Parameters
+    ----------
+    configuration : Configuration
+        At the opening wanted.
+    fresnel_number : float
+        Of the defocus, > 0.
+    amplitude_nm, pitch_mm : float
+        Of the ripple.
+    irregularity, seed
+        As in `OnionRings`.
+
+    Returns
+    -------
+    OnionRings or None
+        None if no surface is aspheric.
+
+    Raises
+    ------
+    PrescriptionError
+        If the stop has no finite image in object space.
+    """
+    numbers = aspheric_surfaces(configuration)
+    if not numbers:
+        return None
+    pupil_z, diameter = entrance_pupil(configuration)
+    media = indices(configuration, REFERENCE_WAVELENGTH_NM)
+    found = []
+    for number in numbers:
+        # Paraxial heights of the marginal ray and of a chief ray of slope 1, both from infinity.
+        matrix = ray_matrix(configuration, REFERENCE_WAVELENGTH_NM, last=number)
+        marginal = abs(matrix[0, 0]) * 0.5 * diameter
+        chief = matrix[0, 1] - matrix[0, 0] * pupil_z
+        step = media[number] - media[number - 1]
+        contrast = ring_contrast(step, marginal, fresnel_number, amplitude_nm, pitch_mm)
+        found.append((contrast, marginal, chief / (matrix[0, 0] * 0.5 * diameter)))
+    contrast, marginal, chief = max(found)
+    pitch = float(np.clip(pitch_mm / marginal, 1e-3, 10.0))
+    # The rings' centre is the axis of the surface. A point that the camera sees at +x sends its
+    # chief ray towards -x, so that the axis lies on the +x side of the beam where chief > 0.
+    return OnionRings(contrast, pitch, irregularity, float(np.clip(chief, -1e3, 1e3)), seed)
+
+
+def transmission(rings, points, field=(0.0, 0.0), width=0.0):
+    """Factor by which rings change the density at places of the opening.
+
+    Parameters
+    ----------
+    rings : OnionRings
+    points : ndarray of shape (..., 2)
+        In units of the opening's radius.
+    field : tuple of float
+        Tangent of the chief ray's angle in x and y.
+    width : float
+        Side of a texel: rings finer than two texels fade instead of making moire.
+
+    Returns
+    -------
+    ndarray of shape (...)
+        1 - contrast to 1 + contrast.
+    """
+    offset = np.asarray(points, dtype=float) - np.asarray(field, dtype=float) * rings.shift
+    turns = np.hypot(offset[..., 0], offset[..., 1]) / rings.pitch
+    count = int(np.ceil(turns.max(initial=0.0))) + 2
+    generator = np.random.default_rng(rings.seed)
+    depth = 1.0 - rings.irregularity * generator.random(count)
+    # A third of a ring: neighbours keep their order.
+    phase = rings.irregularity * (generator.random(count) - 0.5) * 2.0 / 3.0
+    ring = np.minimum(turns.astype(int), count - 2)
+    along = turns - ring
+    ease = along * along * (3.0 - 2.0 * along)
+    depth = depth[ring] * (1.0 - ease) + depth[ring + 1] * ease
+    phase = phase[ring] * (1.0 - ease) + phase[ring + 1] * ease
+    visible = np.clip(2.0 - 2.0 * width / rings.pitch * 2.0, 0.0, 1.0)
+    return 1.0 + rings.contrast * visible * depth * np.cos(2.0 * np.pi * (turns + phase))

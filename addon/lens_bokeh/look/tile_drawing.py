@@ -1,0 +1,217 @@
+"""Drawing the tiles of a real lens: patterns of beams on grids of rays, many of them, in a hurry.
+
+As `lens_bokeh.look.deposit` draws the pattern of one beam, but the grid has the half of the pupil
+where x is positive, which is the mirror image of the other one, and 32-bit numbers; and the picture
+holds, beside the light, the light times the place in the stop it has come through.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+# Rays along a side of a tile's whole grid: neighbours then land a texel apart for most light.
+RAYS = 224
+# Rays farther apart are laid into pictures of half the resolution, a quarter, and so on.
+_LEVELS = 6
+# A rim that all rays clear by so much cuts none: cells are far smaller.
+_CLEAR = 0.1
+# Places in the stop are stored as (s + 1.5) / 3, to be positive.
+STOP_OFFSET, STOP_SCALE = 1.5, 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class HalfGrid:
+    """Rays of a beam through half the pupil; arrays of shape (rows, columns), columns along x > 0.
+
+    Parameters
+    ----------
+    x, y : ndarray
+        Landing places, mm; x from the meridional plane.
+    stop_x, stop_y : ndarray
+        Places in the stop, in units of its radius.
+    rims : sequence of ndarray
+        Signed clearances; positive inside.
+    weight : ndarray
+        Energy of the rays.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    stop_x: np.ndarray
+    stop_y: np.ndarray
+    rims: tuple
+    weight: np.ndarray
+
+    def bounds(self):
+        """Return where the pattern stands, up to where rims cut it.
+
+        Returns
+        -------
+        tuple of 3 float
+            Its middle along y, and half its width in x and in y.
+        """
+        clear = 1.0 - np.hypot(self.stop_x, self.stop_y)
+        for rim in self.rims:
+            clear = np.minimum(clear, rim)
+        inside = clear > 0.0
+        if not inside.any():
+            inside = clear == clear.max()
+        found = [(self.x[inside], self.y[inside])]
+        for near, far in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
+            cut = inside[near] != inside[far]
+            low, high = clear[near][cut], clear[far][cut]
+            share = low / (low - high)
+            found.append(
+                tuple(
+                    place[near][cut] * (1.0 - share) + place[far][cut] * share
+                    for place in (self.x, self.y)
+                )
+            )
+        x, y = (np.concatenate(parts) for parts in zip(*found, strict=True))
+        bottom, top = float(y.min()), float(y.max())
+        half_x = max(float(np.abs(x).max()), 1e-6)
+        return 0.5 * (bottom + top), half_x, max(0.5 * (top - bottom), 1e-6)
+
+    def light(self):
+        """Return the energy of the rays behind all rims and the round stop, antialiased."""
+        radius = np.hypot(self.stop_x, self.stop_y)
+        width = np.maximum(_spacing(self.stop_x), _spacing(self.stop_y))
+        opened = _share(1.0 - radius, width)
+        lit = opened > 0.0
+        for rim in self.rims:
+            if lit.any() and rim[lit].min() < _CLEAR:
+                opened = np.minimum(opened, _share(rim, _spacing(rim)))
+        return self.weight * opened
+
+
+def draw_tile(grid, size, span):
+    """Draw the pattern of a beam.
+
+    Parameters
+    ----------
+    grid : HalfGrid
+    size : int
+        Texels along a side.
+    span : float
+        Half the width of the tile, in units of half the pattern's.
+
+    Returns
+    -------
+    tile : ndarray of float32, shape (3, size, size)
+        Light; light times `stored` place in the stop as the camera sees it, x and y.
+    bounds : tuple of 3 float
+        As `HalfGrid.bounds`.
+    """
+    middle, half_x, half_y = bounds = grid.bounds()
+    light = grid.light()
+    x = (grid.x * (1.0 / (half_x * span)) + 1.0) * (0.5 * size)
+    y = ((grid.y - middle) * (1.0 / (half_y * span)) + 1.0) * (0.5 * size)
+    lit = light > 0.0
+    # The camera sees the stop turned by half a turn against the sensor's picture.
+    stored = [light] + [
+        light * np.clip((STOP_OFFSET - place) / STOP_SCALE, 0.0, 1.0)
+        for place in (grid.stop_x, grid.stop_y)
+    ]
+    wide_x, wide_y = _spacing(x)[lit], _spacing(y)[lit]
+    tile = _deposited(x[lit], y[lit], wide_x, wide_y, [layer[lit] for layer in stored], size)
+    # The other half: its places in the stop are mirrored, too.
+    mirrored = tile[:, :, ::-1].copy()
+    mirrored[1] = mirrored[0] - mirrored[1]
+    return tile + mirrored, bounds
+
+
+@cache
+def blur_matrix(width, size, span, to_size, to_span):
+    """Return the matrix that blurs the texels of a tile along an axis and samples them at others.
+
+    Parameters
+    ----------
+    width : float
+        Side of the box whose variance the blur has, in units of half the pattern's width.
+    size, to_size : int
+        Texels of the tile, and of the blurred one.
+    span, to_span : float
+        Half their widths.
+
+    Returns
+    -------
+    ndarray of float32, shape (to_size, size)
+    """
+    source = (np.arange(size) + 0.5) * (2.0 * span / size) - span
+    at = (np.arange(to_size) + 0.5) * (2.0 * to_span / to_size) - to_span
+    blur = np.exp(-0.5 * ((at[:, None] - source) * np.sqrt(12.0) / width) ** 2)
+    return blur.astype(np.float32)
+
+
+def _deposited(x, y, wide_x, wide_y, layers, size):
+    """Spread energies over texels, each over a square as wide as its neighbours are apart."""
+    wide = np.maximum(wide_x, wide_y)
+    picture = np.zeros((len(layers), size, size), np.float32)
+    bound = 1.0
+    for level in range(_LEVELS):
+        last = level == _LEVELS - 1
+        here = (wide <= bound) if not last else np.ones(len(wide), bool)
+        if level:
+            here &= wide > 0.5 * bound
+        if here.any():
+            scale = 1.0 / bound
+            count = -(-size // 2**level)
+            laid = _laid(
+                *(part[here] * np.float32(scale) for part in (x, y, wide_x, wide_y)),
+                [layer[here] for layer in layers],
+                count,
+            )
+            if level:
+                laid = laid.repeat(2**level, axis=1).repeat(2**level, axis=2) / 4.0**level
+            picture += laid[:, :size, :size]
+        bound *= 2.0
+    return picture
+
+
+def _laid(x, y, wide_x, wide_y, layers, size):
+    columns, left = _shares(x, wide_x)
+    rows, low = _shares(y, wide_y)
+    # A margin on all sides takes what falls outside.
+    stride = size + 2
+    columns, rows = (np.clip(first, -1, size) + 1 for first in (columns, rows))
+    corner = rows * stride + columns
+    shares = ((0, low * left), (1, low * (1.0 - left)))
+    shares += ((stride, (1.0 - low) * left), (stride + 1, (1.0 - low) * (1.0 - left)))
+    length = (size + 3) * stride
+    picture = np.zeros((len(layers), length))
+    for step, share in shares:
+        texel = corner + step
+        for total, layer in zip(picture, layers, strict=True):
+            total += np.bincount(texel, layer * share, minlength=length)
+    picture = picture[:, : stride * stride].reshape(-1, stride, stride)
+    return picture[:, 1:-1, 1:-1]
+
+
+def _shares(place, width):
+    """First texel that an interval touches, and its share; the next texel has the rest."""
+    width = np.clip(width, 1e-6, 1.0)
+    start = place - 0.5 * width
+    first = np.floor(start)
+    share = np.clip((first + 1.0 - start) / width, 0.0, 1.0)
+    return np.clip(first, -1e6, 1e6).astype(np.int64), share
+
+
+def _share(clearance, width):
+    """Share of each cell inside the zero of a signed function."""
+    return np.clip(0.5 + clearance / np.maximum(width, 1e-12), 0.0, 1.0)
+
+
+def _spacing(values):
+    """Change of a quantity from ray to ray, along both axes together."""
+    change = np.empty_like(values)
+    np.subtract(values[2:], values[:-2], out=change[1:-1])
+    change[1:-1] *= 0.5
+    change[0], change[-1] = values[1] - values[0], values[-1] - values[-2]
+    np.abs(change, out=change)
+    across = np.abs(values[:, 2:] - values[:, :-2])
+    across *= 0.5
+    change[:, 1:-1] += across
+    change[:, 0] += np.abs(values[:, 1] - values[:, 0])
+    change[:, -1] += np.abs(values[:, -1] - values[:, -2])
+    return change

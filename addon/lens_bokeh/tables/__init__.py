@@ -1,0 +1,1 @@
+"""Tables of a real lens: where the light of a point goes, traced once."""

@@ -1,0 +1,1 @@
+"""Importer of CODE V sequences."""

@@ -1,0 +1,1 @@
+"""Aplanat's own lens files: reader, checks, writer."""

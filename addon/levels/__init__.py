@@ -1,0 +1,1 @@
+"""Levels of detail: made in the background, kept, chosen (methods 3)."""

@@ -1,0 +1,327 @@
+"""Levels of detail of a mesh: each with about half the triangles of the one before (methods 3).
+
+A level follows from its predecessor by merging places that edges connect. Which places merge is
+decided once, by collapses of least quadric error; where they merge to, and what the vertices carry,
+follows from the mesh. So a mesh that deforms without changing its topology gets its levels by
+merging the same places again.
+
+References
+----------
+Garland and Heckbert, *Surface simplification using quadric error metrics*, SIGGRAPH 1997; the
+collapses are those of fast-simplification.
+"""
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from ...snapshot.scene import MeshSnapshot, next_uid
+from .level_attributes import carry
+from .level_collapses import Halving, Surface, connected, decimate, differ, stable_order, weld
+from .level_errors import LevelErrors
+from .level_seams import following_seams, seam_edges
+from .level_step import Step
+
+__all__ = [
+    "Halving",
+    "MeshLevel",
+    "available",
+    "replay",
+    "seam_edges",
+    "simplify",
+    "slots_of",
+    "surviving",
+]
+
+# A level that keeps more than this share of its predecessor's triangles is not worth its memory.
+_LEAST_REDUCTION = 0.75
+
+
+@dataclass(frozen=True, eq=False)
+class MeshLevel(MeshSnapshot):
+    """A level of detail, and how the one before merged into it.
+
+    Parameters
+    ----------
+    places : ndarray of shape (V,)
+        int32; the place of each vertex of the level before: those of one place are the sides of a
+        seam.
+    merged : ndarray of shape (V,)
+        int32; the vertex of this level that each of those became; -1 where nothing is left at its
+        place.
+    errors : LevelErrors
+        Against full detail.
+    """
+
+    places: np.ndarray | None = None
+    merged: np.ndarray | None = None
+    errors: LevelErrors = LevelErrors()
+
+
+def available():
+    """Return whether meshes can be simplified here; some platforms lack the library."""
+    try:
+        import fast_simplification  # noqa: F401
+    except ImportError:
+        return False
+    return True
+
+
+def simplify(mesh, least_triangles, check=None, seams=None):
+    """Make the levels of a mesh.
+
+    Parameters
+    ----------
+    mesh : MeshSnapshot
+    least_triangles : int
+        No level has fewer, unless the mesh itself has.
+    check : callable, optional
+        Called now and then with the triangles that the mesh has lost so far; it may raise to end
+        the work.
+    seams : ndarray of shape (E, 2), optional
+        See `seam_edges`; default: those of the mesh.
+
+    Returns
+    -------
+    levels : tuple of MeshLevel
+        From level 1 up; empty if the mesh cannot be simplified, or none can (see `available`).
+    halvings : tuple of Halving
+        One a level.
+    """
+    if not available():
+        return (), ()
+    places = weld(mesh.positions)
+    if seams is None:
+        seams = seam_edges(mesh, places)
+    levels, halvings = [], []
+    full, parts = len(mesh.triangles), None
+    while len(mesh.triangles) >= 2 * least_triangles:
+        watch = None if check is None else partial(check, full - len(mesh.triangles))
+        surface = Surface(mesh, places, seams, parts)
+        halving = decimate(surface, len(mesh.triangles) // 2, mesh.slots, watch)
+        level, places, parts, seams = _merge(mesh, surface, halving)
+        if not 0 < len(level.triangles) <= _LEAST_REDUCTION * len(mesh.triangles):
+            break
+        levels.append(level)
+        halvings.append(halving)
+        mesh = level
+    return tuple(levels), tuple(halvings)
+
+
+def replay(mesh, halvings, places=None):
+    """Make the levels of a mesh of the same topology by the same collapses.
+
+    Parameters
+    ----------
+    mesh : MeshSnapshot
+        With the triangles of the mesh that was simplified; its positions may differ.
+    halvings : sequence of Halving
+    places : ndarray of shape (V,), optional
+        Of its vertices, where they are split in another way than those of the mesh that was
+        simplified; both have the same triangles between the same places. Default: not split in
+        another way.
+
+    Returns
+    -------
+    tuple of MeshLevel
+    """
+    levels, parts = [], None
+    own = places is not None
+    for halving in halvings:
+        if own:
+            halving = replace(halving, places=places)
+        surface = Surface(mesh, halving.places, halving.seams, parts)
+        mesh, places, parts, _ = _merge(mesh, surface, halving)
+        levels.append(mesh)
+    return tuple(levels)
+
+
+def _merge(mesh, surface, halving):
+    """Return the next level, the place of each of its vertices, and the places' parts and seams."""
+    place = halving.groups[halving.places]
+    kept = surviving(surface.faces, halving.groups[surface.faces])
+    old = mesh.triangles[kept]
+    vertex_of, vertex_places = _vertices(mesh, halving, place, old)
+    triangles = np.ascontiguousarray(vertex_of[old], np.int32)
+    step = Step(mesh, surface, halving.groups, vertex_of, vertex_places, triangles)
+    points = step.points
+    positions = np.ascontiguousarray(points[vertex_places], np.float32)
+    attributes, errors = carry(step, positions)
+    before = mesh.errors if isinstance(mesh, MeshLevel) else LevelErrors()
+    # A side of a seam that has shrunk to nothing continues as another of its place.
+    vertex_at = np.full(len(points), -1, np.int32)
+    vertex_at[vertex_places] = np.arange(len(vertex_places), dtype=np.int32)
+    level = MeshLevel(
+        next_uid(),
+        mesh.name,
+        positions,
+        triangles,
+        slots_of(mesh.slots, kept),
+        attributes,
+        places=halving.places,
+        errors=before + errors,
+        merged=np.where(vertex_of >= 0, vertex_of, vertex_at[place]).astype(np.int32),
+    )
+    following = _without_gaps(vertex_places)
+    parts = np.zeros(int(following.max(initial=-1)) + 1, step.parts.dtype)
+    parts[following] = step.parts[vertex_places]
+    number = np.full(len(points), -1, np.int32)
+    number[vertex_places] = following
+    return level, following, parts, following_seams(surface.seams, number[halving.groups])
+
+
+def surviving(before, corners):
+    """Return the triangles that stay: with three corners, and not twice.
+
+    Where two that face each other have come to lie on one another, there is no inside left between
+    them, and both go, unless they lay so already.
+
+    Parameters
+    ----------
+    before, corners : ndarray of shape (T, 3)
+        Places of their corners, before and after places merge.
+
+    Returns
+    -------
+    ndarray of shape (K,)
+        Indices, rising.
+    """
+    kept = np.flatnonzero(_proper(corners) & _proper(before))
+    several = kept[_perhaps_several(corners[kept])]
+    if len(several) == 0:
+        return kept
+    faces = corners[several]
+    order, starts = _runs(np.sort(faces, axis=1))
+    run = np.cumsum(starts) - 1
+    faces, old = faces[order], np.sort(before[several[order]], axis=1)
+    a, b, c = faces.T
+    # Cyclic order of the corners tells the side that a triangle faces.
+    side = np.where((a < b) ^ (b < c) ^ (c < a), 1, -1)
+    first = np.flatnonzero(starts)
+    fresh = np.logical_or.reduceat((old != old[first[run]]).any(axis=1), first)
+    balance = np.add.reduceat(side, first)
+    count = np.diff(np.append(first, len(order)))
+    goes = fresh & (balance == 0) & (count > 1)
+    stays = np.ones(len(before), bool)
+    stays[several] = False
+    stays[several[order[first[~goes]]]] = True
+    return kept[stays[kept]]
+
+
+def _proper(faces):
+    a, b, c = faces.T
+    return (a != b) & (b != c) & (c != a)
+
+
+def _perhaps_several(faces):
+    """Return which triangles may have the same corners as another one, in any order."""
+    # Sums of random numbers do not depend on the order.
+    label = np.random.default_rng(0).integers(0, 1 << 24, int(faces.max(initial=-1)) + 1)
+    bits = min(int(4 * len(faces)).bit_length(), 24)
+    bucket = sum(label[corner] for corner in faces.T) & ((1 << bits) - 1)
+    return np.bincount(bucket)[bucket] > 1
+
+
+def _runs(rows):
+    """Sort rows of three; return their order and where a row differs from the one before."""
+    order = np.arange(len(rows))
+    for column in rows.T[::-1]:
+        order = order[stable_order(column[order])]
+    ordered = rows[order]
+    starts = np.ones(len(rows), bool)
+    starts[1:] = differ(ordered[1:], ordered[:-1])
+    return order, starts
+
+
+def slots_of(slots, kept):
+    """Count the kept triangles of each material slot; they are still sorted by it.
+
+    Parameters
+    ----------
+    slots : sequence of (int, int, int)
+        Material slot, first triangle and count, of all triangles.
+    kept : ndarray of shape (K,)
+        Indices of triangles, rising.
+
+    Returns
+    -------
+    tuple of (int, int, int)
+    """
+    counts = []
+    for slot, first, count in slots:
+        low, high = np.searchsorted(kept, (first, first + count))
+        if high > low:
+            counts.append((slot, int(low), int(high - low)))
+    return tuple(counts)
+
+
+def _vertices(mesh, halving, place, kept):
+    """Find the new vertices: one for each place and side of a seam that a kept triangle touches.
+
+    Parameters
+    ----------
+    mesh : MeshSnapshot
+    halving : Halving
+    place : ndarray of shape (V,)
+        Merged place of each vertex.
+    kept : ndarray of shape (T, 3)
+        Vertices of the kept triangles.
+
+    Returns
+    -------
+    vertex_of : ndarray of shape (V,)
+        New vertex that each old one was merged into, -1 where it is gone.
+    vertex_places : ndarray of shape (W,)
+        int32; the merged place of each new vertex.
+    """
+    key = place
+    if len(mesh.positions) > len(halving.groups):
+        # The sides of a seam stay apart, also where the seam does not cut the mesh in two.
+        side = _sides(mesh.triangles, halving.places, place)
+        order = stable_order(side)
+        order = order[stable_order(place[order])]
+        starts = np.zeros(len(order), bool)
+        starts[1:] = (np.diff(place[order]) != 0) | (np.diff(side[order]) != 0)
+        key = np.empty(len(order), np.int32)
+        key[order] = np.cumsum(starts)
+    used = np.zeros(int(key.max(initial=-1)) + 1, bool)
+    used[key[kept]] = True
+    number = np.where(used, np.cumsum(used, dtype=np.int32) - 1, -1).astype(np.int32)
+    vertex_of = number[key]
+    found = vertex_of >= 0
+    vertex_places = np.empty(int(used.sum()), np.int32)
+    vertex_places[vertex_of[found]] = place[found]
+    return vertex_of, vertex_places
+
+
+def _without_gaps(numbers):
+    seen = np.zeros(int(numbers.max(initial=-1)) + 1, bool)
+    seen[numbers] = True
+    return (np.cumsum(seen, dtype=np.int32) - 1)[numbers]
+
+
+def _sides(triangles, places, merged):
+    """Give a number to each side of the seams at merging places: to what triangles connect there.
+
+    Parameters
+    ----------
+    triangles : ndarray of shape (T, 3)
+    places, merged : ndarray of shape (V,)
+        Of each vertex, before and after.
+
+    Returns
+    -------
+    ndarray of shape (V,)
+        Equal for vertices of one side; 0 where no seam passes.
+    """
+    sides = np.zeros(len(places), np.int64)
+    at_seam = np.zeros(int(merged.max()) + 1, bool)
+    at_seam[merged[np.bincount(places)[places] > 1]] = True
+    seam = at_seam[merged]
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    edges = edges[seam[edges[:, 0]] & seam[edges[:, 1]]]
+    edges = edges[merged[edges[:, 0]] == merged[edges[:, 1]]]
+    number = np.cumsum(seam) - 1
+    sides[seam] = connected(number[edges], int(seam.sum()))
+    return sides

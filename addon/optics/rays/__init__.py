@@ -1,0 +1,1 @@
+"""Rays through a lens, and what bundles of them tell."""

@@ -1,0 +1,1 @@
+"""Passes that find, merge and splat highlights (methods 9, 13)."""

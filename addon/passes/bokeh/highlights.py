@@ -1,0 +1,347 @@
+"""From drawn surfaces to a list of highlights, in an order that is always the same (methods 9).
+
+Surfaces that shine are drawn once, into a raster with several texels a pixel; each fragment
+brighter than the threshold is appended to its texel's list, whatever lies in front. The texels'
+lists are then put in order, the highlights of each pixel counted, the counts added up, and each
+pixel writes its own to where they belong. Only tiles in which anything shines take part.
+
+The list of highlights lies in two textures of `COLUMNS` columns: x, y, depth (camera space, m) and
+extent (px); energy (radiance times pixels) and the region of the lens that the highlight stands
+for: 0 for all of it.
+
+References
+----------
+Yang, Hensley, Gruen and Thibieroz, *Real-time concurrent linked list construction on the GPU*,
+EGSR 2010.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...device import shader_source
+from ...device.shader_variants import variants
+from ...device.shaders import ShaderInfo, compile_shader, dispatch
+from ...device.targets import Targets, TargetSpec
+from ...device.textures import texture_2d
+from ...device.uniforms import bind_resource
+from ..surface import chromatic
+from ..surface.surface import HIGHLIGHT_PARAMS, VIEW_PARAMS
+from ..visibility import prefix_sums
+from ..visibility.prefix_sums import COLUMNS
+
+# Side of a tile, px.
+TILE = 8
+
+_THREADS = 64
+# Groups along the first axis of a dispatch, at most.
+_GROUPS = 16384
+
+_DEFINES = (("SOURCE_COLUMNS", f"{COLUMNS}u"),)
+_NUMBERS = ("R32UI", "UINT_2D")
+
+# What a shader that includes passes/bokeh/highlights_append.glsl declares.
+APPEND_IMAGES = (
+    (*_NUMBERS, "used_img", ("READ", "WRITE")),
+    (*_NUMBERS, "heads_img", ("READ", "WRITE")),
+    (*_NUMBERS, "tiles_img", ("WRITE",)),
+    ("RGBA32F", "FLOAT_2D", "light_img", ("WRITE",)),
+    ("RGBA32UI", "UINT_2D", "nodes_img", ("WRITE",)),
+)
+# And of one that counts the texels of instances.
+COUNT_IMAGES = ((*_NUMBERS, "hits_img", ("READ", "WRITE")),)
+COUNT_SAMPLERS = (("FLOAT_2D", "areas_tx"),)
+APPEND_CONSTANTS = (("INT", "capacity"), ("INT", "tile_texels"))
+APPEND_DEFINES = _DEFINES
+
+# Behind dispatches, Blender lets the device finish what it writes to images; behind draws it does
+# not.
+_FINISH = ShaderInfo(
+    name="aplanat_highlights_finish",
+    compute="void main()\n{\n  imageStore(sharp_img, ivec2(1, 0), uvec4(0u));\n}\n",
+    images=((*_NUMBERS, "sharp_img", ("WRITE",)),),
+    local_size=(1, 1, 1),
+)
+
+
+@variants(world=(False, True), in_wavelengths=(False, True))
+def _order_info(world, in_wavelengths):
+    samplers = [("UINT_2D", "nodes_tx")]
+    if not world:
+        samplers += [("FLOAT_2D", "scene_tx"), ("FLOAT_2D", "areas_tx"), ("UINT_2D", "hits_tx")]
+    constants = [("INT", "number")] + [("INT", "layers")] * (not world)
+    constants += [("VEC4", "lens_view")] * in_wavelengths
+    info = ShaderInfo(
+        name="aplanat_highlights_order",
+        compute=shader_source.load("passes/bokeh/highlights_order_comp.glsl"),
+        typedefs=VIEW_PARAMS.source + HIGHLIGHT_PARAMS.source,
+        samplers=tuple(samplers),
+        images=(
+            (*_NUMBERS, "heads_img", ("READ", "WRITE")),
+            (*_NUMBERS, "order_img", ("READ", "WRITE")),
+            ("RGBA32F", "FLOAT_2D", "light_img", ("READ", "WRITE")),
+        ),
+        uniforms=(("ViewParams", "view_buf"), ("HighlightParams", "highlight_buf")),
+        push_constants=tuple(constants),
+        defines=_DEFINES + (("WORLD", "1"),) * world,
+        local_size=(_THREADS, 1, 1),
+    )
+    return chromatic.over_field(info) if in_wavelengths else info
+
+
+@variants(emits=(False, True))
+def _gather_info(emits):
+    samplers = [("FLOAT_2D", "listed_tx"), ("FLOAT_2D", "light_tx")]
+    samplers += [("UINT_2D", "heads_tx"), ("UINT_2D", "order_tx")]
+    samplers += [("UINT_2D", "starts_tx"), ("UINT_2D", "totals_tx")] * emits
+    images = [(*_NUMBERS, name, ("READ", "WRITE")) for name in ("starts_img", "sharp_img")]
+    if emits:
+        images = [("RGBA32F", "FLOAT_2D", name, ("WRITE",)) for name in ("a_img", "b_img")]
+    constants = [("INT", "tiles"), ("INT", "subpixels")]
+    constants += [("INT", "first"), ("VEC4", "lens_view")] * emits
+    return ShaderInfo(
+        name="aplanat_highlights",
+        compute=shader_source.load("passes/bokeh/highlights_comp.glsl"),
+        typedefs=VIEW_PARAMS.source,
+        samplers=tuple(samplers),
+        images=tuple(images),
+        uniforms=(("ViewParams", "view_buf"),),
+        push_constants=tuple(constants),
+        defines=(*_DEFINES, ("TILE", str(TILE)), *(("EMIT", "1"),) * emits),
+        local_size=(TILE, TILE, 1),
+    )
+
+
+@dataclass(frozen=True)
+class SearchedRaster:
+    """How a raster was drawn that highlights are listed from.
+
+    Parameters
+    ----------
+    view, split : GPUUniformBuf
+        `ViewParams` and `HighlightParams` of the raster.
+    subpixels : int
+        Texels along a side of a pixel.
+    layers : int
+        Fragments of a texel that are listed.
+    lens : tuple of 2 float
+        Place on the lens that it was seen from, m.
+    region : int
+        Of the lens, that it stands for; 0 is all of it.
+    field : tuple of (str, GPUUniformBuf or GPUTexture) or None
+        `chromatic.resources`: the light is divided as that of samples of many wavelengths is.
+    """
+
+    view: object
+    split: object
+    subpixels: int
+    layers: int
+    lens: tuple[float, float] = (0.0, 0.0)
+    region: int = 0
+    field: tuple | None = None
+
+
+class TexelCounts:
+    """How many texels of a raster instances have, beside the area that they have there.
+
+    Parameters
+    ----------
+    areas : sequence of float
+        Of each row of the instance table, in texels: the light that is found of it is brought to
+        that area; 0 leaves it as it is.
+    """
+
+    def __init__(self, areas=()):
+        rows = max(1, -(-len(areas) // COLUMNS))
+        table = np.zeros((rows, COLUMNS, 1), np.float32)
+        table.reshape(-1)[: len(areas)] = areas
+        self.areas = texture_2d(table, "R32F")
+        self._none = texture_2d(np.zeros_like(table), "R32F")
+        self._targets = Targets(COLUMNS, rows, [TargetSpec("hits", "R32UI")])
+        self.hits.clear(format="UINT", value=(0,))
+
+    @property
+    def hits(self):
+        """Texels of each row of the instance table, as a texture."""
+        return self._targets["hits"]
+
+    def bindings(self, counting):
+        """Return what a shader binds that counts; nothing is added unless `counting`."""
+        return (("hits_img", self.hits), ("areas_tx", self.areas if counting else self._none))
+
+    def release(self):
+        """Give the textures back to the device."""
+        self._targets.release()
+
+
+class FragmentLists:
+    """The fragments of a raster that are brighter than the threshold, texel by texel.
+
+    Parameters
+    ----------
+    width, height : int
+        Of the raster in pixels.
+    subpixels : int
+    capacity : int
+        Fragments that there is room for; rounded up to whole rows.
+    """
+
+    def __init__(self, width, height, subpixels, capacity):
+        rows = -(-capacity // COLUMNS)
+        self.capacity = rows * COLUMNS
+        self._tile_texels = TILE * subpixels
+        side = tuple(-(-n // TILE) for n in (width, height))
+        self.targets = Targets(
+            COLUMNS,
+            rows,
+            [
+                TargetSpec("heads", "R32UI", size=(width * subpixels, height * subpixels)),
+                TargetSpec("used", "R32UI", size=(1, 1)),
+                TargetSpec("tiles", "R32UI", size=side),
+                TargetSpec("light", "RGBA32F"),
+                TargetSpec("nodes", "RGBA32UI"),
+                TargetSpec("order", "R32UI"),
+                TargetSpec("sharp", "R32UI", size=(2, 1)),
+            ],
+        )
+
+    def clear(self):
+        """Empty the lists."""
+        for name in ("heads", "used", "tiles"):
+            self.targets[name].clear(format="UINT", value=(0,))
+
+    def bindings(self):
+        """Return what a shader binds that appends: names and textures or numbers."""
+        names = [name for _, _, name, _ in APPEND_IMAGES]
+        images = [(name, self.targets[name.removesuffix("_img")]) for name in names]
+        return (*images, ("capacity", self.capacity), ("tile_texels", self._tile_texels))
+
+    def read(self):
+        """Wait for the device.
+
+        Returns
+        -------
+        number : int
+            Of fragments; may be more than there was room for.
+        tiles : ndarray of shape (N, 2)
+            Column and row of those in which anything shines.
+        """
+        shader = compile_shader(_FINISH)
+        shader.bind()
+        shader.image("sharp_img", self.targets["sharp"])
+        dispatch(shader, 1, 1)
+        number = int(np.asarray(self.targets["used"].read()).ravel()[0])
+        tiles = self.targets["tiles"]
+        shines = np.asarray(tiles.read()).reshape(tiles.height, tiles.width)
+        return number, np.argwhere(shines)[:, ::-1]
+
+    def release(self):
+        """Give the textures back to the device."""
+        self.targets.release()
+
+
+def order(raster, lists, number, scene=None, counts=None):
+    """Put the fragments of each texel in order, without what nothing of the lens sees.
+
+    Parameters
+    ----------
+    raster : SearchedRaster
+    lists : FragmentLists
+    number : int
+        Of fragments.
+    scene : GPUTexture or None
+        Window depth of the nearest opaque surface; None: the fragments are the world's.
+    counts : TexelCounts, optional
+        Of the instances, complete for what the raster shows; not used for the world.
+    """
+    counts = counts or TexelCounts()
+    shader = compile_shader(_order_info(scene is None, raster.field is not None))
+    shader.bind()
+    if raster.field is not None:
+        for name, resource in raster.field:
+            bind_resource(shader, name, resource)
+        shader.uniform_float("lens_view", (*raster.lens, 0.0, 0.0))
+    shader.uniform_sampler("nodes_tx", lists.targets["nodes"])
+    for name in ("heads", "order", "light"):
+        shader.image(f"{name}_img", lists.targets[name])
+    shader.uniform_block("view_buf", raster.view)
+    shader.uniform_block("highlight_buf", raster.split)
+    shader.uniform_int("number", number)
+    if scene is not None:
+        shader.uniform_sampler("scene_tx", scene)
+        shader.uniform_sampler("areas_tx", counts.areas)
+        shader.uniform_sampler("hits_tx", counts.hits)
+        shader.uniform_int("layers", raster.layers)
+    _dispatch(shader, -(-number // _THREADS))
+
+
+def emit(raster, lists, tiles, sources, first):
+    """Write the highlights of a raster behind those listed before.
+
+    Parameters
+    ----------
+    raster : SearchedRaster
+    lists : FragmentLists
+        In order.
+    tiles : ndarray of shape (N, 2)
+        As of `FragmentLists.read`.
+    sources : tuple of 2 GPUTexture
+        RGBA32F, `COLUMNS` wide; what they have no room for is left out.
+    first : int
+        Highlights listed before.
+
+    Returns
+    -------
+    count : int
+        Highlights listed now.
+    sharp : int
+        Pixels with light too sharp to be splatted.
+    """
+    rows = -(-len(tiles) // COLUMNS)
+    listed = np.zeros((rows * COLUMNS, 4), np.float32)
+    listed[: len(tiles), :2] = tiles
+    listed = texture_2d(listed.reshape(rows, COLUMNS, 4))
+    # One more row, for the sum of all.
+    height = -(-len(tiles) * TILE**2 // COLUMNS) + 1
+    specs = [
+        TargetSpec("starts", "R32UI"),
+        TargetSpec("totals", "R32UI", size=(COLUMNS, -(-height // COLUMNS))),
+    ]
+    sharp = lists.targets["sharp"]
+    with Targets(COLUMNS, height, specs) as tables:
+        starts, totals = tables["starts"], tables["totals"]
+        for texture in (starts, sharp):
+            texture.clear(format="UINT", value=(0,))
+        images = (("starts_img", starts), ("sharp_img", sharp))
+        _gather(raster, lists, listed, len(tiles), images)
+        prefix_sums.add_up(starts, totals)
+        images = zip(("a_img", "b_img"), sources, strict=True)
+        _gather(raster, lists, listed, len(tiles), images, (starts, totals, first))
+        # Also waits until the device has read the tables.
+        count = int(np.asarray(totals.read()).ravel()[height - 1])
+        return count, int(np.asarray(sharp.read()).ravel()[0])
+
+
+def _gather(raster, lists, listed, tiles, images, places=None):
+    shader = compile_shader(_gather_info(places is not None))
+    shader.bind()
+    shader.uniform_sampler("listed_tx", listed)
+    for name in ("light", "heads", "order"):
+        shader.uniform_sampler(f"{name}_tx", lists.targets[name])
+    for name, image in images:
+        shader.image(name, image)
+    shader.uniform_block("view_buf", raster.view)
+    shader.uniform_int("tiles", tiles)
+    shader.uniform_int("subpixels", raster.subpixels)
+    if places is not None:
+        starts, totals, first = places
+        shader.uniform_sampler("starts_tx", starts)
+        shader.uniform_sampler("totals_tx", totals)
+        shader.uniform_int("first", first)
+        shader.uniform_float("lens_view", (*raster.lens, float(raster.region), 0.0))
+    _dispatch(shader, tiles)
+
+
+def _dispatch(shader, groups):
+    across = min(groups, _GROUPS)
+    dispatch(shader, across, -(-groups // across))

@@ -1,0 +1,93 @@
+"""What a pinhole at a place on the lens sees, and what lies behind it (methods 9).
+
+`OCCLUDERS`: layers of all surfaces, each the nearest behind the layer before. `OPAQUE`: depth of
+the nearest opaque surface. `HIGHLIGHTS`: lists of all fragments brighter than the threshold.
+
+References
+----------
+Everitt, *Interactive order-independent transparency*, NVIDIA 2001.
+"""
+
+from dataclasses import replace
+
+from ...device import state
+from ..surface import surface
+from . import highlights
+
+OCCLUDERS = surface.SurfaceTarget(
+    "passes/bokeh/peel_frag.glsl",
+    (("VEC4", "out_color"),),
+    samplers=(("FLOAT_2D", "front_tx"),),
+    defines=("OCCLUDERS",),
+    shades=False,
+)
+OPAQUE = replace(OCCLUDERS, outputs=(), samplers=(), defines=())
+HIGHLIGHTS = surface.SurfaceTarget(
+    "passes/bokeh/peel_frag.glsl",
+    (),
+    # Without it, for a surface whose light is never splatted, only its depth is left.
+    defines=(surface.SPLIT,),
+    samplers=highlights.COUNT_SAMPLERS,
+    images=highlights.APPEND_IMAGES + highlights.COUNT_IMAGES,
+    push_constants=highlights.APPEND_CONSTANTS,
+    values=highlights.APPEND_DEFINES,
+    splits=True,
+)
+
+
+def draw_layer(draws, view_buffer, instances, textures):
+    """Draw one layer of occluders into the bound frame buffer.
+
+    Parameters
+    ----------
+    draws : list of Draw
+        Of `surface.build_draws` for `OCCLUDERS`.
+    view_buffer : GPUUniformBuf
+        `ViewParams` of the raster.
+    instances : GPUTexture
+        The instance table.
+    textures : sequence of 1 GPUTexture
+        Depth of the layer before, all 0 for the first.
+    """
+    state.opaque()
+    bindings = tuple(zip(("front_tx",), textures, strict=True))
+    surface.draw_sample(draws, view_buffer, instances, (0.0, 0.0, 0.0, 0.0), 0, bindings)
+
+
+def draw_opaque(draws, view_buffer, instances, lens):
+    """Draw the depth of opaque surfaces into the bound frame buffer.
+
+    Parameters
+    ----------
+    draws : list of Draw
+        For `OPAQUE`.
+    view_buffer, instances
+        As for `draw_layer`.
+    lens : tuple of 2 float
+        Place on the lens that the scene is seen from, m.
+    """
+    state.opaque()
+    surface.draw_sample(draws, view_buffer, instances, (*lens, 0.0, 0.0), 0)
+
+
+def list_highlights(draws, view_buffer, instances, lens, lists, split, counts, counting):
+    """Append to lists what is brighter than the threshold; draws the depth of what is opaque.
+
+    Parameters
+    ----------
+    draws : list of Draw
+        For `HIGHLIGHTS`.
+    view_buffer, instances, lens
+        As for `draw_opaque`.
+    lists : highlights.FragmentLists
+        Cleared.
+    split : GPUUniformBuf
+        `HighlightParams`.
+    counts : highlights.TexelCounts
+    counting : bool
+        The texels that are drawn are added to them.
+    """
+    state.opaque()
+    sample = (*lens, 0.0, 0.0)
+    bindings = (*lists.bindings(), *counts.bindings(counting))
+    surface.draw_sample(draws, view_buffer, instances, sample, 0, bindings, split)

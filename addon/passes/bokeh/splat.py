@@ -1,0 +1,127 @@
+"""Splatting highlights: a disc each, in the shape of the opening, added up (methods 13).
+
+What the shape depends on beside the opening has a variant of the shader each: PROFILE (radial
+profile of a lens), RIMS (analytic vignetting), TILES (patterns of a real lens over the field).
+"""
+
+from ...device import shader_source, state
+from ...device.shader_variants import variants
+from ...device.shaders import ShaderInfo, compile_shader
+from ...device.uniform_block import UniformStruct
+from ...device.uniforms import bind_resource
+from ..surface import chromatic
+from ..surface.surface import VIEW_PARAMS
+from ..visibility.culling import VISIBILITY_PARAMS
+from .highlights import COLUMNS
+
+SPLAT_PARAMS = UniformStruct("shared/splat_params.glsl", "SplatParams")
+
+_TEXTURES = ("sources_a_tx", "sources_b_tx", "tiles_tx", "masks_tx")
+_RAYS = ("layers_tx", "opacity_tx", "states_tx")
+VARIANTS = ("PROFILE", "RIMS", "TILES")
+MOST_RIMS = 4
+# Textures and varyings of the variants.
+_LOOK_TEXTURES = {
+    "PROFILE": (("FLOAT_2D_ARRAY", "profile_tx"),),
+    "RIMS": (("FLOAT_2D_ARRAY", "left_tx"),),
+    "TILES": (
+        ("FLOAT_2D_ARRAY", "sharp_tx"),
+        ("FLOAT_2D_ARRAY", "soft_tx"),
+        ("FLOAT_2D", "places_tx"),
+        ("FLOAT_2D_ARRAY", "left_tx"),
+    ),
+}
+_LOOK_VARYINGS = {
+    "PROFILE": (("FLAT FLOAT", "v_row"),),
+    "RIMS": (("FLAT VEC3", "v_left_lower"), ("FLAT VEC3", "v_left_upper")),
+    "TILES": (
+        ("FLAT FLOAT", "v_row"),
+        ("FLAT VEC2", "v_tile_at"),
+        ("FLAT FLOAT", "v_upright"),
+        ("FLAT VEC3", "v_left_lower"),
+        ("FLAT VEC3", "v_left_upper"),
+    ),
+}
+
+
+@variants(
+    casts=(False, True),
+    variants=((), ("PROFILE",), ("RIMS",), ("PROFILE", "RIMS"), ("TILES",)),
+    in_wavelengths=(False, True),
+)
+def _info(casts, variants, in_wavelengths=False):
+    names = _TEXTURES + _RAYS * casts
+    samplers = tuple(("FLOAT_2D", name) for name in names) + (("FLOAT_2D_ARRAY", "opening_tx"),)
+    samplers += tuple(texture for variant in variants for texture in _LOOK_TEXTURES[variant])
+    uniforms = (("ViewParams", "view_buf"), ("SplatParams", "splat_buf"))
+    uniforms += (("VisibilityParams", "visibility_buf"),) * casts
+    structs = VIEW_PARAMS.source + SPLAT_PARAMS.source
+    info = ShaderInfo(
+        name="aplanat_splat",
+        vertex=shader_source.load("passes/bokeh/splat_vert.glsl"),
+        fragment=shader_source.load("passes/bokeh/splat_frag.glsl"),
+        typedefs=structs + VISIBILITY_PARAMS.source * casts,
+        attributes=(("VEC2", "pos"),),
+        varyings=(
+            ("VEC2", "v_place"),
+            ("FLAT VEC3", "v_density"),
+            ("FLAT FLOAT", "v_blur"),
+            ("FLAT VEC4", "v_tile"),
+            ("FLAT INT", "v_source"),
+            ("FLAT FLOAT", "v_region"),
+            ("FLAT VEC2", "v_chief"),
+            *(("FLAT VEC3", "v_area"), ("FLAT FLOAT", "v_dot")) * in_wavelengths,
+            *(varying for variant in variants for varying in _LOOK_VARYINGS[variant]),
+        ),
+        outputs=(("VEC4", "out_color"),),
+        samplers=samplers,
+        uniforms=uniforms,
+        defines=(
+            ("SOURCE_COLUMNS", str(COLUMNS)),
+            *(("IN_SPLAT", "1"),) * casts,
+            *((variant, "1") for variant in variants),
+        ),
+    )
+    return chromatic.over_field(info) if in_wavelengths else info
+
+
+def splat(square, count, textures, look, view_buffer, rays=None):
+    """Add highlights to the bound frame buffer.
+
+    Parameters
+    ----------
+    square : GPUBatch
+        Two triangles over the unit square.
+    count : int
+        How many highlights.
+    textures : sequence of 4 GPUTexture
+        The list of highlights (see `passes.bokeh.highlights`), what becomes of each, and the atlas
+        of masks (see `engine.visibility.stage`).
+    look : engine.bokeh_look.BokehLook
+        Shape of the discs, as ``variants``, ``textures`` and, for each band of wavelengths,
+        ``blocks``; ``field`` as in `passes.bokeh.highlights.PeeledRaster`, empty without bands.
+    view_buffer : GPUUniformBuf
+        `ViewParams` of the frame.
+    rays : tuple or None
+        What sources without a mask cast rays through: layers, opacity and states (GPUTexture),
+        and `VisibilityParams` (GPUUniformBuf).
+    """
+    if count == 0:
+        return
+    state.additive()
+    shader = compile_shader(_info(rays is not None, look.variants, bool(look.field)))
+    shader.bind()
+    for name, resource in look.field:
+        bind_resource(shader, name, resource)
+    for name, texture in zip(_TEXTURES, textures, strict=True):
+        shader.uniform_sampler(name, texture)
+    if rays is not None:
+        for name, texture in zip(_RAYS, rays[:3], strict=True):
+            shader.uniform_sampler(name, texture)
+        shader.uniform_block("visibility_buf", rays[3])
+    for name, texture in look.textures:
+        shader.uniform_sampler(name, texture)
+    shader.uniform_block("view_buf", view_buffer)
+    for block in look.blocks:
+        shader.uniform_block("splat_buf", block)
+        shader.draw_instanced(square, count)

@@ -1,0 +1,1 @@
+"""Passes that draw and light surfaces."""

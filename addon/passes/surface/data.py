@@ -1,0 +1,123 @@
+"""The data passes: what a pinhole at the lens' centre sees, as geometry (methods 1).
+
+One draw of the scene fills Depth, Normal, Position, Vector and CoC together, from the middle of
+each pixel: these values must not be averaged across an edge.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...device.uniform_block import UniformStruct
+from ...device.uniforms import uniform_buffer
+from . import surface
+
+DATA_PARAMS = UniformStruct("shared/data_params.glsl", "DataParams")
+
+EMPTY_DEPTH = 1e10
+
+# Colour targets by slot, all RGBA32F; the last only where it is asked for.
+_GEOMETRY = ("normal_depth", "position_coc", "vector")
+_DETAIL = "detail"
+
+# Where each pass lies: target, first channel, channels.
+PLACES = {
+    "Normal": ("normal_depth", 0, 3),
+    "Depth": ("normal_depth", 3, 1),
+    "Position": ("position_coc", 0, 3),
+    "CoC": ("position_coc", 3, 1),
+    "Vector": ("vector", 0, 4),
+    "Detail": ("detail", 0, 3),
+}
+
+_STILL = surface.SurfaceTarget(
+    "passes/surface/data_frag.glsl",
+    tuple(("VEC4", f"out_{name}") for name in _GEOMETRY),
+    attributes=("normal",),
+    structs=DATA_PARAMS.source,
+    uniforms=(("DataParams", "data_buf"),),
+    shades=False,
+)
+
+
+def targets(names):
+    """Return the names of the colour targets, by slot, that the named passes need."""
+    return (*_GEOMETRY, _DETAIL) if "Detail" in names else _GEOMETRY
+
+
+def target(names):
+    """Return the `SurfaceTarget` of the named passes."""
+    made = _STILL
+    if "Vector" in names:
+        made = replace(
+            made,
+            varyings=(("VEC4", "previous_clip"), ("VEC4", "next_clip")),
+            samplers=(("FLOAT_2D", "previous_tx"), ("FLOAT_2D", "next_tx")),
+            defines=("HAS_VECTOR",),
+        )
+    if "Detail" in names:
+        made = replace(
+            made,
+            outputs=(*made.outputs, ("VEC4", f"out_{_DETAIL}")),
+            defines=(*made.defines, "HAS_DETAIL"),
+        )
+    return made
+
+
+def empty_values(empty_coc):
+    """Return what each target holds where nothing is.
+
+    Parameters
+    ----------
+    empty_coc : float
+        Signed circle of confusion of what surrounds the scene, in pixels.
+
+    Returns
+    -------
+    dict of str to tuple of 4 float
+    """
+    return {
+        "normal_depth": (0.0, 0.0, 0.0, EMPTY_DEPTH),
+        "position_coc": (0.0, 0.0, 0.0, empty_coc),
+        "vector": (0.0, 0.0, 0.0, 0.0),
+        "detail": (0.0, 0.0, 0.0, 0.0),
+    }
+
+
+def data_params(previous, following, width, height, alpha_threshold):
+    """Upload the block of the data passes.
+
+    Parameters
+    ----------
+    previous, following : ndarray of shape (4, 4)
+        World to clip space of the region in the neighbouring frames.
+    width, height : int
+        Of the region, in pixels.
+    alpha_threshold : float
+
+    Returns
+    -------
+    GPUUniformBuf
+    """
+    return uniform_buffer(
+        DATA_PARAMS.pack(
+            previous=previous,
+            next=following,
+            raster=(width / 2.0, height / 2.0, alpha_threshold, 0.0),
+        )
+    )
+
+
+def draw(draws, view_buffer, instances, bindings):
+    """Draw the data passes into the bound frame buffer, over `targets` by slot.
+
+    Parameters
+    ----------
+    draws : list of surface.Draw
+        Built for `target`.
+    view_buffer : GPUUniformBuf
+    instances : GPUTexture
+    bindings : tuple of (str, GPUUniformBuf or GPUTexture)
+        ``data_buf``, and with movement ``previous_tx`` and ``next_tx``.
+    """
+    surface.draw_sample(draws, view_buffer, instances, np.zeros(4).tolist(), 0, bindings)

@@ -1,0 +1,425 @@
+"""Drawing the surfaces of a scene for one lens sample (methods 1).
+
+One shader a shape of node tree and set of mesh attributes; draws are sorted by shader, then by
+material, so that a frame changes state as rarely as it can.
+"""
+
+from dataclasses import dataclass, replace
+
+from ...device import shader_source, state
+from ...device.geometry import attribute_identifier, attribute_type
+from ...device.shaders import ShaderInfo, compile_shader
+from ...device.uniform_block import UniformStruct
+from ...device.uniforms import bind_resource
+from . import chromatic, environment, surface_code
+
+# Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and what
+# a lobe reflects of white surroundings.
+LIGHTING_TEXTURES = ("lights_tx", "environment_tx", "environment_levels_tx", "ggx_tx")
+
+VIEW_PARAMS = UniformStruct("shared/view_params.glsl", "ViewParams")
+HIGHLIGHT_PARAMS = UniformStruct("shared/highlight_params.glsl", "HighlightParams")
+
+_LIBRARIES = (
+    "lib/hash_lib.glsl",
+    "lib/surface/color_lib.glsl",
+    "lib/surface/texture_lib.glsl",
+    "lib/surface/vector_lib.glsl",
+    "passes/surface/surface_lighting.glsl",
+)
+
+
+@dataclass(frozen=True)
+class SurfaceTarget:
+    """What the surfaces are drawn into: the colour picture, data passes, ids.
+
+    Parameters
+    ----------
+    fragment : str
+        Entry point below ``gpu_shaders/``; it may call ``surface_closure()``.
+    outputs : tuple of (str, str)
+        Type and name by colour slot.
+    varyings : tuple of (str, str)
+        What its vertex shader gives beside the usual ones.
+    attributes : tuple of str
+        Mesh attributes that it reads itself, such as ``"normal"``, where the mesh has them.
+    defines : tuple of str
+    structs : str
+        Declarations of its own uniform blocks.
+    uniforms, samplers : tuple of (str, str)
+        Its own ones, bound once a shader through `draw_sample`'s `bindings`.
+    images : tuple of tuples
+        Its own ones, as those of `device.shaders.ShaderInfo`, bound as samplers are.
+    push_constants : tuple of (str, str)
+        Its own ones.
+    values : tuple of (str, str)
+        Defines with a value.
+    names_material : bool
+        Its fragment shader reads the push constant `material_id`.
+    shades : bool
+        It calls ``surface_closure()`` for every surface, not only for transparent ones.
+    splits : bool
+        It divides light into highlights and the rest; reads ``highlight_buf``.
+    seen : bool
+        It is seen through the lens: reads ``view_buf``, `lens_sample` and `sample_index`.
+    vertex : str
+        Its vertex shader below ``gpu_shaders/``; it must call ``forward_attributes()``.
+    """
+
+    fragment: str
+    outputs: tuple[tuple[str, str], ...]
+    varyings: tuple[tuple[str, str], ...] = ()
+    attributes: tuple[str, ...] = ()
+    defines: tuple[str, ...] = ()
+    structs: str = ""
+    uniforms: tuple[tuple[str, str], ...] = ()
+    samplers: tuple[tuple[str, str], ...] = ()
+    images: tuple[tuple, ...] = ()
+    push_constants: tuple[tuple[str, str], ...] = ()
+    values: tuple[tuple[str, str], ...] = ()
+    names_material: bool = False
+    shades: bool = True
+    splits: bool = False
+    seen: bool = True
+    vertex: str = "passes/surface/surface_vert.glsl"
+
+
+COLOR = SurfaceTarget("passes/surface/surface_frag.glsl", (("VEC4", "out_color"),))
+
+# The same, with what the mattes are gathered from beside it.
+COLOR_AND_MATTES = SurfaceTarget(
+    "passes/surface/surface_frag.glsl",
+    (("VEC4", "out_color"), ("VEC4", "out_mattes")),
+    defines=("MATTES",),
+    names_material=True,
+)
+
+
+# The define of a target that divides light.
+SPLIT = "HIGHLIGHTS"
+
+
+def without_highlights(target):
+    """Return a target of the colour picture from which the splatted light is left out."""
+    return replace(target, splits=True, defines=(*target.defines, SPLIT))
+
+
+def _whole(target):
+    """Return the target for a material whose light is never splatted."""
+    if not target.splits:
+        return target
+    defines = tuple(name for name in target.defines if name != SPLIT)
+    return replace(target, splits=False, defines=defines)
+
+
+def in_wavelengths(target):
+    """Return a target whose surfaces are drawn at one wavelength a lens sample."""
+    return replace(
+        target,
+        defines=(*target.defines, *(name for name, _ in chromatic.DEFINES)),
+        structs=target.structs + chromatic.CHROMATIC_PARAMS.source,
+        uniforms=(*target.uniforms, *chromatic.UNIFORMS),
+        samplers=(*target.samplers, *chromatic.SAMPLERS),
+        push_constants=(*target.push_constants, *chromatic.PUSH_CONSTANTS),
+    )
+
+
+@dataclass(frozen=True)
+class Draw:
+    """One draw call.
+
+    Parameters
+    ----------
+    shader : GPUShader
+    batch : GPUBatch
+    triangles : int
+        Of one instance.
+    first, count : int
+        Rows of the instance table.
+    constants : GPUUniformBuf or None
+    textures : tuple of (str, GPUTexture)
+    transparent : bool
+        Chance decides what it shows: another sample's picture of it cannot be shared.
+    lighting : tuple of (str, GPUUniformBuf or GPUTexture)
+        What a lit surface reads of the lights and the world, the same for all of them.
+    material_id : float or None
+        Cryptomatte id, where the shader reads it.
+    group : int
+        Which of the content's groups is drawn.
+    level : int
+        Its level of detail.
+    slot : int
+        The material slot of its mesh.
+    """
+
+    shader: object
+    batch: object
+    triangles: int
+    first: int
+    count: int
+    constants: object
+    textures: tuple
+    transparent: bool
+    lighting: tuple = ()
+    material_id: float | None = None
+    group: int = 0
+    level: int = 0
+    slot: int = 0
+
+
+def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, glow=False):
+    """Return what the shader of a surface on a mesh is made of.
+
+    Parameters
+    ----------
+    target : SurfaceTarget
+    code : SurfaceCode
+    mesh_attributes : dict of str to ndarray
+    holdout : bool
+    deforms : bool
+        The mesh has positions in the neighbouring frames.
+    glow : bool
+        Only the light that the surface adds, for `draw_glows`.
+
+    Returns
+    -------
+    ShaderInfo
+    """
+    if holdout:
+        # A hole has no light to split.
+        target = _whole(target)
+    attributes = [("VEC3", "pos")]
+    varyings = [("VEC3", "world_position"), ("FLAT INT", "instance_row"), *target.varyings]
+    forward = []
+    transparent = code.transparent and not holdout
+    shades = not holdout and (target.shades or transparent)
+    own = tuple(key for key in target.attributes if key in mesh_attributes)
+    defines = [*target.defines, *["HOLDOUT"] * holdout, *["TRANSPARENT"] * transparent]
+    if target.shades and not holdout:
+        defines += [*["SHADES"], *["LIT"] * code.lit]
+        if code.glows:
+            defines.append("GLOW" if glow else "GLOW_APART")
+    if "HAS_VECTOR" in defines and deforms:
+        defines.append("HAS_DEFORMATION")
+        attributes += [("VEC3", "pos_previous"), ("VEC3", "pos_next")]
+    defines = dict.fromkeys(defines, "1") | dict(target.values)
+    for key in dict.fromkeys((code.attributes if shades else ()) + own):
+        name = attribute_identifier(key)
+        kind = attribute_type(mesh_attributes[key].shape[1])
+        attributes.append((kind, name))
+        if key == "normal":
+            varyings.append(("VEC3", "world_normal"))
+            defines |= {"HAS_NORMAL": "1", "ATTRIBUTE_NORMAL": name}
+        varyings.append((kind, f"v_{name}"))
+        forward.append(f"  v_{name} = {name};")
+    vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
+    vertex = shader_source.join((shader_source.Text(vertex), target.vertex))
+    structs, uniforms = target.structs, [*target.uniforms]
+    samplers = [("FLOAT_2D", "instances_tx"), *target.samplers]
+    push_constants = [("INT", "instance_base"), *target.push_constants]
+    if target.seen:
+        structs = VIEW_PARAMS.source + structs
+        uniforms.insert(0, ("ViewParams", "view_buf"))
+        push_constants += [("VEC4", "lens_sample"), ("INT", "sample_index")]
+    generated = ""
+    if shades:
+        generated = code.source
+        structs += f"struct MaterialParams {{ vec4 constants[{len(code.constants)}]; }};\n"
+        uniforms.append(("MaterialParams", "material_buf"))
+        samplers += [("FLOAT_2D", f"image_{i}_tx") for i in range(len(code.images))]
+    if target.splits and shades:
+        structs += HIGHLIGHT_PARAMS.source
+        uniforms.append(("HighlightParams", "highlight_buf"))
+    if "LIT" in defines:
+        structs += environment.ENVIRONMENT_PARAMS.source
+        uniforms.append(("EnvironmentParams", "environment_buf"))
+        samplers += [("FLOAT_2D", name) for name in LIGHTING_TEXTURES]
+    if target.names_material and not holdout:
+        push_constants.append(("FLOAT", "material_id"))
+    libraries = (*_LIBRARIES, *(code.libraries if shades else ()))
+    fragment = shader_source.join((*libraries, shader_source.Text(generated), target.fragment))
+    return ShaderInfo(
+        name="aplanat_surface",
+        vertex=vertex,
+        fragment=fragment,
+        typedefs=structs,
+        attributes=tuple(attributes),
+        varyings=tuple(varyings),
+        outputs=target.outputs,
+        samplers=tuple(samplers),
+        images=target.images,
+        uniforms=tuple(uniforms),
+        push_constants=tuple(push_constants),
+        defines=tuple(defines.items()),
+    )
+
+
+def build_draws(content, buffers, target=COLOR, wanted=None):
+    """List the draw calls of a scene, sorted by state.
+
+    Parameters
+    ----------
+    content : SceneContent
+    buffers : engine.scene_buffers.SceneBuffers
+    target : SurfaceTarget
+    wanted : set of (int, int) or None
+        Group and slot of the surfaces to list; None lists all.
+
+    Returns
+    -------
+    list of Draw
+        At every level of detail that the device has of a mesh.
+    """
+    return _list_draws(content, buffers, target, glow=False, wanted=wanted)
+
+
+def build_glow_draws(content, buffers, target=COLOR):
+    """List the draw calls of `draw_glows`: surfaces that add light to what is behind them."""
+    return _list_draws(content, buffers, target, glow=True)
+
+
+def _list_draws(content, buffers, target, glow, wanted=None):
+    draws = []
+    shaders, made = {}, {}
+    # Where two surfaces lie at one depth, the first one drawn is seen: the order must be that of
+    # the content, whenever its parts were read.
+    materials, meshes = (
+        {uid: place for place, uid in enumerate(part)}
+        for part in (content.materials, content.meshes)
+    )
+    for number, level, group, buffer in _levels_of_groups(content, buffers):
+        mesh = content.meshes[group.mesh]
+        for slot, (batch, count) in buffer.batches.items():
+            if wanted is not None and (number, slot) not in wanted:
+                continue
+            material = content.materials[group.materials[slot]]
+            # Many groups, and all levels of one, are drawn alike.
+            widths = tuple((key, values.shape[1]) for key, values in mesh.attributes.items())
+            alike = (material.uid, widths, group.holdout, mesh.motion is not None)
+            if alike not in made:
+                made[alike] = _code_and_shader(material, mesh, group.holdout, target, glow)
+            code, shader = made[alike]
+            if shader is None:
+                continue
+            order = shaders.setdefault(id(shader), len(shaders))
+            constants, textures = None, ()
+            transparent = code.transparent and not group.holdout
+            shaded = target.shades and not group.holdout
+            if shaded or transparent:
+                constants = buffers.material_constants(material.uid, code)
+                textures = tuple(
+                    (f"image_{i}_tx", buffers.images[uid]) for i, uid in enumerate(code.images)
+                )
+            draw = Draw(
+                shader,
+                batch,
+                count,
+                group.first,
+                group.count,
+                constants,
+                textures,
+                # The data passes decide by a threshold, not by chance.
+                transparent=transparent and shaded and not glow,
+                lighting=buffers.lighting if shaded and code.lit else (),
+                material_id=(
+                    material.cryptomatte_id if target.names_material and not group.holdout else None
+                ),
+                group=number,
+                level=level,
+                slot=slot,
+            )
+            place = (order, materials[material.uid], meshes[group.mesh], slot, level)
+            draws.append((place, draw))
+    draws.sort(key=lambda item: item[0])
+    return [draw for _, draw in draws]
+
+
+def _code_and_shader(material, mesh, holdout, target, glow):
+    """Return a surface's code, and its shader or None where it is not drawn."""
+    code = surface_code.generate(material.graph, mesh.attributes)
+    if glow and (holdout or not code.glows):
+        return code, None
+    drawn = target if material.highlights else _whole(target)
+    deforms = mesh.motion is not None
+    info = surface_info(drawn, code, mesh.attributes, holdout, deforms, glow)
+    return code, compile_shader(info)
+
+
+def _levels_of_groups(content, buffers):
+    for number, group in enumerate(content.groups):
+        for level, buffer in enumerate(buffers.mesh_levels(group.mesh)):
+            yield number, level, group, buffer
+
+
+def draw_glows(draws, view_buffer, instances, lens_sample, highlights=None, wavelength=None):
+    """Add the light of surfaces that glow to what the frame buffer shows behind them.
+
+    Unlike opacity, which is decided by chance, their light is added wherever no surface of this
+    sample is in front, so its mean is exact also where the surface lets everything through.
+
+    Parameters
+    ----------
+    draws : list of Draw
+        Of `build_glow_draws`; the same depth buffer as `draw_sample`'s must be bound.
+    view_buffer, instances, lens_sample, highlights, wavelength
+        As for `draw_sample`.
+    """
+    if draws:
+        state.glow()
+        resources = {"highlights": highlights, "wavelength": wavelength}
+        draw_sample(draws, view_buffer, instances, lens_sample, 0, **resources)
+
+
+def draw_sample(
+    draws,
+    view_buffer,
+    instances,
+    lens_sample,
+    sample_index,
+    bindings=(),
+    highlights=None,
+    wavelength=None,
+):
+    """Draw one lens sample into the bound frame buffer.
+
+    Parameters
+    ----------
+    draws : list of Draw
+    view_buffer : GPUUniformBuf
+        `ViewParams`.
+    instances : GPUTexture
+        The instance table.
+    lens_sample : sequence of 4 float
+        Place on the lens in m, jitter in clip units.
+    sample_index : int
+    bindings : iterable of (str, GPUUniformBuf, GPUTexture or int)
+        Of the target's own uniform blocks, samplers, images and whole numbers.
+    highlights : GPUUniformBuf or None
+        `HighlightParams`, for a target that splits light.
+    wavelength : chromatic.ChromaticSample, optional
+        Of a target `in_wavelengths`.
+    """
+    current = None
+    for draw in draws:
+        shader = draw.shader
+        if shader is not current:
+            current = shader
+            shader.bind()
+            shader.uniform_block("view_buf", view_buffer)
+            shader.uniform_sampler("instances_tx", instances)
+            shader.uniform_float("lens_sample", lens_sample)
+            shader.uniform_int("sample_index", sample_index)
+            for name, resource in (*draw.lighting, *bindings):
+                bind_resource(shader, name, resource)
+            if shader.declares("highlight_buf"):
+                shader.uniform_block("highlight_buf", highlights)
+            if wavelength is not None:
+                wavelength.bind(shader)
+        if draw.material_id is not None:
+            shader.uniform_float("material_id", draw.material_id)
+        if draw.constants is not None:
+            shader.uniform_block("material_buf", draw.constants)
+        for name, texture in draw.textures:
+            shader.uniform_sampler(name, texture)
+        shader.uniform_int("instance_base", draw.first)
+        shader.draw_instanced(draw.batch, draw.count)

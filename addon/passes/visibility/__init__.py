@@ -1,0 +1,1 @@
+"""Passes that find what hides a highlight from the lens (methods 10, 11)."""

@@ -1,0 +1,276 @@
+"""The bokeh of a Blender camera to `BokehSettings`."""
+
+import math
+import threading
+from functools import lru_cache
+
+import numpy as np
+
+from ...errors import AplanatError, InputError
+from ...lens_bokeh.look.appearance import Appearance, Diffraction
+from ...lens_bokeh.look.distortion import fitted_coefficient
+from ...lens_bokeh.look.grain import Grain
+from ...lens_bokeh.look.iris_mask import BladedIris, PictureIris
+from ...lens_bokeh.look.onion import OnionRings
+from ...lens_bokeh.look.vignetting_model import cat_eye
+from ...optics.rays.aberrations import field_curves
+from ...sampling.spectrum import rgb_weights, spectrum_wavelengths
+from ...snapshot.scene import BokehSettings
+from ..images.images import ImageReader
+
+# Below this number an iris has no corners, as in Cycles.
+_FEWEST_BLADES = 3
+# Rims of the softest cat's eye; one makes it hard.
+_MOST_RIMS = 8
+# Of the ringing: enough that neighbouring wavelengths' rings overlap.
+_RINGING_WAVELENGTHS = 9
+# Chief rays that the distortion of a lens is fitted to, and where a picture ends for the fit, as a
+# tangent: some lenses see nothing farther out.
+_FIELDS = 9
+_WIDEST_FIELD = 2.0
+# Of the division model: twice the frame for a barrel, and twice its pixels for a pincushion.
+_STRONGEST = (-0.5, 0.25)
+# Along a side of an iris' picture, in texels: finer than the largest disc's table.
+_LARGEST_IRIS = 1024
+
+_iris_lock = threading.Lock()
+
+
+def read_bokeh(camera, real_lens, corner):
+    """Return how a camera's data wants highlights drawn, and what it asks for and does not get.
+
+    Parameters
+    ----------
+    camera : bpy.types.Camera
+        Evaluated in the frame that is drawn.
+    real_lens : LensSettings or None
+        As read from the same camera.
+    corner : float
+        Tangent of the field angle of the picture's corner; see `corner_tangent`.
+
+    Returns
+    -------
+    bokeh : BokehSettings or None
+        None where it is switched off.
+    problems : tuple of str
+        One sentence each, without the camera's name.
+    """
+    if not camera.aplanat.bokeh.use:
+        return None, ()
+    return describe_bokeh(camera, real_lens, corner)
+
+
+def describe_bokeh(camera, real_lens, corner):
+    """Return what `read_bokeh` does, also where it is switched off."""
+    settings = camera.aplanat.bokeh
+    shaping = real_lens if real_lens and real_lens.shapes_bokeh else None
+    appearance, problems = _read_appearance(camera, shaping, corner)
+    if shaping is None and real_lens and camera.dof.use_dof:
+        problems += (
+            f"lens '{real_lens.prescription.name}' shapes no bokeh, a thin lens does: it has"
+            " cylinders, and discs are traced for lenses of revolution",
+        )
+    distortion, distortion_problems = _read_distortion(settings, real_lens, corner)
+    vignetting = settings.vignetting
+    if vignetting == "LENS" and shaping is None:
+        vignetting = "NONE"
+    bokeh = BokehSettings(
+        threshold=settings.threshold,
+        gain=settings.gain,
+        model=settings.model,
+        cluster_levels=settings.cluster_levels,
+        similarity=settings.similarity,
+        global_merge=settings.use_global_merge,
+        visibility=settings.visibility,
+        layers=settings.layers,
+        overscan=settings.overscan,
+        lens_views=settings.lens_views,
+        world=settings.use_world,
+        appearance=appearance,
+        distortion=distortion,
+        vignetting=vignetting,
+        profile_strength=settings.profile_strength,
+        debug_view=settings.debug_view,
+    )
+    return bokeh, problems + distortion_problems + _told(camera)
+
+
+def _told(camera):
+    if camera.aplanat.bokeh.use and camera.aplanat.bokeh.debug_view != "NONE":
+        return ("the picture is the debug view of the bokeh",)
+    return ()
+
+
+def corner_tangent(camera, scene):
+    """Return the tangent of the field angle of a picture's farthest corner.
+
+    Parameters
+    ----------
+    camera : bpy.types.Camera
+    scene : bpy.types.Scene
+        Its picture's shape decides where the corners are.
+
+    Returns
+    -------
+    float
+        0 for a parallel camera, whose rays have no angle.
+    """
+    if camera.type != "PERSP":
+        return 0.0
+    corners = np.array(camera.view_frame(scene=scene), np.float64)
+    corners /= -corners[:, 2:]
+    return float(np.linalg.norm(corners[:, :2], axis=1).max())
+
+
+def _read_appearance(camera, real_lens, corner):
+    settings, dof = camera.aplanat.bokeh, camera.dof
+    iris, problems = _read_iris(settings, dof)
+    rims = ()
+    if settings.vignetting == "ANALYTIC":
+        if corner > 0.0:
+            members = 1 + round(settings.vignetting_softness * (_MOST_RIMS - 1))
+            rims = cat_eye(settings.vignetting_strength, corner, members)
+        else:
+            problems += ("cat's eyes are left out: they need a perspective camera",)
+    grain = onion = ringing = None
+    if settings.grain > 0.0 or (settings.dust > 0 and settings.dust_depth > 0.0):
+        grain = Grain(
+            strength=settings.grain,
+            cell=settings.grain_size,
+            dust=settings.dust,
+            dust_radius=settings.dust_size,
+            dust_depth=settings.dust_depth,
+            seed=settings.texture_seed,
+        )
+    if settings.onion > 0.0:
+        onion = OnionRings(
+            contrast=settings.onion,
+            pitch=settings.onion_pitch,
+            irregularity=settings.onion_irregularity,
+            seed=settings.texture_seed,
+        )
+    if settings.diffraction > 0.0:
+        ringing = Diffraction(settings.diffraction, *_ringing_spectrum())
+    appearance = Appearance(
+        iris=iris,
+        grain=grain,
+        onion=onion,
+        rims=rims,
+        diffraction=ringing,
+        # Where it is no ratio, the camera has no lens and says so.
+        anamorphic_ratio=dof.aperture_ratio if 0.0 < dof.aperture_ratio < math.inf else 1.0,
+        # A traced lens has its own spherical aberration.
+        edge=settings.hardness if real_lens is None else 0.0,
+    )
+    return appearance, problems
+
+
+@lru_cache(maxsize=1)
+def _ringing_spectrum():
+    wavelengths = spectrum_wavelengths(_RINGING_WAVELENGTHS)
+    weights = rgb_weights(wavelengths)
+    return tuple(wavelengths.tolist()), tuple(map(tuple, weights.tolist()))
+
+
+def _read_iris(settings, dof):
+    problems = ()
+    if settings.iris_image is not None:
+        image = settings.iris_image.original
+        try:
+            picture = _picture_iris(image, dof.aperture_rotation)
+        except InputError as error:
+            problems = (f"iris image '{image.name}': {error}; the blades are drawn instead",)
+        else:
+            return picture, problems
+    blades = dof.aperture_blades if dof.aperture_blades >= _FEWEST_BLADES else 0
+    # A round opening is the same however it is turned.
+    rotation = dof.aperture_rotation if blades else 0.0
+    curvature = settings.blade_curvature if blades else 0.0
+    return BladedIris(blades, curvature, rotation), problems
+
+
+def _picture_iris(image, rotation):
+    # The readers are shared by viewports, panels and the thread that renders.
+    with _iris_lock:
+        reader = _image_reader(image.session_uid)
+        reader.begin()
+        use = reader.read(image)
+        if use is None:
+            raise InputError("it cannot be read; choose another file")
+        return _iris_of_pixels(_Pixels(use.uid, reader.images[use.uid]), rotation)
+
+
+@lru_cache(maxsize=16)
+def _image_reader(_session_uid):
+    """Return an image's own reader, which knows whether the image changed."""
+    return ImageReader()
+
+
+class _Pixels:
+    """Pixels of an image, known by their number."""
+
+    def __init__(self, uid, image):
+        self.uid = uid
+        self.image = image
+
+    def __eq__(self, other):
+        return self.uid == other.uid
+
+    def __hash__(self):
+        return self.uid
+
+
+# Irises of pictures are compared by identity, so that a picture is not compared in every frame.
+@lru_cache(maxsize=16)
+def _iris_of_pixels(pixels, rotation):
+    picture = pixels.image.linear_colors().astype(np.float64)
+    return PictureIris(_reduced(picture.mean(axis=-1)), rotation)
+
+
+def _reduced(picture):
+    """Return a picture of no more than `_LARGEST_IRIS` texels a side, by means over squares."""
+    step = math.ceil(max(picture.shape) / _LARGEST_IRIS)
+    if step == 1:
+        return picture
+    height, width = (-(-length // step) * step for length in picture.shape)
+    # What is added is closed, as everything outside of the picture is.
+    padded = np.zeros((height, width))
+    padded[: picture.shape[0], : picture.shape[1]] = picture
+    return padded.reshape(height // step, step, width // step, step).mean(axis=(1, 3))
+
+
+def _read_distortion(settings, real_lens, corner):
+    """Return K in units of the distance from the picture's middle to its corner."""
+    if settings.distortion_source == "DIVISION":
+        return settings.distortion, ()
+    if settings.distortion_source == "NONE":
+        return 0.0, ()
+    if real_lens is None:
+        return 0.0, ("has no real lens whose distortion could be used; there is none",)
+    prescription = real_lens.prescription
+    named = f"lens '{prescription.name}'"
+    configuration = prescription.configuration(real_lens.label)
+    try:
+        k = _distortion_of_lens(configuration, prescription.projection, corner)
+    except AplanatError as error:
+        return 0.0, (f"{named} has no distortion that could be used: {error}",)
+    problems = ()
+    if not configuration.of_revolution:
+        problems = (f"{named} has cylinders: its distortion along the height is drawn all round",)
+    wanted = k * corner**2
+    drawn = min(max(wanted, _STRONGEST[0]), _STRONGEST[1])
+    if drawn != wanted:
+        problems += (f"{named} has a distortion of K = {wanted:.3g}; {drawn:g} is drawn",)
+    return drawn, problems
+
+
+@lru_cache(maxsize=64)
+def _distortion_of_lens(configuration, projection, corner):
+    """Return K of a lens per square of a field angle's tangent."""
+    if projection == "fisheye":
+        raise InputError("a fisheye's picture is drawn rectilinear")
+    tangents = np.linspace(0.0, min(corner, _WIDEST_FIELD), _FIELDS)[1:]
+    curves = field_curves(configuration, np.degrees(np.arctan(tangents)))
+    ideal = np.tan(np.radians(curves.field_deg))
+    k, _ = fitted_coefficient(ideal, ideal * (1.0 + curves.distortion))
+    return k

@@ -1,0 +1,80 @@
+"""The real lens that a Blender camera names: looked up in the library, at its zoom and f-number."""
+
+from functools import cache
+from pathlib import Path
+
+import bpy
+
+from ...lens_io.lens_shelf import LensShelf
+from ...snapshot.scene import LensSettings
+
+_EXTENSIONS = "bl_ext."
+
+
+@cache
+def shelf():
+    """Return this process' library of lenses.
+
+    Returns
+    -------
+    LensShelf
+    """
+    return LensShelf([user_folder()])
+
+
+@cache
+def user_folder():
+    """Return the folder of the user's own lens files; it may not be there yet.
+
+    Returns
+    -------
+    Path
+        That of the extension, which stays when it is updated; for a checkout one among Blender's
+        data files.
+    """
+    package = __package__
+    if package.startswith(_EXTENSIONS):
+        # Blender, repository, extension.
+        extension = ".".join(package.split(".")[:3])
+        return Path(bpy.utils.extension_path_user(extension, path="lenses"))
+    return Path(bpy.utils.user_resource("DATAFILES", path="aplanat/lenses"))
+
+
+def read_real_lens(camera):
+    """Return the lens of a camera's data, and what it asks for and does not get.
+
+    Parameters
+    ----------
+    camera : bpy.types.Camera
+
+    Returns
+    -------
+    lens : LensSettings or None
+        None if the camera names none or it cannot be used.
+    problems : tuple of str
+        One sentence each, without the camera's name.
+    """
+    wanted = camera.aplanat
+    if not wanted.lens:
+        return None, ()
+    found = shelf().find(wanted.lens)
+    if found is None:
+        near = shelf().near_ids(wanted.lens)
+        hint = f" (near names: {', '.join(near)})" if near else ""
+        return None, (
+            f"lens '{wanted.lens}' is not in the library{hint}; import its file or choose another"
+            " lens; it is drawn as a thin lens",
+        )
+    if found.lens is None:
+        return None, (f"its lens cannot be used, it is drawn as a thin lens: {found.error}",)
+    if camera.type != "PERSP":
+        return None, (f"lens '{found.name}' is left out: it needs a perspective camera",)
+    prescription = found.lens.prescription
+    problems = ()
+    label = wanted.zoom_label or None
+    if label not in (None, *prescription.labels):
+        problems = (f"lens '{found.name}' has no zoom position '{label}'; it is at its first one",)
+        label = None
+    configuration = prescription.configuration(label)
+    f_number = max(camera.dof.aperture_fstop, configuration.f_number)
+    return LensSettings(found.id, configuration.label, f_number, prescription), problems

@@ -1,0 +1,1 @@
+"""Readers of Blender's evaluated objects."""

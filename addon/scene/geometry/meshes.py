@@ -1,0 +1,359 @@
+"""Evaluated Blender meshes to `MeshSnapshot`."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...snapshot.scene import MeshSnapshot, next_uid
+from .vertex_split import VertexSplit, split_all, split_vertices
+
+# Which member of an attribute's elements holds the value, and how many numbers that is.
+_VALUE_MEMBERS = {
+    "FLOAT": ("value", 1),
+    "INT": ("value", 1),
+    "INT8": ("value", 1),
+    "BOOLEAN": ("value", 1),
+    "FLOAT2": ("vector", 2),
+    "FLOAT_VECTOR": ("vector", 3),
+    "FLOAT_COLOR": ("color", 4),
+    # "color" is scene linear; "color_srgb" would be as stored.
+    "BYTE_COLOR": ("color", 4),
+}
+_UV_TYPES = {"FLOAT2"}
+_COLOR_TYPES = set(_VALUE_MEMBERS) - _UV_TYPES
+
+
+@dataclass(frozen=True, eq=False)
+class MeshReading:
+    """What was read of a mesh.
+
+    Parameters
+    ----------
+    snapshot : MeshSnapshot
+    split : VertexSplit or None
+        How its vertices came about; `read_moved_positions` needs it.
+    notes : tuple of str
+        Lines for the report.
+    """
+
+    snapshot: MeshSnapshot
+    split: VertexSplit | None
+    notes: tuple[str, ...] = ()
+
+
+def read_mesh(mesh, keys, owner, base=None):
+    """Copy an evaluated mesh with the attributes that its surfaces read.
+
+    Parameters
+    ----------
+    mesh : bpy.types.Mesh
+    keys : iterable of str
+        As in `MeshSnapshot.attributes`. Those that the mesh lacks are left out.
+    owner : str
+        Name of an object that shows the mesh, for messages.
+    base : bpy.types.Mesh or None
+        What the mesh was made from by modifiers and shape keys, if that is known.
+
+    Returns
+    -------
+    MeshReading
+
+    Notes
+    -----
+    Triangles with a corner that is not finite are left out, as in Cycles.
+    """
+    positions = _read_positions(mesh)
+    corner_vertices = _read_corner_vertices(mesh)
+    slots, triangle_corners = _sorted_by_slot(mesh, _triangle_corners(mesh))
+    vertex_values, corner_values, notes = {}, {}, []
+    lost = ~np.isfinite(positions).all(axis=1)
+    if lost.any():
+        positions[lost] = 0.0
+        whole = ~lost[np.take(corner_vertices, triangle_corners)].any(axis=1)
+        slots, triangle_corners = _chosen_triangles(slots, triangle_corners, whole)
+        notes.append(
+            f"object '{owner}': {lost.sum()} vertices of mesh '{mesh.name}' have coordinates that"
+            f" are not finite; the {(~whole).sum()} triangles there are left out, as in Cycles"
+        )
+    flat = False
+    for key in sorted(keys):
+        kind, _, name = key.partition(":")
+        if kind == "normal":
+            flat = mesh.normals_domain == "FACE"
+            values, domain = _read_normals(mesh)
+        else:
+            attribute = _find_attribute(mesh, kind, name)
+            if attribute is None:
+                continue
+            values, domain = _read_attribute(mesh, attribute, kind)
+        if not np.isfinite(values).all():
+            notes.append(
+                f"object '{owner}': attribute '{key}' of mesh '{mesh.name}' has values that are"
+                " not finite; drawn as 0 in the faces that have them"
+            )
+            if kind == "normal":
+                values[~np.isfinite(values)] = 0.0
+            else:
+                values, domain = _without_infinite(mesh, values, domain, corner_vertices), "CORNER"
+        (vertex_values if domain == "POINT" else corner_values)[key] = values
+    if flat:
+        split = split_all(corner_vertices)
+    else:
+        split = split_vertices(corner_vertices, len(positions), list(corner_values.values()))
+    attributes = {key: split.of_vertices(values) for key, values in vertex_values.items()}
+    attributes |= {key: split.of_corners(values) for key, values in corner_values.items()}
+    rest = _read_rest(mesh, base, positions, corner_vertices)
+    snapshot = MeshSnapshot(
+        uid=next_uid(),
+        name=mesh.name,
+        positions=split.of_vertices(positions),
+        triangles=np.take(split.index, triangle_corners),
+        slots=slots,
+        attributes=attributes,
+        rest=None if rest is None else split.of_vertices(rest),
+    )
+    return MeshReading(snapshot, split, tuple(notes))
+
+
+def used_slots(mesh):
+    """Return the material slots that faces of a mesh use, in ascending order.
+
+    Parameters
+    ----------
+    mesh : bpy.types.Mesh
+
+    Returns
+    -------
+    tuple of int
+    """
+    indices = _material_indices(mesh)
+    if indices is None:
+        return (0,) if len(mesh.polygons) else ()
+    return tuple(np.flatnonzero(np.bincount(indices)).tolist())
+
+
+def read_moved_positions(mesh, reading):
+    """Read where the vertices of a mesh are in another frame.
+
+    Parameters
+    ----------
+    mesh : bpy.types.Mesh
+        The mesh in the other frame.
+    reading : MeshReading
+        The mesh as it was read in the frame that is rendered.
+
+    Returns
+    -------
+    ndarray of shape (V, 3) or None
+        None if the mesh has another topology there, or coordinates that are not finite.
+    """
+    split = reading.split
+    if len(mesh.loops) != len(split.index):
+        return None
+    corner_vertices = _read_corner_vertices(mesh)
+    if len(corner_vertices) and not np.array_equal(
+        np.take(split.vertices, split.index), corner_vertices
+    ):
+        return None
+    positions = _read_positions(mesh)
+    if not np.isfinite(positions).all():
+        return None
+    if split.unsplit:
+        return positions if len(positions) == len(split.vertices) else None
+    if len(split.vertices) and split.vertices.max() >= len(positions):
+        return None
+    return split.of_vertices(positions)
+
+
+def same_content(a, b):
+    """Whether two `MeshSnapshot` would draw the same, bit by bit."""
+    if (
+        a.slots != b.slots
+        or a.name != b.name
+        or a.attributes.keys() != b.attributes.keys()
+        or (a.motion is None) != (b.motion is None)
+        or (a.rest is None) != (b.rest is None)
+    ):
+        return False
+    pairs = [(a.positions, b.positions), (a.triangles, b.triangles)]
+    pairs += [(values, b.attributes[key]) for key, values in a.attributes.items()]
+    if a.motion is not None:
+        pairs += zip(a.motion, b.motion, strict=True)
+    if a.rest is not None:
+        pairs.append((a.rest, b.rest))
+    return all(np.array_equal(x, y) for x, y in pairs)
+
+
+def _read_positions(mesh):
+    positions = np.empty((len(mesh.vertices), 3), np.float32)
+    if len(positions):
+        mesh.attributes["position"].data.foreach_get("vector", positions.reshape(-1))
+    return positions
+
+
+def _read_rest(mesh, base, positions, corner_vertices):
+    """Return where the vertices of a mesh are before anything deforms it, or None.
+
+    That is where they are in the mesh that it was made from, if it has the same faces. Otherwise
+    Blender may have carried the coordinates through the modifiers, as it does for renders, for
+    generated texture coordinates; else it answers with the positions themselves.
+    """
+    if base is not None and _has_faces(base, len(positions), corner_vertices):
+        rest = np.empty_like(positions)
+        if len(rest):
+            base.attributes["position"].data.foreach_get("vector", rest.reshape(-1))
+    else:
+        rest = np.empty_like(positions)
+        if len(rest):
+            mesh.vertices.foreach_get("undeformed_co", rest.reshape(-1))
+    if not np.isfinite(rest).all() or np.array_equal(rest, positions):
+        return None
+    return rest
+
+
+def _has_faces(mesh, vertex_count, corner_vertices):
+    return (
+        len(mesh.vertices) == vertex_count
+        and len(mesh.loops) == len(corner_vertices)
+        and np.array_equal(_read_corner_vertices(mesh), corner_vertices)
+    )
+
+
+def _chosen_triangles(slots, triangles, chosen):
+    """Return slots and triangles with those triangles only that are chosen."""
+    kept, first = [], 0
+    for slot, start, count in slots:
+        left = int(chosen[start : start + count].sum())
+        if left:
+            kept.append((slot, first, left))
+        first += left
+    return tuple(kept), triangles[chosen]
+
+
+def _read_corner_vertices(mesh):
+    corner_vertices = np.empty(len(mesh.loops), np.int32)
+    if len(corner_vertices):
+        mesh.attributes[".corner_vert"].data.foreach_get("value", corner_vertices)
+    return corner_vertices
+
+
+def _read_normals(mesh):
+    if mesh.normals_domain == "POINT":
+        source, domain = mesh.vertex_normals, "POINT"
+    else:
+        source, domain = mesh.corner_normals, "CORNER"
+    normals = np.empty((len(source), 3), np.float32)
+    if len(normals):
+        source.foreach_get("vector", normals.reshape(-1))
+    return normals, domain
+
+
+def _find_attribute(mesh, kind, name):
+    if kind == "uv":
+        if not name:
+            layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
+            name = layer.name if layer else ""
+        types = _UV_TYPES
+    else:
+        if not name:
+            index = mesh.color_attributes.render_color_index
+            inside = 0 <= index < len(mesh.color_attributes)
+            name = mesh.color_attributes[index].name if inside else ""
+        types = _COLOR_TYPES
+    attribute = mesh.attributes.get(name) if name else None
+    if attribute is None or attribute.data_type not in types or attribute.domain == "EDGE":
+        return None
+    return attribute
+
+
+def _read_attribute(mesh, attribute, kind):
+    member, components = _VALUE_MEMBERS[attribute.data_type]
+    count = len(attribute.data)
+    # Only float32 and the stored type are copied in one piece; numpy converts the others.
+    stored = {"INT": np.int32, "INT8": np.int8, "BOOLEAN": bool}.get(attribute.data_type)
+    values = np.empty((count, components), stored or np.float32)
+    if count:
+        attribute.data.foreach_get(member, values.reshape(-1))
+    values = values.astype(np.float32, copy=False)
+    if kind == "color" and components != 4:
+        # As shader nodes see it: a number is grey, a vector is a colour.
+        opaque = np.ones((count, 4), np.float32)
+        opaque[:, :3] = values
+        values = opaque
+    domain = attribute.domain
+    if domain == "FACE":
+        values = np.repeat(values, _polygon_sizes(mesh), axis=0)
+        domain = "CORNER"
+    return values, domain
+
+
+def _without_infinite(mesh, values, domain, corner_vertices):
+    """Return values of corners that are 0 all over a face where one of its own is not finite.
+
+    Each component by itself: what lies between such a corner and another one is not finite either,
+    and Cycles draws it as 0.
+    """
+    if domain == "POINT":
+        values = np.take(values, corner_vertices, axis=0)
+    sizes = _polygon_sizes(mesh)
+    polygon = np.repeat(np.arange(len(sizes)), sizes)
+    corner, component = np.nonzero(~np.isfinite(values))
+    lost = np.zeros((len(sizes), values.shape[1]), bool)
+    lost[polygon[corner], component] = True
+    values[lost[polygon]] = 0.0
+    return values
+
+
+def _polygon_sizes(mesh):
+    sizes = np.empty(len(mesh.polygons), np.int32)
+    if len(sizes):
+        mesh.polygons.foreach_get("loop_total", sizes)
+    return sizes
+
+
+def _all_triangles(mesh):
+    return len(mesh.loops) == 3 * len(mesh.polygons) and bool((_polygon_sizes(mesh) == 3).all())
+
+
+def _triangle_corners(mesh):
+    if _all_triangles(mesh):
+        return np.arange(len(mesh.loops), dtype=np.int32).reshape(-1, 3)
+    mesh.calc_loop_triangles()
+    corners = np.empty((len(mesh.loop_triangles), 3), np.int32)
+    if len(corners):
+        mesh.loop_triangles.foreach_get("loops", corners.reshape(-1))
+    return corners
+
+
+def _material_indices(mesh):
+    """Return the material slot of each polygon, as Blender stores it: 16 bits, never negative."""
+    attribute = mesh.attributes.get("material_index")
+    if attribute is None or attribute.domain != "FACE" or attribute.data_type != "INT":
+        return None
+    indices = np.empty(len(mesh.polygons), np.int32)
+    if len(indices):
+        attribute.data.foreach_get("value", indices)
+    return np.clip(indices, 0, 0x7FFF).astype(np.uint16)
+
+
+def _sorted_by_slot(mesh, corners):
+    if len(corners) == 0:
+        return (), corners
+    per_polygon = _material_indices(mesh)
+    if per_polygon is None:
+        return ((0, 0, len(corners)),), corners
+    if len(corners) == len(per_polygon):
+        material = per_polygon
+    else:
+        polygon = np.empty(len(corners), np.int32)
+        mesh.loop_triangles.foreach_get("polygon_index", polygon)
+        material = np.take(per_polygon, polygon)
+    counts = np.bincount(material)
+    used = np.flatnonzero(counts)
+    ends = np.cumsum(counts)
+    slots = tuple((int(s), int(ends[s] - counts[s]), int(counts[s])) for s in used)
+    if len(used) == 1:
+        return slots, corners
+    # A stable sort of 16-bit integers is a radix sort.
+    order = np.argsort(material, kind="stable")
+    return slots, np.take(corners, order, axis=0)

@@ -1,0 +1,127 @@
+"""Pixels of any colour space to scene linear, with Blender's OpenColorIO configuration."""
+
+import importlib
+import os
+import sys
+from functools import cache
+
+import numpy as np
+
+from ...snapshot.surface_graph import REC709_LUMINANCE
+
+SRGB = "sRGB"
+# Spaces whose numbers are used as they are, and the scene-linear one that Blender starts with.
+DATA_SPACES = frozenset({"Non-Color", "Raw"})
+REC709 = "Linear Rec.709"
+# A role of Blender's configuration: CIE XYZ with the white of D65.
+_XYZ = "cie_xyz_d65_interchange"
+
+
+def working_space():
+    """Return the name of the open file's scene-linear space."""
+    import bpy
+
+    return getattr(getattr(bpy.data, "colorspace", None), "working_space", REC709)
+
+
+def luminance_weights():
+    """Return the weights with which the open file's colours become a value, as in Cycles.
+
+    Returns
+    -------
+    tuple of 3 float
+        Their sum is 1.
+    """
+    return _luminance_weights(working_space())
+
+
+@cache
+def _luminance_weights(space):
+    if space == REC709:
+        return REC709_LUMINANCE
+    primaries = np.ones((1, 3, 4), np.float32)
+    primaries[0, :, :3] = np.eye(3)
+    xyz = convert(primaries, space, _XYZ)
+    if xyz is None:
+        return REC709_LUMINANCE
+    weights = xyz[0, :, 1].astype(np.float64)
+    return tuple(float(w) for w in weights / weights.sum())
+
+
+@cache
+def bundled_module(name):
+    """Import one of the packages that come with Blender.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    module or None
+        None where this Blender was built without it.
+    """
+    import bpy
+
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        pass
+    # As a Python module, Blender leaves its bundled packages off the path.
+    version = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    local = bpy.utils.resource_path("LOCAL")
+    folder = os.path.join(local, "python", "lib", version, "site-packages")
+    if not os.path.isdir(folder):
+        return None
+    sys.path.append(folder)
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        return None
+    finally:
+        sys.path.remove(folder)
+
+
+@cache
+def _processor(source, target):
+    import bpy
+
+    ocio = bundled_module("PyOpenColorIO")
+    if ocio is None:
+        return None
+    local = bpy.utils.resource_path("LOCAL")
+    path = os.environ.get("OCIO") or os.path.join(
+        local, "datafiles", "colormanagement", "config.ocio"
+    )
+    if not os.path.isfile(path):
+        path = os.path.join(
+            bpy.utils.resource_path("SYSTEM"), "datafiles", "colormanagement", "config.ocio"
+        )
+    try:
+        config = ocio.Config.CreateFromFile(path)
+        return config.getProcessor(source, target).getDefaultCPUProcessor()
+    except ocio.Exception:
+        return None
+
+
+def convert(pixels, source, target):
+    """Convert pixels between two colour spaces of Blender's configuration.
+
+    Parameters
+    ----------
+    pixels : ndarray of shape (height, width, 4)
+        float32; not changed.
+    source, target : str
+        Names as in Blender's colour space menus.
+
+    Returns
+    -------
+    ndarray or None
+        None where there is no such conversion.
+    """
+    processor = _processor(source, target)
+    if processor is None:
+        return None
+    converted = np.ascontiguousarray(pixels, np.float32).copy()
+    processor.applyRGBA(converted)
+    return converted

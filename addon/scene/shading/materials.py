@@ -1,0 +1,111 @@
+"""Blender's materials to `MaterialSnapshot`."""
+
+from ...snapshot.cryptomatte import cryptomatte_id
+from ...snapshot.scene import MaterialSnapshot, next_uid
+from ...snapshot.surface_graph import DEFAULT_GRAPH, Constant, Link, ShaderNode, SurfaceGraph
+from ..images.images import ImageReader
+from ..nodes import material_nodes, value_nodes
+from ..nodes.tree_reader import TreeReader
+
+_READERS = material_nodes.READERS | value_nodes.READERS
+
+_INVISIBLE_GRAPH = SurfaceGraph(
+    (ShaderNode("transparent", (("Color", Constant((1.0, 1.0, 1.0))),)),), Link(0, "BSDF")
+)
+
+
+class MaterialReader:
+    """Reads materials and the images they use.
+
+    Keep one for the life of an extractor: a material or image that did not change keeps its uid
+    from one round to the next.
+
+    Parameters
+    ----------
+    largest_image : int or None
+        Texels along a side that the device can hold.
+    in_main_thread : callable or None
+        As for `ImageReader`.
+
+    Attributes
+    ----------
+    materials : dict of int to MaterialSnapshot
+        Those read since `begin`.
+    images : dict of int to ImageSnapshot
+    report : list of str
+        What is not drawn, and what is drawn instead, one line each.
+    """
+
+    def __init__(self, largest_image=None, in_main_thread=None):
+        self.image_reader = ImageReader(largest_image, True, in_main_thread)
+        self._known = {}
+        self.begin()
+
+    def begin(self):
+        """Start a new round; what the last one did not use is forgotten."""
+        used = self.materials.keys() if self._known else ()
+        self._known = {k: m for k, m in self._known.items() if m.uid in used}
+        self.image_reader.begin()
+        self.materials = {}
+        self._uids = {}
+        self._report = []
+
+    @property
+    def images(self):
+        """The images read since `begin`."""
+        return self.image_reader.images
+
+    @property
+    def report(self):
+        """The lines of the report since `begin`."""
+        return list(dict.fromkeys(self._report + self.image_reader.report))
+
+    def read(self, material):
+        """Return the uid of a material, reading it at its first mention in the round.
+
+        Parameters
+        ----------
+        material : bpy.types.Material or None
+            None is what Blender draws where a surface has no material.
+
+        Returns
+        -------
+        int
+        """
+        key = material.original.session_uid if material else 0
+        uid = self._uids.get(key)
+        if uid is None:
+            snapshot = self._snapshot(material, self._known.get(key))
+            self._known[key] = snapshot
+            self.materials[snapshot.uid] = snapshot
+            uid = self._uids[key] = snapshot.uid
+        return uid
+
+    def _snapshot(self, material, known):
+        if material is None:
+            name, graph, highlights = "", DEFAULT_GRAPH, True
+        else:
+            name, graph = material.name, self._graph(material)
+            highlights = material.aplanat.highlights != "NEVER"
+        if known and (name, graph, highlights) == (known.name, known.graph, known.highlights):
+            return known
+        matte = cryptomatte_id(name) if name else 0.0
+        return MaterialSnapshot(next_uid(), name, graph, matte, highlights)
+
+    def _graph(self, material):
+        tree = material.node_tree
+        output = tree and tree.get_output_node("EEVEE")
+        if not output:
+            return SurfaceGraph()
+        reader = TreeReader(f"material '{material.name}'", self.image_reader, _READERS)
+        graph = reader.surface(output)
+        if graph.surface is None and reader.linked(output, "Volume", ()):
+            # The hull of a fog or smoke is not to be seen itself.
+            graph = _INVISIBLE_GRAPH
+        for socket, what in (("Volume", "volume"), ("Displacement", "displacement")):
+            if reader.linked(output, socket, ()):
+                reader.note(f"{what} is not drawn")
+        if material.use_backface_culling:
+            reader.note("backface culling is not done; both sides are drawn, as in Cycles")
+        self._report += reader.report
+        return graph

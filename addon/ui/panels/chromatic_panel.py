@@ -1,0 +1,188 @@
+"""Camera > Chromatic Aberration: strengths, glass, field maps, and the spectral equalizer."""
+
+import bpy
+
+from ...scene.camera.chromatic import describe_chromatic, read_field_map
+from ...scene.camera.drawn_curves import EQUALIZER, MAP_CURVES, find_mapping
+from ...scene.camera.lenses import read_real_lens
+from ..operators.chromatic_operators import APLANAT_OT_make_curves
+from ..presets.chromatic_presets import APLANAT_PT_chromatic_presets
+from ..previews import chromatic_previews
+from ..previews.spectrum_bar import draw_spectrum
+from .panels import EnginePanel
+from .sentences import draw_alert, draw_sentences, letters_across
+
+# In units of Blender's buttons.
+_MAP_SCALE = 7.0
+
+
+class _ChromaticPanel(EnginePanel):
+    bl_context = "data"
+
+    @classmethod
+    def poll(cls, context):
+        """Whether the editor shows a camera."""
+        return super().poll(context) and context.camera is not None
+
+    def begin(self, context):
+        """Return the settings and a column for them, dimmed where they are switched off."""
+        settings = context.camera.aplanat.chromatic
+        column = self.column()
+        column.active = settings.use
+        column.use_property_decorate = True
+        return settings, column
+
+
+class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, bpy.types.Panel):
+    """How colours part."""
+
+    bl_label = "Chromatic Aberration"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        """Draw the switch."""
+        self.layout.prop(context.camera.aplanat.chromatic, "use", text="")
+
+    def draw_header_preset(self, _context):
+        """Draw the button of the presets."""
+        APLANAT_PT_chromatic_presets.draw_panel_header(self.layout)
+
+    def draw(self, context):
+        """Draw the settings, and what is not as they ask for."""
+        settings, column = self.begin(context)
+        column.row().prop(settings, "mode", expand=True)
+        strengths = column.column(align=True)
+        strengths.prop(settings, "axial")
+        strengths.prop(settings, "lateral")
+        column.row().prop(settings, "dispersion", expand=True)
+        if settings.dispersion == "GLASS":
+            glass = column.row()
+            glass.use_property_decorate = False
+            glass.prop(settings, "glass", icon="MATERIAL")
+        if settings.mode == "SPECTRAL":
+            wavelengths = column.column(align=True)
+            wavelengths.prop(settings, "wavelength_min", text="Wavelengths (nm)")
+            wavelengths.prop(settings, "wavelength_max", text="To")
+        self._draw_notes(context, column.column(align=True))
+
+    def _draw_notes(self, context, column):
+        camera = context.camera
+        letters = letters_across(context)
+        lens, _ = read_real_lens(camera)
+        dof = camera.dof
+        # How far away an object is, only drawing tells.
+        known = dof.use_dof and dof.focus_object is None and dof.focus_distance > 0.0
+        focus = dof.focus_distance if known else None
+        aberration, problems = describe_chromatic(camera, lens, focus)
+        if dof.use_dof:
+            text = (
+                f"The focus distance is meant for {aberration.reference_nm:.0f} nm, the longest"
+                " wavelength."
+            )
+        else:
+            text = "Axial aberration is seen with Depth of Field only."
+        draw_sentences(column, text, letters, icon="INFO")
+        for problem in problems:
+            draw_alert(column, f"{problem[0].upper()}{problem[1:]}.", letters)
+
+
+class _FieldMapPanel(_ChromaticPanel):
+    bl_parent_id = "APLANAT_CAMERA_PT_chromatic"
+    bl_options = {"DEFAULT_CLOSED"}
+    which = meaning = None
+
+    def draw(self, context):
+        """Draw the two atoms, the curves that are drawn, and the map."""
+        settings, column = self.begin(context)
+        for step, name in enumerate((f"{self.which}_first", f"{self.which}_then")):
+            column.prop(settings, name)
+            if getattr(settings, name) == "CURVE":
+                _draw_curve(column, settings, MAP_CURVES[self.which, step])
+        field_map = read_field_map(settings, self.which)
+        render = context.scene.render
+        width = render.resolution_x * render.pixel_aspect_x
+        height = render.resolution_y * render.pixel_aspect_y
+        curve, disc = chromatic_previews.map_icons(
+            context.camera, self.which, field_map, width / height
+        )
+        pictures = column.row()
+        pictures.alignment = "CENTER"
+        pictures.template_icon(icon_value=curve, scale=_MAP_SCALE)
+        pictures.template_icon(icon_value=disc, scale=_MAP_SCALE)
+        captions = column.column(align=True)
+        low, high = chromatic_previews.shown_range(field_map)
+        shown = f"{field_map.text}, drawn from {low:.3g} to {high:.3g}"
+        for text in (f"{shown}, clamped" if field_map.clamped else shown, self.meaning):
+            line = captions.row()
+            line.alignment = "CENTER"
+            line.label(text=text)
+
+
+class APLANAT_CAMERA_PT_chromatic_axial(_FieldMapPanel, bpy.types.Panel):
+    """Where in the picture the axial aberration is."""
+
+    bl_label = "Axial Field Map"
+    which = "axial"
+    meaning = "0: all of the axial strength, 1: none"
+
+
+class APLANAT_CAMERA_PT_chromatic_lateral(_FieldMapPanel, bpy.types.Panel):
+    """Where in the picture the lateral aberration is."""
+
+    bl_label = "Lateral Field Map"
+    which = "lateral"
+    meaning = "0: none of the lateral strength, 1: all"
+
+
+class APLANAT_CAMERA_PT_chromatic_equalizer(_ChromaticPanel, bpy.types.Panel):
+    """How much each wavelength counts."""
+
+    bl_label = "Spectral Equalizer"
+    bl_parent_id = "APLANAT_CAMERA_PT_chromatic"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Whether the mode has a spectrum."""
+        return super().poll(context) and context.camera.aplanat.chromatic.mode == "SPECTRAL"
+
+    def draw_header(self, context):
+        """Draw the switch."""
+        self.layout.prop(context.camera.aplanat.chromatic, "use_equalizer", text="")
+
+    def draw_header_preset(self, _context):
+        """Draw the button of the curves that come with Aplanat."""
+        row = self.layout.row()
+        row.emboss = "NONE"
+        row.menu("APLANAT_MT_equalizer_presets", text="", icon="PRESET")
+
+    def draw(self, context):
+        """Draw the curve and its spectrum."""
+        settings, column = self.begin(context)
+        column.active = settings.use and settings.use_equalizer
+        if _draw_curve(column, settings, EQUALIZER):
+            draw_spectrum(column, settings.spectrum)
+
+
+def _draw_curve(column, settings, name):
+    """Draw Blender's curve widget; return whether there is a curve."""
+    group = settings.curves
+    if find_mapping(group, name) is None:
+        column.operator(APLANAT_OT_make_curves.bl_idname, icon="ADD")
+        return False
+    widget = column.column()
+    widget.enabled = group.is_editable
+    widget.template_curve_mapping(group.nodes[name], "mapping")
+    if not group.is_editable:
+        column.operator(APLANAT_OT_make_curves.bl_idname, text="Make Local Curves", icon="LINKED")
+    return True
+
+
+CLASSES = (
+    APLANAT_CAMERA_PT_chromatic,
+    APLANAT_CAMERA_PT_chromatic_axial,
+    APLANAT_CAMERA_PT_chromatic_lateral,
+    APLANAT_CAMERA_PT_chromatic_equalizer,
+)
+
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

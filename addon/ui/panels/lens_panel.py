@@ -1,0 +1,306 @@
+"""Camera > Lens > Real Lens: the lens chooser, what the lens does, and what it is."""
+
+import math
+
+import bpy
+
+from ...optics.lens_facts import lens_facts
+from ...scene.camera.camera import sensor_diagonal
+from ...scene.camera.lenses import read_real_lens, shelf
+from ..jobs import background
+from ..operators.lens_import import APLANAT_OT_import_lens
+from ..operators.lens_operators import (
+    APLANAT_OT_background_work,
+    APLANAT_OT_choose_lens,
+    APLANAT_OT_edit_lens,
+    APLANAT_OT_match_zoom,
+    APLANAT_OT_reload_lenses,
+    APLANAT_OT_remove_lens,
+    APLANAT_OT_use_focal_length,
+    APLANAT_OT_use_iris,
+)
+from ..previews import lens_thumbnails
+from .panels import EnginePanel
+from .sentences import draw_alert, draw_sentences, letters_across
+
+# In units of Blender's buttons.
+_CHOSEN_SCALE, _POPUP_SCALE, _BOKEH_SCALE = 9.0, 6.0, 10.0
+# What is said about focal lengths is rounded to this, mm; less than it is no difference.
+_SAME_LENGTH = 0.05
+_MOST_FINDINGS = 8
+
+
+class APLANAT_MT_lens(bpy.types.Menu):
+    """What can be done with lens files."""
+
+    bl_label = "Lens File"
+
+    def draw(self, _context):
+        """Draw the operators."""
+        layout = self.layout
+        layout.operator(APLANAT_OT_import_lens.bl_idname, text="Import...", icon="IMPORT")
+        layout.operator(APLANAT_OT_reload_lenses.bl_idname, icon="FILE_REFRESH")
+        layout.separator()
+        layout.operator(APLANAT_OT_edit_lens.bl_idname, icon="TEXT")
+        layout.operator(APLANAT_OT_remove_lens.bl_idname, icon="TRASH")
+
+
+class _LensPanel(EnginePanel):
+    bl_context = "data"
+
+    @classmethod
+    def poll(cls, context):
+        """Whether the editor shows a camera."""
+        return super().poll(context) and context.camera is not None
+
+
+class APLANAT_CAMERA_PT_lens(_LensPanel, bpy.types.Panel):
+    """Which lens takes the picture."""
+
+    bl_label = "Real Lens"
+    bl_parent_id = "DATA_PT_lens"
+
+    def draw(self, context):
+        """Draw the chooser, and what the lens does to the camera."""
+        camera = context.camera
+        settings = camera.aplanat
+        column = self.column()
+        column.template_icon_view(
+            settings,
+            "lens_choice",
+            show_labels=True,
+            scale=_CHOSEN_SCALE,
+            scale_popup=_POPUP_SCALE,
+        )
+        row = column.row(align=True)
+        row.use_property_split = False
+        row.prop(settings, "lens", text="", placeholder="Thin Lens")
+        row.operator(APLANAT_OT_import_lens.bl_idname, text="", icon="FILE_FOLDER")
+        row.menu("APLANAT_MT_lens", text="", icon="DOWNARROW_HLT")
+        letters = letters_across(context)
+        if settings.lens:
+            _draw_state(column, camera, letters)
+        _draw_work(column)
+
+
+def _draw_state(column, camera, letters):
+    settings = camera.aplanat
+    found = shelf().find(settings.lens)
+    if shelf().is_out_of_date(settings.lens):
+        row = column.row()
+        row.label(text="The file has changed", icon="INFO")
+        row.operator(APLANAT_OT_reload_lenses.bl_idname, text="Reload", icon="FILE_REFRESH")
+    if found is None:
+        _draw_missing(column, settings.lens, letters)
+    elif found.lens is None:
+        _draw_findings(column, found, letters)
+    elif camera.type != "PERSP":
+        draw_alert(column, "A real lens needs a perspective camera.", letters)
+    else:
+        _draw_use(column, camera, letters)
+
+
+def _draw_missing(column, lens_id, letters):
+    draw_alert(column, f"'{lens_id}' is not in the library: a thin lens is drawn.", letters)
+    draw_sentences(column, "Import its file, or choose another lens.", letters)
+    for near in shelf().near_ids(lens_id):
+        operator = column.operator(
+            APLANAT_OT_choose_lens.bl_idname, text=f"Use '{near}'", icon="VIEWZOOM"
+        )
+        operator.lens = near
+
+
+def _draw_findings(column, found, letters):
+    draw_alert(column, f"{found.path.name} cannot be used: a thin lens is drawn.", letters)
+    findings = found.error.findings
+    box = column.box().column(align=True)
+    for finding in findings[:_MOST_FINDINGS]:
+        row = box.row()
+        row.alert = True
+        row.label(text=f"{finding.code}  {finding.path}")
+        draw_sentences(box, finding.message, letters - 4)
+    if len(findings) > _MOST_FINDINGS:
+        box.label(text=f"and {len(findings) - _MOST_FINDINGS} more")
+    column.operator(APLANAT_OT_edit_lens.bl_idname, icon="TEXT")
+
+
+def _draw_use(column, camera, letters):
+    lens, _ = read_real_lens(camera)
+    settings = camera.aplanat
+    facts = lens_facts(lens.prescription, lens.label)
+    if lens.label is not None:
+        row = column.row(align=True)
+        row.prop(settings, "zoom")
+        row.operator(APLANAT_OT_match_zoom.bl_idname, text="", icon="ZOOM_SELECTED")
+        if settings.zoom_label not in ("", lens.label):
+            draw_alert(
+                column, f"No position '{settings.zoom_label}': '{lens.label}' is used.", letters
+            )
+    asked = camera.dof.aperture_fstop
+    if camera.dof.use_dof and lens.limits(asked):
+        column.label(
+            text=f"f/{asked:.3g} asked, the lens opens to f/{lens.f_number:.3g}", icon="INFO"
+        )
+    if abs(facts.focal_length - camera.lens) >= _SAME_LENGTH:
+        column.label(
+            text=f"The camera has {camera.lens:.4g} mm, the lens {facts.focal_length:.4g} mm",
+            icon="INFO",
+        )
+        column.operator(APLANAT_OT_use_focal_length.bl_idname)
+
+
+def _draw_work(column):
+    work = background.progress()
+    if work is not None:
+        row = column.row(align=True)
+        left = f" ({work.left} left)" if work.left > 1 else ""
+        row.progress(text=work.label + left, factor=work.share)
+        row.operator(APLANAT_OT_background_work.bl_idname, text="", icon="X").stop = True
+    elif background.is_stopped():
+        row = column.row(align=True)
+        row.label(text="Pictures of lenses are stopped")
+        row.operator(APLANAT_OT_background_work.bl_idname, text="Go On", icon="PLAY").stop = False
+
+
+class APLANAT_CAMERA_PT_lens_bokeh(_LensPanel, bpy.types.Panel):
+    """What points of light look like through the lens."""
+
+    bl_label = "Bokeh"
+    bl_parent_id = "APLANAT_CAMERA_PT_lens"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Whether the camera has a lens that can be used."""
+        return super().poll(context) and read_real_lens(context.camera)[0] is not None
+
+    def draw(self, context):
+        """Draw the picture, which is made in the background."""
+        camera = context.camera
+        lens, _ = read_real_lens(camera)
+        column = self.layout.column(align=True)
+        letters = letters_across(context)
+        icon = lens_thumbnails.bokeh_icon_id(camera, lens)
+        error = lens_thumbnails.bokeh_error(camera, lens)
+        if error:
+            draw_alert(column, error, letters)
+            return
+        column.template_icon(icon_value=icon, scale=_BOKEH_SCALE)
+        text = (
+            f"f/{lens.f_number:.3g}, focused at 40 focal lengths. From left to right: a light in"
+            " front of the focus, behind it and far away; from top to bottom: in the middle of the"
+            " picture, at 60 % of the way to its corner and in the corner."
+        )
+        draw_sentences(column, text, letters)
+
+
+class APLANAT_CAMERA_PT_lens_facts(_LensPanel, bpy.types.Panel):
+    """What the lens is."""
+
+    bl_label = "Facts"
+    bl_parent_id = "APLANAT_CAMERA_PT_lens"
+
+    @classmethod
+    def poll(cls, context):
+        """Whether the camera has a lens that can be used."""
+        return super().poll(context) and read_real_lens(context.camera)[0] is not None
+
+    def draw(self, context):
+        """Draw facts and warnings."""
+        camera = context.camera
+        lens, _ = read_real_lens(camera)
+        letters = letters_across(context)
+        column = self.layout.column(align=True)
+        for name, value in _facts(lens, camera, context.scene):
+            _draw_fact(column, name, value, letters)
+        iris = lens.prescription.diaphragm
+        if _differs_from_iris(camera.dof, iris):
+            self.layout.operator(APLANAT_OT_use_iris.bl_idname)
+        found = shelf().find(lens.id)
+        if found is not None and found.lens is not None and found.lens.warnings:
+            self._draw_warnings(found.lens.warnings, letters)
+
+    def _draw_warnings(self, warnings, letters):
+        header, body = self.layout.panel("APLANAT_lens_warnings", default_closed=True)
+        header.label(text=f"{len(warnings)} Warnings" if len(warnings) > 1 else "1 Warning")
+        if body is None:
+            return
+        column = body.column(align=True)
+        for warning in warnings:
+            draw_sentences(column, f"{warning.code}  {warning.message}", letters)
+
+
+def _facts(lens, camera, scene):
+    prescription = lens.prescription
+    facts = lens_facts(prescription, lens.label)
+    yield "Name", prescription.name
+    made = ", ".join(str(part) for part in (prescription.designer, prescription.year) if part)
+    if made:
+        yield "Design", made
+    if prescription.source:
+        yield "Source", prescription.source
+    length = f"{facts.focal_length:.4g} mm"
+    if facts.horizontal_focal_length is not None:
+        length += f" high, {facts.horizontal_focal_length:.4g} mm wide"
+    yield "Focal Length", length
+    yield "Opens to", f"f/{facts.f_number:.3g}"
+    yield "Covers", f"{2.0 * math.degrees(facts.half_field):.3g}\N{DEGREE SIGN}"
+    yield "Image Circle", _circle(facts.image_circle_diameter, sensor_diagonal(camera, scene))
+    fisheye = prescription.projection == "fisheye"
+    yield "Projection", "Fisheye (drawn rectilinear)" if fisheye else "Rectilinear"
+    yield "Glass", f"{facts.elements} elements in {facts.groups} groups"
+    group = prescription.focus
+    yield "Focusing", f"Surfaces {group.first} to {group.last}" if group else "Whole lens moves"
+    iris = prescription.diaphragm
+    yield "Iris", f"{iris.blades} blades" if iris.blades else "Round"
+
+
+def _circle(diameter, diagonal):
+    verdict = "covers" if diameter >= diagonal else "is smaller than"
+    return f"{diameter:.3g} mm, {verdict} the sensor's {diagonal:.3g} mm"
+
+
+def _differs_from_iris(dof, iris):
+    turn = math.remainder(dof.aperture_rotation - math.radians(iris.rotation_deg), math.tau)
+    return dof.aperture_blades != min(iris.blades, 16) or (iris.blades and abs(turn) > 1e-4)
+
+
+def _draw_fact(column, name, value, letters):
+    split = column.split(factor=0.3)
+    left = split.row()
+    left.alignment = "RIGHT"
+    left.active = False
+    left.label(text=name)
+    draw_sentences(split.column(align=True), value, int(0.7 * letters))
+
+
+def _draw_clamp(panel, context):
+    """Tell in Blender's Aperture panel, too, where the f-stop is set."""
+    if context.engine not in EnginePanel.COMPAT_ENGINES:
+        return
+    camera = context.camera
+    lens, _ = read_real_lens(camera)
+    if lens and lens.limits(camera.dof.aperture_fstop):
+        panel.layout.label(text=f"The lens opens to f/{lens.f_number:.3g}", icon="INFO")
+
+
+CLASSES = (
+    APLANAT_MT_lens,
+    APLANAT_CAMERA_PT_lens,
+    APLANAT_CAMERA_PT_lens_bokeh,
+    APLANAT_CAMERA_PT_lens_facts,
+)
+
+_register, _unregister = bpy.utils.register_classes_factory(CLASSES)
+
+
+def register():
+    """Register the panels; Blender's Aperture panel gets a line."""
+    _register()
+    bpy.types.DATA_PT_camera_dof_aperture.append(_draw_clamp)
+
+
+def unregister():
+    """Undo `register`."""
+    bpy.types.DATA_PT_camera_dof_aperture.remove(_draw_clamp)
+    _unregister()

@@ -1,0 +1,245 @@
+"""The panels of the properties editor."""
+
+import bpy
+
+from ...engine.render_engine import ENGINE_ID
+from ...levels.level_store import level_store
+from ..operators.level_operators import APLANAT_OT_rebuild_levels
+
+_GEOMETRY = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
+
+
+class EnginePanel:
+    """A panel of the properties editor that is shown while Aplanat is the render engine."""
+
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    COMPAT_ENGINES = frozenset({ENGINE_ID})
+
+    @classmethod
+    def poll(cls, context):
+        """Whether Aplanat is the render engine."""
+        return context.engine in cls.COMPAT_ENGINES
+
+    def column(self):
+        """Return a column that is laid out as Blender lays out properties."""
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout.column()
+
+
+class APLANAT_RENDER_PT_level_of_detail(EnginePanel, bpy.types.Panel):
+    """How blurred objects are simplified."""
+
+    bl_label = "Level of Detail"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Whether the method simplifies anything."""
+        return super().poll(context) and context.scene.aplanat.method == "ADAPTIVE"
+
+    def draw_header(self, context):
+        """Draw the switch."""
+        self.layout.prop(context.scene.aplanat, "use_levels", text="")
+
+    def draw(self, context):
+        """Draw the settings, and what the levels take."""
+        settings = context.scene.aplanat
+        column = self.column()
+        column.active = settings.use_levels
+        column.prop(settings, "level_bias")
+        column.prop(settings, "least_triangles")
+        store = level_store()
+        done, total = store.progress
+        if done < total:
+            column.progress(factor=done / total, text=f"{done:,} of {total:,} triangles")
+        row = column.row()
+        row.label(text=f"{store.memory_bytes / 2**20:.0f} MB in memory")
+        row.operator(APLANAT_OT_rebuild_levels.bl_idname, icon="FILE_REFRESH", text="Rebuild")
+
+
+class APLANAT_RENDER_PT_film(EnginePanel, bpy.types.Panel):
+    """What the picture is taken on."""
+
+    bl_label = "Film"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw the settings of the scene."""
+        self.column().prop(context.scene.render, "film_transparent", text="Transparent")
+
+
+class APLANAT_RENDER_PT_performance(EnginePanel, bpy.types.Panel):
+    """What has no influence on the picture."""
+
+    bl_label = "Performance"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw the settings of the scene."""
+        column = self.column()
+        column.prop(context.scene.aplanat, "chunk_milliseconds")
+        render = context.scene.render
+        compositor = column.column()
+        compositor.prop(render, "compositor_device", text="Compositor")
+        compositor.prop(render, "compositor_precision", text="Precision")
+
+
+class APLANAT_RENDER_PT_simplify(EnginePanel, bpy.types.Panel):
+    """Blender's simplification; Blender's own panel would stand above all others."""
+
+    bl_label = "Simplify"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        """Draw the switch."""
+        self.layout.prop(context.scene.render, "use_simplify", text="")
+
+    def draw(self, context):
+        """Draw Blender's settings."""
+        render = context.scene.render
+        column = self.column()
+        column.active = render.use_simplify
+        subdivision = column.column(align=True)
+        subdivision.prop(render, "simplify_subdivision", text="Max Subdivision Viewport")
+        subdivision.prop(render, "simplify_subdivision_render", text="Render")
+        particles = column.column(align=True)
+        particles.prop(render, "simplify_child_particles", text="Max Child Particles Viewport")
+        particles.prop(render, "simplify_child_particles_render", text="Render")
+        column.prop(render, "use_simplify_normals", text="Viewport Normals")
+
+
+class APLANAT_VIEWLAYER_PT_data(EnginePanel, bpy.types.Panel):
+    """Passes that describe the scene."""
+
+    bl_label = "Data"
+    bl_context = "view_layer"
+    bl_parent_id = "VIEWLAYER_PT_layer_passes"
+
+    def draw(self, context):
+        """Draw Blender's switches and ours."""
+        layer = context.view_layer
+        column = self.column()
+        include = column.column(heading="Include")
+        include.prop(layer, "use_pass_z", text="Depth")
+        include.prop(layer, "use_pass_normal", text="Normal")
+        include.prop(layer, "use_pass_position", text="Position")
+        include.prop(layer, "use_pass_vector", text="Vector")
+        lens = column.column(heading="Lens")
+        lens.prop(layer.aplanat, "use_pass_coc")
+        lens.prop(layer.aplanat, "use_pass_focus_matte")
+        lens.prop(layer.aplanat, "use_pass_fringe")
+        parts = column.column(heading="Combined")
+        parts.prop(layer.aplanat, "use_pass_defocus")
+        parts.prop(layer.aplanat, "use_pass_bokeh")
+        diagnosis = column.column(heading="Diagnosis")
+        diagnosis.prop(layer.aplanat, "use_pass_detail")
+        diagnosis.prop(layer.aplanat, "use_pass_sample_count")
+
+
+class APLANAT_VIEWLAYER_PT_cryptomatte(EnginePanel, bpy.types.Panel):
+    """Mattes by name."""
+
+    bl_label = "Cryptomatte"
+    bl_context = "view_layer"
+    bl_parent_id = "VIEWLAYER_PT_layer_passes"
+
+    def draw(self, context):
+        """Draw Blender's switches."""
+        layer = context.view_layer
+        column = self.column()
+        include = column.column(heading="Include")
+        include.prop(layer, "use_pass_cryptomatte_object", text="Object")
+        include.prop(layer, "use_pass_cryptomatte_material", text="Material")
+        levels = column.column()
+        levels.active = layer.use_pass_cryptomatte_object or layer.use_pass_cryptomatte_material
+        levels.prop(layer, "pass_cryptomatte_depth", text="Levels")
+
+
+class APLANAT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
+    """Whether the camera sees an object."""
+
+    bl_label = "Ray Visibility"
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+
+    @classmethod
+    def poll(cls, context):
+        """Whether the active object has a surface."""
+        obj = context.object
+        return super().poll(context) and obj is not None and obj.type in _GEOMETRY
+
+    def draw(self, context):
+        """Draw Blender's switch."""
+        self.column().prop(context.object, "visible_camera", text="Camera")
+
+
+class APLANAT_MATERIAL_PT_settings(EnginePanel, bpy.types.Panel):
+    """What a material has beside its surface."""
+
+    bl_label = "Settings"
+    bl_context = "material"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Whether there is a material for surfaces."""
+        material = context.material
+        return super().poll(context) and material is not None and not material.grease_pencil
+
+    def draw(self, context):
+        """Draw Blender's settings and ours."""
+        column = self.column()
+        column.prop(context.material, "use_backface_culling")
+        column.prop(context.material.aplanat, "highlights")
+
+
+class APLANAT_LIGHT_PT_bokeh(EnginePanel, bpy.types.Panel):
+    """Whether a light's reflections are bokeh."""
+
+    bl_label = "Bokeh"
+    bl_context = "data"
+    bl_parent_id = "DATA_PT_EEVEE_light"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw the choice."""
+        self.column().prop(context.light.aplanat, "highlights")
+
+
+class APLANAT_WORLD_PT_whites(EnginePanel, bpy.types.Panel):
+    """How bright the whites of the world's image are."""
+
+    bl_label = "Whites"
+    bl_context = "world"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Whether there is a world."""
+        return super().poll(context) and context.world is not None
+
+    def draw(self, context):
+        """Draw the setting."""
+        self.column().prop(context.world.aplanat, "amplification")
+
+
+CLASSES = (
+    APLANAT_RENDER_PT_level_of_detail,
+    APLANAT_RENDER_PT_film,
+    APLANAT_RENDER_PT_performance,
+    APLANAT_RENDER_PT_simplify,
+    APLANAT_VIEWLAYER_PT_data,
+    APLANAT_VIEWLAYER_PT_cryptomatte,
+    APLANAT_OBJECT_PT_ray_visibility,
+    APLANAT_MATERIAL_PT_settings,
+    APLANAT_LIGHT_PT_bokeh,
+    APLANAT_WORLD_PT_whites,
+)
+
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

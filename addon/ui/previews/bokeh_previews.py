@@ -1,0 +1,122 @@
+"""Pictures of discs as icons: made when a panel is drawn with a new appearance."""
+
+from dataclasses import replace
+from functools import lru_cache
+
+import bpy.utils.previews
+import numpy as np
+
+from ...lens_bokeh.look.grain import transmission
+from ...lens_bokeh.look.iris_mask import texel_centres
+from ...lens_bokeh.look.sprite import sprite
+
+_SIZE = 96
+# Of the brightest even disc, as displayed.
+_GREY = 0.55
+
+_collection = None
+# What the pictures of a camera were made of.
+_shown = {}
+
+
+def disc_icons(camera, appearance, corner):
+    """Return the icons that show discs: in front of the focus, behind it, and in the corner.
+
+    Parameters
+    ----------
+    camera : bpy.types.Camera
+        Each has icons of its own.
+    appearance : Appearance
+        Its diffraction is left out: that depends on the depth.
+    corner : tuple of 2 float
+        Tangents of the field angle of the upper right corner.
+
+    Returns
+    -------
+    tuple of 3 int
+        0 in a Blender without windows.
+    """
+    names = [f"{camera.session_uid}:{number}" for number in range(3)]
+    if bpy.app.background:
+        return (0,) * len(names)
+    key = (replace(appearance, diffraction=None), corner)
+    if _shown.get(camera.session_uid) != key:
+        for name, picture in zip(names, disc_pictures(*key), strict=True):
+            _draw(name, picture)
+        _shown[camera.session_uid] = key
+    collection = _icons()
+    return tuple(collection[name].icon_id for name in names)
+
+
+@lru_cache(maxsize=8)
+def disc_pictures(appearance, corner):
+    """Draw discs in front of the focus, behind it, and behind it in the corner of the picture.
+
+    Parameters
+    ----------
+    appearance : Appearance
+    corner : tuple of 2 float
+        Tangents of the field angle.
+
+    Returns
+    -------
+    tuple of 3 ndarray of shape (size, size, 4)
+        float32, display referred with alpha, bottom row first; all for the same point of light.
+    """
+    pictures = []
+    extent = 1.06 * max(1.0, 1.0 / appearance.anamorphic_ratio)
+    texel = 2.0 * extent / _SIZE
+    center = (0.0, 0.0)
+    places = texel_centres(_SIZE, extent)
+    speckles = _speckles(appearance.grain, appearance.anamorphic_ratio, extent)
+    appearance = replace(appearance, grain=None)
+    whole = appearance.transmission(places, texel, center).sum()
+    for upright, chief in ((False, center), (True, center), (True, corner)):
+        light = sprite(appearance, _SIZE, upright=upright, chief=chief, extent=extent)[..., 0]
+        # A sprite has all of the light, even where little passes.
+        passed = appearance.transmission(places, texel, chief).sum() / whole
+        grain = speckles if upright else speckles[::-1, ::-1]
+        # Over the light of an even round disc.
+        value = np.sqrt(light * grain * passed * np.pi / texel**2) * _GREY
+        picture = np.ones((_SIZE, _SIZE, 4), np.float32)
+        picture[..., :3] = np.clip(value, 0.0, 1.0)[..., None]
+        # Dark where nothing is, on any theme.
+        picture[..., :3] = np.maximum(picture[..., :3], 0.02)
+        pictures.append(picture)
+    return tuple(pictures)
+
+
+@lru_cache(maxsize=8)
+def _speckles(grain, ratio, extent):
+    """Return what grain and dust let through: once for all discs, without finer places."""
+    if grain is None:
+        return np.ones((_SIZE, _SIZE))
+    return transmission(grain, texel_centres(_SIZE, extent) * (ratio, 1.0))
+
+
+def _draw(name, picture):
+    icons = _icons()
+    icon = icons.get(name) or icons.new(name)
+    height, width, _ = picture.shape
+    icon.image_size = width, height
+    icon.image_pixels_float.foreach_set(np.ascontiguousarray(picture).ravel())
+
+
+def _icons():
+    global _collection
+    if _collection is None:
+        _collection = bpy.utils.previews.new()
+    return _collection
+
+
+def register():
+    """Nothing is made before a panel is drawn."""
+
+
+def unregister():
+    """Free the icons."""
+    global _collection
+    if _collection is not None:
+        bpy.utils.previews.remove(_collection)
+        _collection = None
+    _shown.clear()

@@ -1,0 +1,190 @@
+"""What Aplanat adds to a camera: real lens and zoom position, chromatic aberration, bokeh."""
+
+import bpy
+from bpy.props import EnumProperty, PointerProperty, StringProperty
+
+from ...scene.camera.lenses import shelf
+from ..previews import lens_thumbnails
+from .bokeh_properties import APPEARANCE_NAMES, AplanatBokehSettings
+from .chromatic_properties import AplanatChromaticSettings, values_as_dict, values_from_dict
+from .lens_memory import remember, set_values, values_of
+from .overrides import OVERRIDABLE, setting_changed
+
+_LONGEST_TEXT = 255
+_THIN = "thin"
+_LENS = "lens:"
+
+# Blender keeps no reference to the texts of a dynamic enum: they must live somewhere. Numbers stay
+# the same while the library changes, so that a menu that is open means what it shows.
+_texts = {}
+_numbers = {}
+
+
+def _kept(text):
+    return _texts.setdefault(text, text)
+
+
+def _number(identifier):
+    return _numbers.setdefault(identifier, len(_numbers))
+
+
+def _item(identifier, name, description, icon=0):
+    identifier = _kept(identifier)
+    return identifier, _kept(name), _kept(description), icon, _number(identifier)
+
+
+def _lens_items(camera, _context):
+    library = shelf()
+    items = [_item(_THIN, "Thin Lens", "An ideal lens without a prescription", "CAMERA_DATA")]
+    ids = library.ids()
+    for lens_id in ids:
+        found = library.find(lens_id)
+        if found is None:
+            continue
+        icon = lens_thumbnails.icon_id(found) if found.lens else "ERROR"
+        items.append(_item(_LENS + lens_id, found.name, _describe(found), icon))
+    if camera.lens and camera.lens not in ids:
+        items.append(_item(_LENS + camera.lens, camera.lens, "Not in the library", "ERROR"))
+    return items
+
+
+def _describe(found):
+    if found.lens is None:
+        return f"{found.id}: the file cannot be used"
+    prescription = found.lens.prescription
+    made = ", ".join(str(part) for part in (prescription.designer, prescription.year) if part)
+    return f"{found.id}: {made}" if made else found.id
+
+
+def _chosen_lens(camera):
+    return _number(_LENS + camera.lens if camera.lens else _THIN)
+
+
+def _choose_lens(camera, number):
+    identifier = next((key for key, value in _numbers.items() if value == number), _THIN)
+    camera.lens = identifier.removeprefix(_LENS) if identifier != _THIN else ""
+
+
+def _found_lenses(camera, _context, typed):
+    library = shelf()
+    # Before anything is typed the field holds the lens that is there: then all are wanted.
+    typed = "" if typed == camera.lens else typed.casefold()
+    for lens_id in library.ids():
+        found = library.find(lens_id)
+        if found and (typed in lens_id.casefold() or typed in found.name.casefold()):
+            yield lens_id, found.name
+
+
+def _labels(camera):
+    found = shelf().find(camera.lens) if camera.lens else None
+    if found is None or found.lens is None:
+        return ()
+    return tuple(label for label in found.lens.prescription.labels if label)
+
+
+def _zoom_items(camera, _context):
+    labels = _labels(camera)
+    items = [_item(label, label, "Position of the zoom ring") for label in labels]
+    if camera.zoom_label and camera.zoom_label not in labels:
+        items.append(
+            _item(camera.zoom_label, camera.zoom_label, "The lens has no such position", "ERROR")
+        )
+    return items
+
+
+def _chosen_zoom(camera):
+    labels = _labels(camera)
+    return _number(camera.zoom_label or (labels[0] if labels else ""))
+
+
+def _choose_zoom(camera, number):
+    camera.zoom_label = next((key for key, value in _numbers.items() if value == number), "")
+
+
+def _lens_changed(camera, context):
+    labels = _labels(camera)
+    if camera.zoom_label and labels and camera.zoom_label not in labels:
+        camera.zoom_label = ""
+    remember(
+        camera,
+        "bokeh",
+        lambda group: values_of(group, APPEARANCE_NAMES),
+        lambda group, values: set_values(group, APPEARANCE_NAMES, values),
+    )
+    remember(camera, "chromatic", values_as_dict, values_from_dict)
+    setting_changed(camera, context)
+
+
+class AplanatCameraSettings(bpy.types.PropertyGroup):
+    """The real lens of a camera, how it parts the colours, and its bokeh."""
+
+    lens: StringProperty(
+        name="Lens",
+        description="Name of a lens of the library; empty for a thin lens. The lens limits the"
+        " f-number. It never changes the focal length by itself",
+        maxlen=_LONGEST_TEXT,
+        options=set(),
+        override=OVERRIDABLE,
+        search=_found_lenses,
+        update=_lens_changed,
+    )
+    zoom_label: StringProperty(
+        name="Zoom Position",
+        description="Name of the position of a zoom lens; empty for its first one",
+        maxlen=_LONGEST_TEXT,
+        options=set(),
+        override=OVERRIDABLE,
+        update=setting_changed,
+    )
+    lens_choice: EnumProperty(
+        name="Lens",
+        description="Choose a lens by its cross-section and its bokeh",
+        items=_lens_items,
+        get=_chosen_lens,
+        set=_choose_lens,
+        options=set(),
+    )
+    zoom: EnumProperty(
+        name="Zoom",
+        description="Position of the zoom ring. The camera's focal length stays as it is",
+        items=_zoom_items,
+        get=_chosen_zoom,
+        set=_choose_zoom,
+        options=set(),
+    )
+    bokeh: PointerProperty(
+        type=AplanatBokehSettings,
+        name="Bokeh",
+        description="How the camera's highlights are drawn",
+        override=OVERRIDABLE,
+    )
+    bokeh_lens: StringProperty(
+        name="Lens of the Bokeh",
+        description="Lens for which the appearance of the bokeh was set",
+        options={"HIDDEN"},
+        override=OVERRIDABLE,
+    )
+    bokeh_memory: StringProperty(
+        name="Bokeh of Other Lenses",
+        description="What was set for lenses that were used before, as JSON",
+        options={"HIDDEN"},
+        override=OVERRIDABLE,
+    )
+    chromatic: PointerProperty(
+        type=AplanatChromaticSettings,
+        name="Chromatic Aberration",
+        description="How colours part in the camera",
+        override=OVERRIDABLE,
+    )
+    chromatic_lens: StringProperty(
+        name="Lens of the Chromatic Settings",
+        description="Lens for which the chromatic settings were made",
+        options={"HIDDEN"},
+        override=OVERRIDABLE,
+    )
+    chromatic_memory: StringProperty(
+        name="Chromatic Settings of Other Lenses",
+        description="What was set for lenses that were used before, as JSON",
+        options={"HIDDEN"},
+        override=OVERRIDABLE,
+    )

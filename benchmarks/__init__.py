@@ -1,0 +1,1 @@
+"""What measures Aplanat: in a checkout only, and imported by nothing."""

@@ -1,0 +1,1 @@
+"""What benches compare with: charts, scenes, metrics, lenses in OSL."""

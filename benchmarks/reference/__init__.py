@@ -1,0 +1,1 @@
+"""Numpy twins of the GPU passes: slow, plain, what tests compare with."""

@@ -1,0 +1,1 @@
+"""Measuring tools that stand alone."""

@@ -1,0 +1,166 @@
+// Puts the fragments of each texel in order, from front to back, and leaves out those that nothing
+// of the lens sees: right behind an opaque surface or an opaque highlight. All others stay, whatever
+// is in front: what hides them from which part of the lens is found later.
+// A thread for each fragment; that of a texel's last one does the texel.
+// Inputs: nodes_tx, heads_img, light_img (see highlights_append); scene_tx (window depth of the
+// nearest opaque surface); areas_tx and hits_tx (of each instance: area in the raster, 0 where it is
+// not known, and number of its texels there); view_buf (of the raster), highlight_buf; number (of fragments); layers
+// (that are kept of a texel). WORLD: the world at infinity, nothing in front. CHROMATIC: chromatic_buf,
+// field_tx (field table) and lens_view (xy: place on the lens that the raster was seen from, m).
+// Outputs: heads_img (first of a texel, with IN_ORDER), order_img (next of each); light_img: light that
+// is splatted, 0 of what is too sharp, and depth along the axis, m.
+// Source: methods 9 (J20 section 4.1).
+#include "lib/depth_lib.glsl"
+#include "lib/bokeh/fragment_list_lib.glsl"
+#include "lib/bokeh/highlight_lib.glsl"
+#include "lib/lens_lib.glsl"
+#ifdef CHROMATIC
+#include "lib/chromatic_lib.glsl"
+#endif
+
+// Circles of confusion that differ by less than this see the same surfaces in front, px.
+#define SAME_VIEW 1.0
+// Of a depth buffer: steps by which two shaders may differ in the depth of one surface.
+#define DEPTH_STEPS 2e-7
+
+float depth_of(float window_depth)
+{
+  return depth_from_window(window_depth, view_buf.projection, view_buf.lens);
+}
+
+float largest(vec3 color)
+{
+  return max(color.r, max(color.g, color.b));
+}
+
+// Whether an opaque surface in front hides what lies behind it from the whole lens.
+bool hides(float front, float window_depth)
+{
+  float near = coc_radius_px(depth_of(front), view_buf.lens);
+  float far = coc_radius_px(depth_of(window_depth), view_buf.lens);
+  return abs(near - far) < SAME_VIEW;
+}
+
+#ifndef WORLD
+struct Fragment {
+  uint number;  // 0 is none
+  vec4 light;
+  bool opaque;
+};
+
+// The nearest fragment behind another one that something of the lens may see. Of two at one depth,
+// the brighter.
+Fragment next_behind(uint first, Fragment front, float scene)
+{
+  Fragment best = Fragment(0u, vec4(0.0, 0.0, 0.0, 2.0), false);
+  for (uint number = first; number != 0u;) {
+    ivec2 place = list_texel(number - 1u);
+    uvec2 node = texelFetch(nodes_tx, place, 0).xy;
+    vec4 light = imageLoad(light_img, place);
+    bool nearer = light.a < best.light.a;
+    nearer = nearer || (light.a == best.light.a && largest(light.rgb) > largest(best.light.rgb));
+    bool hidden = scene < light.a - DEPTH_STEPS && hides(scene, light.a);
+    hidden = hidden || (front.opaque && hides(front.light.a, light.a));
+    if (light.a > front.light.a && nearer && !hidden) {
+      best = Fragment(number, light, (node.x & KEY_OPAQUE) != 0u);
+    }
+    number = node.y;
+  }
+  return best;
+}
+#endif
+
+#ifndef WORLD
+// What the light of an instance's texels is to be multiplied by, so that they have its area.
+float area_per_hit(uint instance)
+{
+  if (instance == 0u) {
+    return 1.0;
+  }
+  float area = texelFetch(areas_tx, list_texel(instance - 1u), 0).x;
+  uint hits = texelFetch(hits_tx, list_texel(instance - 1u), 0).x;
+  return (area > 0.0 && hits > 0u) ? area / float(hits) : 1.0;
+}
+#endif
+
+#ifdef CHROMATIC
+// Radius of the circle of confusion that stands for all wavelengths, where a texel's light comes from.
+float typical_coc(ivec2 texel, float depth)
+{
+  vec2 clip = (vec2(texel) + 0.5) / view_buf.film.xy * 2.0 - 1.0;
+  vec2 scale = vec2(view_buf.projection[0][0], view_buf.projection[1][1]);
+  vec2 xy = (view_buf.lens.y > 0.5) ? (clip - view_buf.projection[3].xy) / scale :
+                                      (clip + view_buf.projection[2].xy) / scale * depth;
+  xy += lens_view.xy * (view_buf.lens.x - depth) / view_buf.lens.x;
+  vec2 place = field_place(vec3(xy, -depth), chromatic_buf);
+  return chromatic_coc_px(field_tx, place, depth, view_buf.lens, chromatic_buf);
+}
+#endif
+
+// The same light as the splats need it.
+vec4 splatted(vec4 light, ivec2 texel)
+{
+#ifdef WORLD
+  float depth = highlight_buf.world.x;
+#else
+  float depth = depth_of(light.a);
+#endif
+#ifdef CHROMATIC
+  float share = highlight_share(typical_coc(texel, depth), highlight_buf.split.y);
+#elif defined(WORLD)
+  float share = highlight_buf.world.z;
+#else
+  float share = highlight_share(coc_radius_px(depth, view_buf.lens), highlight_buf.split.y);
+#endif
+  return vec4(light.rgb * share, depth);
+}
+
+void main()
+{
+  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * threads;
+  if (index >= uint(number)) {
+    return;
+  }
+  uvec2 node = texelFetch(nodes_tx, list_texel(index), 0).xy;
+  ivec2 texel = key_texel(node.x);
+  uint first = imageLoad(heads_img, texel).x;
+  if (first != index + 1u) {
+    return;
+  }
+#ifdef WORLD
+  uint start = first;
+  imageStore(order_img, list_texel(index), uvec4(0u));
+#else
+  float scene = texelFetch(scene_tx, texel, 0).x;
+  Fragment front = Fragment(0u, vec4(0.0), false);
+  uint start = 0u;
+  int most = (node.y == 0u) ? 1 : layers;
+  for (int layer = 0; layer < most; layer++) {
+    Fragment next = next_behind(first, front, scene);
+    if (next.number == 0u) {
+      break;
+    }
+    if (front.number == 0u) {
+      start = next.number;
+    }
+    else {
+      imageStore(order_img, list_texel(front.number - 1u), uvec4(next.number));
+    }
+    front = next;
+  }
+  if (front.number != 0u) {
+    imageStore(order_img, list_texel(front.number - 1u), uvec4(0u));
+  }
+#endif
+  imageStore(heads_img, texel, uvec4(start | IN_ORDER));
+  for (uint kept = start; kept != 0u;) {
+    ivec2 place = list_texel(kept - 1u);
+    vec4 light = imageLoad(light_img, place);
+#ifndef WORLD
+    light.rgb *= area_per_hit(texelFetch(nodes_tx, place, 0).z);
+#endif
+    imageStore(light_img, place, splatted(light, texel));
+    kept = imageLoad(order_img, place).x;
+  }
+}

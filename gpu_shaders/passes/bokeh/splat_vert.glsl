@@ -1,0 +1,186 @@
+// A square for each highlight, as large as its disc in the picture.
+// Inputs: pos (corner, 0 or 1); sources_a_tx, sources_b_tx (see highlights_comp); tiles_tx (what hides
+// them, see visibility_lib); view_buf (of the frame), splat_buf. CHROMATIC: chromatic_buf, field_tx
+// (field table).
+// Outputs: place on the opening in units of its radius before the anamorphic ratio (v_place), energy
+// density (v_density), blur of the disc in the same units (v_blur); see bokeh_look_lib for the rest; tile, number and region of the source.
+// Source: methods 1, 8, 13.
+#include "lib/lens_lib.glsl"
+#include "lib/bokeh/visibility_lib.glsl"
+#include "lib/bokeh/opening_lib.glsl"
+#include "lib/bokeh/bokeh_look_lib.glsl"
+#ifdef CHROMATIC
+#include "lib/chromatic_lib.glsl"
+
+// Pixels on either side of a dot's centre whose light is added up.
+#define TENT_PIXELS 6
+
+// Whether the colours of a highlight part as far as the band's level is meant for.
+bool is_of_level(vec2 place)
+{
+  vec2 strengths = abs(field_strengths(field_tx, place, chromatic_buf) - vec2(1.0, 0.0));
+  float spread = dot(strengths * vec2(1.0, length(place)), splat_buf.spread.zw);
+  return spread >= splat_buf.spread.x && spread < splat_buf.spread.y;
+}
+
+// What the pixels along each axis get of tents of these half widths, px: nearly the half widths
+// themselves, but the pixels of a bright surface in focus all have the same error.
+vec2 tent_sum(vec2 center, vec2 tent)
+{
+  if (max(tent.x, tent.y) > float(TENT_PIXELS - 1)) {
+    return tent;
+  }
+  vec2 phase = fract(center - 0.5);
+  vec2 sum = vec2(0.0);
+  for (int i = -TENT_PIXELS; i <= TENT_PIXELS; i++) {
+    sum += max(1.0 - abs(float(i) - phase) / tent, vec2(0.0));
+  }
+  return sum;
+}
+
+// Of the field's width, for differences.
+#define FIELD_STEP (1.0 / 256.0)
+
+// 1 / focus distance (1/m) and scale of the middle of the band, at a place of the field.
+vec2 band_at(vec2 place)
+{
+  vec2 strengths = field_strengths(field_tx, place, chromatic_buf);
+  return vec2(chromatic_focus(splat_buf.dispersion.x, strengths.x, chromatic_buf),
+              lateral_scale(splat_buf.dispersion.y, strengths.y, chromatic_buf));
+}
+
+// How much larger a lamp at a place of the field appears from places on the lens: from the centre
+// (x), and what is added to that for a place (yz, times the place in units of half the opening).
+// With focus f and scale m, the place p appears at m p + v (f - 1 / depth) from v, so that areas
+// grow by det(m + p grad(m) + v grad(f)), which is linear in v.
+vec3 appearing_area(vec2 place, vec2 band, float depth)
+{
+  float step_aside = FIELD_STEP / chromatic_buf.field.x;
+  vec2 right = band_at(place + vec2(step_aside, 0.0)) - band_at(place - vec2(step_aside, 0.0));
+  vec2 above = band_at(place + vec2(0.0, step_aside)) - band_at(place - vec2(0.0, step_aside));
+  vec2 focus = vec2(right.x, above.x) / (2.0 * step_aside);
+  vec2 scale = vec2(right.y, above.y) / (2.0 * step_aside);
+  float cross_product = scale.x * focus.y - scale.y * focus.x;
+  vec2 slope = band.y * focus + cross_product * vec2(-place.y, place.x);
+  float aperture = view_buf.lens.z / (0.5 * view_buf.film.y * view_buf.projection[1][1]);
+  slope *= aperture * ((view_buf.lens.y > 0.5) ? depth : 1.0);
+  return vec3(band.y * (band.y + dot(place, scale)), slope / vec2(splat_buf.opening.x, 1.0));
+}
+
+// By how much the rims of a disc lie apart within the band, px.
+float band_width(vec2 xy, float depth, vec2 place)
+{
+  vec2 strengths = field_strengths(field_tx, place, chromatic_buf);
+  vec4 band = splat_buf.dispersion;
+  float lower = chromatic_focus(band.x - 0.5 * band.z, strengths.x, chromatic_buf);
+  float upper = chromatic_focus(band.x + 0.5 * band.z, strengths.x, chromatic_buf);
+  float axial = coc_radius_at(depth, upper, view_buf.lens) - coc_radius_at(depth, lower, view_buf.lens);
+  // Away from the axis; over a rim's turn, half of its square is across the rim.
+  vec2 lateral = xy * (band.w * strengths.y) * 0.5 * view_buf.film.xy *
+                 vec2(view_buf.projection[0][0], view_buf.projection[1][1]);
+  lateral /= (view_buf.lens.y > 0.5) ? 1.0 : depth;
+  return sqrt(axial * axial + 0.5 * dot(lateral, lateral));
+}
+#endif
+
+void main()
+{
+  ivec2 texel = ivec2(gl_InstanceID % SOURCE_COLUMNS, gl_InstanceID / SOURCE_COLUMNS);
+  vec4 a = texelFetch(sources_a_tx, texel, 0);
+  vec4 b = texelFetch(sources_b_tx, texel, 0);
+  v_tile = texelFetch(tiles_tx, texel, 0);
+  v_source = gl_InstanceID;
+  v_region = b.w;
+#ifdef CHROMATIC
+  vec2 place = field_place(vec3(a.xy, -a.z), chromatic_buf);
+  if (!is_of_level(place)) {
+    gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
+    return;
+  }
+  vec2 band = band_at(place);
+  v_area = appearing_area(place, band, a.z);
+  float coc = coc_radius_at(a.z, band.x, view_buf.lens);
+  vec4 clip = view_buf.projection * vec4(a.xy * band.y, -a.z, 1.0);
+  a.w = length(vec2(a.w, band_width(a.xy, a.z, place)));
+#else
+  float coc = coc_radius_at(a.z, splat_buf.wavelength.w, view_buf.lens);
+  vec4 clip = view_buf.projection * vec4(a.xy, -a.z, 1.0);
+#endif
+  vec2 center = (clip.xy / clip.w * 0.5 + 0.5) * view_buf.film.xy;
+  float blur = sqrt(a.w * a.w + splat_buf.opening.y * splat_buf.opening.y);
+  float ratio = splat_buf.opening.x;
+  float radius = max(abs(coc), 1e-6);
+  v_chief = (view_buf.lens.y > 0.5) ? vec2(0.0) : a.xy / a.z;
+#ifdef PROFILE
+  v_row = look_row(coc, splat_buf.rows);
+  float extent = profile_texel(profile_tx, 0.5, v_row, 0.0).a;
+  radius = mix(radius, extent * (radius + splat_buf.rows.z), splat_buf.rows.w);
+#endif
+#ifdef TILES
+  v_row = look_row(coc, splat_buf.rows);
+  v_tile_at = vec2(clamp(length(v_chief) * splat_buf.field.x, 0.0, 1.0) * float(TILE_FIELDS - 1),
+                   v_row * float(TILE_DEPTHS - 1));
+  vec3 pattern = tile_place(places_tx, v_tile_at) * (radius + splat_buf.rows.z);
+  pattern = mix(vec3(0.0, radius, radius), pattern, splat_buf.rows.w);
+  v_blur = blur * inversesqrt(pattern.y * pattern.z);
+  v_upright = (coc < 0.0) ? -1.0 : 1.0;
+  v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (pattern.y * pattern.z));
+  if (splat_buf.field.w > 0.5) {
+    vec2 layers = opening_layers(float(textureSize(opening_tx, 0).z), v_blur);
+    // Three tables a layer of the opening: for the blur of the one before, its own and the next.
+    float table = 3.0 * layers.x + 1.0;
+    v_left_lower = mix(tile_left(left_tx, table, v_chief, v_tile_at),
+                       tile_left(left_tx, table + 1.0, v_chief, v_tile_at),
+                       layers.y);
+    v_left_upper = mix(tile_left(left_tx, table + 2.0, v_chief, v_tile_at),
+                       tile_left(left_tx, table + 3.0, v_chief, v_tile_at),
+                       layers.y);
+  }
+  // The widest blur of the tiles, or the pattern with its own.
+  vec2 reach = 1.0 + vec2(min(2.0 * v_blur + 0.07, 0.5)) + 0.5 / pattern.yz;
+  v_place = (pos * 2.0 - 1.0) * reach;
+  vec2 away = azimuth_of(v_chief);
+  vec2 local = v_place * pattern.yz + vec2(0.0, pattern.x);
+  vec2 offset = (local.x * vec2(away.y, -away.x) + local.y * away) / vec2(ratio, 1.0);
+#else
+  v_blur = blur / radius;
+  // The disc, the wider layer of its blur, and half a pixel.
+  vec2 reach = radius * vec2(splat_buf.opening.z / ratio, splat_buf.opening.z) + 1.42 * blur + 0.5;
+  vec2 offset = (pos * 2.0 - 1.0) * reach;
+  v_place = offset / ((coc < 0.0) ? -radius : radius) * vec2(ratio, 1.0);
+  v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (radius * radius));
+#endif
+#ifdef RIMS
+  float layers = float(textureSize(opening_tx, 0).z);
+  float lower = opening_layers(layers, v_blur).x;
+  float field = length(v_chief) * splat_buf.field.x;
+#ifndef PROFILE
+  float row = 0.0;
+#else
+  float row = v_row;
+#endif
+  v_left_lower = rims_left(left_tx, lower, splat_buf.field.z, row, field, v_chief);
+  v_left_upper = rims_left(
+      left_tx, min(lower + 1.0, layers - 1.0), splat_buf.field.z, row, field, v_chief);
+#endif
+#ifdef CHROMATIC
+#ifdef TILES
+  radius = sqrt(pattern.y * pattern.z);
+#endif
+  v_dot = (radius < blur) ? 1.0 : 0.0;
+  if (v_dot > 0.5) {
+    // The layers have no blur wider than the disc: a tent with the variance of both instead.
+    vec2 radii = vec2(radius / ratio, radius);
+    vec2 tent = sqrt(0.5 * blur * blur + 1.5 * radii * radii);
+    v_place = pos * 2.0 - 1.0;
+    offset = v_place * tent;
+    vec2 sum = tent_sum(center, tent);
+    v_density = b.rgb * splat_buf.wavelength.rgb / max(sum.x * sum.y, 1e-6);
+  }
+#endif
+  if (v_tile.w == SOURCE_DROP) {
+    // No area.
+    offset = vec2(0.0);
+  }
+  gl_Position = vec4((center + offset) / view_buf.film.xy * 2.0 - 1.0, 0.0, 1.0);
+}

@@ -1,0 +1,97 @@
+// Shades a surface for one lens sample; transparency is decided by chance, so that the average over
+// the samples is exact whatever the order of the surfaces. A surface that adds light to what it lets
+// through is drawn twice: its opacity by chance without its light (GLOW_APART), then its light onto
+// what was left (GLOW), wherever nothing is in front of it.
+// Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads; with
+// HIGHLIGHTS, where the light that is splatted is left out, highlight_buf, and with CHROMATIC, so that
+// its share is the same at all wavelengths, chromatic_buf and field_tx.
+// Outputs: premultiplied scene-linear colour; with MATTES also Cryptomatte ids of object (x) and
+// material (y), and the share of sharpness (w).
+// Source: methods 1; stochastic transparency after Enderton et al., I3D 2010.
+
+#ifdef MATTES
+#include "lib/surface/instance_lib.glsl"
+#endif
+#if defined(MATTES) || defined(HIGHLIGHTS)
+#include "lib/lens_lib.glsl"
+#endif
+#ifdef HIGHLIGHTS
+#include "lib/bokeh/highlight_lib.glsl"
+#ifdef CHROMATIC
+#include "lib/chromatic_lib.glsl"
+#endif
+
+vec3 without_highlights(Closure closure)
+{
+#ifdef CHROMATIC
+  vec3 light = closure.radiance - closure.unsplit;
+  if (max(light.r, max(light.g, light.b)) <= highlight_buf.split.x) {
+    return closure.radiance;
+  }
+  // Where the point is, not where the wavelength moves it to.
+  vec3 eye = (view_buf.view * vec4(world_position, 1.0)).xyz;
+  vec2 place = field_place(eye, chromatic_buf);
+  float coc = chromatic_coc_px(field_tx, place, -eye.z, view_buf.lens, chromatic_buf);
+#else
+  float depth = -(view_buf.view * vec4(world_position, 1.0)).z;
+  float coc = coc_radius_px(depth, view_buf.lens);
+#endif
+  float share = highlight_share(coc, highlight_buf.split.y);
+  return highlight_base(closure.radiance, closure.unsplit, share, highlight_buf.split.x);
+}
+#endif
+
+void main()
+{
+#ifdef HOLDOUT
+  out_color = vec4(0.0);
+#ifdef MATTES
+  out_mattes = vec4(0.0);
+#endif
+#else
+  Closure closure = surface_closure();
+#ifdef GLOW
+#ifdef HIGHLIGHTS
+  closure.radiance = without_highlights(closure);
+#endif
+  out_color = vec4(closure.radiance, 0.0);
+#ifdef MATTES
+  out_mattes = vec4(0.0);
+#endif
+#else
+  float hole = clamp(closure.holdout, 0.0, 1.0);
+#ifdef TRANSPARENT
+#ifdef GLOW_APART
+  closure.radiance = vec3(0.0);
+  closure.unsplit = vec3(0.0);
+#endif
+  float through = closure_through(closure);
+  if (through > 0.0) {
+    uvec2 pixel = uvec2(gl_FragCoord.xy) + uvec2(view_buf.film.zw);
+    uint seed = hash_combine(hash_uint(pixel.x), pixel.y);
+    seed = hash_combine(seed, uint(instance_row));
+    seed = hash_combine(seed, uint(gl_PrimitiveID));
+    seed = hash_combine(seed, uint(sample_index));
+    if (hash_unit(seed) < through) {
+      discard;
+    }
+    // What is left of the surface stands for the rest, too.
+    float scale = 1.0 / max(1.0 - through, 1e-6);
+    closure.radiance *= scale;
+    closure.unsplit *= scale;
+    hole = min(hole * scale, 1.0);
+  }
+#endif
+#ifdef HIGHLIGHTS
+  closure.radiance = without_highlights(closure);
+#endif
+  out_color = vec4(closure.radiance, 1.0 - hole);
+#ifdef MATTES
+  float depth = -(view_buf.view * vec4(world_position, 1.0)).z;
+  float object_id = texelFetch(instances_tx, instance_texel(instance_row, 3), 0).x;
+  float sharp = focus_share(coc_radius_px(depth, view_buf.lens), view_buf.lens.w);
+  out_mattes = vec4(object_id, material_id, 0.0, sharp);
+#endif
+#endif
+#endif
+}

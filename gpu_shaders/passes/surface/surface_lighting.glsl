@@ -1,0 +1,320 @@
+// Closures that meet light: what a surface reflects of lights (without shadows) and of the world.
+// Included into shaders that draw surfaces. Without SHADES only what a surface lets through counts,
+// and no light is read.
+// Inputs: world_position, world_normal where the mesh has normals; view_buf, lens_sample;
+// lights_tx (light table); environment_buf, environment_tx (image), environment_levels_tx
+// (prefiltered), ggx_tx (albedo table).
+// Source: split-sum environment, Karis, SIGGRAPH 2013 course; closures as Cycles composes them.
+#include "lib/surface/closure_lib.glsl"
+
+#if defined(LIT) && defined(SHADES)
+#include "lib/surface/bsdf_lib.glsl"
+#include "lib/surface/environment_lib.glsl"
+#include "lib/surface/light_lib.glsl"
+#include "lib/surface/texture_lib.glsl"
+
+// Mirrors are drawn this rough under lights, so that their highlights have a finite size.
+#define MIN_ALPHA 2e-4
+
+// Below this roughness a lobe is round enough for one look-up along its axis.
+#define SPLIT_ROUGHNESS 0.15
+#define FACETS 6
+#define FACET_OVERLAP 1.0
+#define GOLDEN_RATIO 0.61803399
+
+struct Shading {
+  vec3 position;
+  vec3 normal;  // shading normal on the side that is seen
+  vec3 view;    // towards the lens sample
+  float cos_view;
+};
+
+// A reflecting lobe: F = f0 + (1 - f0) rise. eta > 0: a dielectric's rise, else Schlick's.
+struct Lobe {
+  vec3 weight;
+  vec3 f0;
+  float eta;
+  bool repeats;  // light scattered more than once between the facets is added
+};
+
+// Light that a surface sends to the eye.
+struct Reflected {
+  vec3 light;
+  vec3 unsplit;  // of it, light of lamps that is never splatted
+};
+
+Shading surface_shading()
+{
+  Shading s;
+  s.position = world_position;
+  vec3 view = (view_buf.lens.y > 0.5) ? vec3(lens_sample.xy / view_buf.lens.x, 1.0) :
+                                        vec3(lens_sample.xy, 0.0);
+  if (view_buf.lens.y > 0.5) {
+    s.view = normalize(mat3(view_buf.view_inverse) * view);
+  }
+  else {
+    s.view = normalize((view_buf.view_inverse * vec4(view, 1.0)).xyz - world_position);
+  }
+  // The side that is seen is a property of the triangle, not of its interpolated normal.
+  vec3 geometric = cross(dFdx(world_position), dFdy(world_position));
+  geometric = (dot(geometric, s.view) < 0.0) ? -geometric : geometric;
+#ifdef HAS_NORMAL
+  vec3 normal = (dot(world_normal, geometric) < 0.0) ? -world_normal : world_normal;
+#else
+  vec3 normal = geometric;
+#endif
+  float size = length(normal);
+  s.normal = (size > 0.0) ? normal / size : s.view;
+  s.cos_view = clamp(dot(s.normal, s.view), 1e-4, 1.0);
+  return s;
+}
+
+vec3 environment_direction(vec3 direction)
+{
+  return vec3(dot(environment_buf.rotation_x.xyz, direction),
+              dot(environment_buf.rotation_y.xyz, direction),
+              dot(environment_buf.rotation_z.xyz, direction));
+}
+
+// Of a white Lambertian surface.
+Reflected diffuse_light(Shading s)
+{
+  vec3 sum = environment_buf.color.rgb;
+  if (environment_buf.color.w > 0.5) {
+    vec2 place = direction_to_octahedron(environment_direction(s.normal));
+    sum *= environment_level(environment_levels_tx, place, ENVIRONMENT_DIFFUSE);
+  }
+  vec3 unsplit = vec3(0.0);
+  for (int i = 0; i < light_count(lights_tx); i++) {
+    Light light = light_fetch(lights_tx, i);
+    if (light.kind == LIGHT_NONE) {
+      continue;
+    }
+    Illumination incoming = light_illuminate(light, s.position);
+    float cosine = horizon_cosine(dot(s.normal, incoming.towards), incoming.sin2);
+    vec3 reflected = incoming.irradiance * (light.factors.x * cosine / PI);
+    sum += reflected;
+    unsplit += reflected * light.unsplit;
+  }
+  return Reflected(sum, unsplit);
+}
+
+// The world in a direction, averaged over a lobe of a roughness.
+vec3 environment_radiance(vec3 direction, float roughness)
+{
+  vec3 local = environment_direction(direction);
+  vec2 place = direction_to_octahedron(local);
+  float level = clamp(roughness, 0.0, 1.0) * float(ENVIRONMENT_LEVELS) - 1.0;
+  if (level < 0.0) {
+    vec3 sharp = image_linear(environment_tx, direction_to_equirect(local), EXTENSION_REPEAT).rgb;
+    return mix(sharp, environment_level(environment_levels_tx, place, 0.0), level + 1.0);
+  }
+  float lower = min(floor(level), float(ENVIRONMENT_LEVELS - 2));
+  return mix(environment_level(environment_levels_tx, place, lower),
+             environment_level(environment_levels_tx, place, lower + 1.0),
+             level - lower);
+}
+
+float lobe_rise(Lobe lobe, float cosine)
+{
+  return (lobe.eta > 0.0) ? fresnel_dielectric_rise(cosine, lobe.eta) : fresnel_schlick(cosine);
+}
+
+vec3 lobe_repeat(Lobe lobe, vec3 albedo)
+{
+  return lobe.repeats ? ggx_multiple_scattering(albedo, lobe.f0 + (1.0 - lobe.f0) / 21.0) :
+                        vec3(1.0);
+}
+
+// What a lobe reflects of white surroundings.
+vec3 lobe_albedo(Lobe lobe, vec3 albedo)
+{
+  return (lobe.f0 * albedo.x + albedo.y) * lobe_repeat(lobe, albedo);
+}
+
+// Reflectance of two lobes at a facet.
+vec3 lobes_reflect(Lobe a, vec3 repeat_a, Lobe b, vec3 repeat_b, float cosine)
+{
+  return a.weight * repeat_a * mix(a.f0, vec3(1.0), lobe_rise(a, cosine)) +
+         b.weight * repeat_b * mix(b.f0, vec3(1.0), lobe_rise(b, cosine));
+}
+
+// The world reflected by two lobes: a few facets stand for all, each with the world averaged over
+// its share of the lobe. All pixels of a lens sample take the same facets, so that there is no
+// noise; other samples take others.
+vec3 environment_reflection(Shading s, float roughness, Lobe a, vec3 repeat_a, Lobe b, vec3 repeat_b)
+{
+  float alpha = roughness * roughness;
+  vec3 up = (abs(s.normal.z) < 0.9) ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
+  vec3 tangent = normalize(cross(up, s.normal));
+  vec3 bitangent = cross(s.normal, tangent);
+  vec3 view = vec3(dot(s.view, tangent), dot(s.view, bitangent), s.cos_view);
+  uint seed = hash_combine(floatBitsToUint(lens_sample.z), floatBitsToUint(lens_sample.w));
+  vec2 shift = vec2(hash_unit(seed), hash_unit(hash_uint(seed)));
+  float masking = ggx_masking(view.z, alpha);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < FACETS; i++) {
+    vec2 u = vec2((float(i) + shift.x) / float(FACETS), fract(float(i) * GOLDEN_RATIO + shift.y));
+    vec3 h = ggx_visible_normal(view, alpha, u);
+    float cos_d = clamp(dot(view, h), 0.0, 1.0);
+    vec3 light = 2.0 * cos_d * h - view;
+    if (light.z <= 0.0) {
+      continue;
+    }
+    // Solid angle of the facet's share, as the roughness of a lobe of that size.
+    float density = ggx_distribution(h.z, alpha) * masking / (4.0 * view.z);
+    float share = 1.0 / (4.0 * PI * float(FACETS) * max(density, 1e-6));
+    float level = min(sqrt(sqrt(FACET_OVERLAP * share)), roughness);
+    float passed = ggx_visibility(view.z, light.z, alpha) * 4.0 * view.z * light.z / masking;
+    vec3 direction = tangent * light.x + bitangent * light.y + s.normal * light.z;
+    sum += environment_radiance(direction, level) * passed *
+           lobes_reflect(a, repeat_a, b, repeat_b, cos_d);
+  }
+  return sum * environment_buf.color.rgb / float(FACETS);
+}
+
+// Light reflected by two lobes of one roughness.
+Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
+{
+  vec3 albedo = ggx_albedo(ggx_tx, s.cos_view, roughness);
+  vec3 repeat_a = lobe_repeat(a, albedo);
+  vec3 repeat_b = lobe_repeat(b, albedo);
+  vec3 mirrored = 2.0 * dot(s.normal, s.view) * s.normal - s.view;
+  vec3 reflectance = a.weight * lobe_albedo(a, albedo) + b.weight * lobe_albedo(b, albedo);
+  vec3 sum = environment_buf.color.rgb * reflectance;
+  if (environment_buf.color.w > 0.5) {
+    if (roughness < SPLIT_ROUGHNESS) {
+      sum *= environment_radiance(mirrored, roughness);
+    }
+    else {
+      sum = environment_reflection(s, roughness, a, repeat_a, b, repeat_b);
+    }
+  }
+  float alpha = max(roughness * roughness, MIN_ALPHA);
+  vec3 unsplit = vec3(0.0);
+  for (int i = 0; i < light_count(lights_tx); i++) {
+    Light light = light_fetch(lights_tx, i);
+    if (light.kind == LIGHT_NONE) {
+      continue;
+    }
+    Illumination incoming = light_illuminate(light, s.position);
+    // Half vectors of the light's disk fill half its angle, more across the plane of incidence.
+    float cos_d = dot(s.view, normalize(incoming.towards + s.view));
+    float reach = sqrt(incoming.sin2) / (1.0 + sqrt(1.0 - incoming.sin2)) *
+                  inversesqrt(max(cos_d, 0.05));
+    // A lobe narrower than the light sees the part of it that a mirror would show, a wide one all.
+    float narrow = reach * reach / (reach * reach + alpha * alpha);
+    vec3 shown = light_representative(light, incoming, s.position, mirrored);
+    float cos_light = mix(horizon_cosine(dot(s.normal, incoming.towards), incoming.sin2),
+                          max(dot(s.normal, shown), 0.0),
+                          narrow);
+    if (cos_light <= 0.0) {
+      continue;
+    }
+    cos_d = dot(s.view, normalize(mix(incoming.towards, shown, narrow) + s.view));
+    cos_d = clamp(cos_d, 0.0, 1.0);
+    float cos_h = clamp(dot(s.normal, normalize(incoming.towards + s.view)), 0.0, 1.0);
+    float lobe = ggx_distribution_over_disk(cos_h, reach, alpha) *
+                 ggx_visibility(s.cos_view, cos_light, alpha) * cos_light;
+    vec3 reflected = incoming.irradiance * (light.factors.y * lobe) *
+                     lobes_reflect(a, repeat_a, b, repeat_b, cos_d);
+    sum += reflected;
+    unsplit += reflected * light.unsplit;
+  }
+  return Reflected(sum, unsplit);
+}
+
+Closure reflecting(Reflected reflected)
+{
+  return Closure(finite_light(reflected.light), vec3(0.0), 0.0, finite_light(reflected.unsplit));
+}
+
+Closure closure_diffuse(vec3 color)
+{
+  Reflected reflected = diffuse_light(surface_shading());
+  // A surface takes no light away, as in Cycles; negative lamps do.
+  vec3 c = max(number_or_zero(color), vec3(0.0));
+  return reflecting(Reflected(c * reflected.light, c * reflected.unsplit));
+}
+
+Closure closure_glossy(vec3 color, float roughness, bool repeats)
+{
+  Shading s = surface_shading();
+  float r = clamp(number_or_zero(roughness), 0.0, 1.0);
+  vec3 albedo = ggx_albedo(ggx_tx, s.cos_view, r);
+  vec3 c = max(number_or_zero(color), vec3(0.0));
+  // The same reflectance in every direction: a lobe of f0 = 1, with the colour as its weight.
+  // Above 1 light grows with every scattering; from about 8 on its sum has no limit.
+  vec3 repeat_color = repeats ? ggx_multiple_scattering(albedo, min(c, vec3(5.0))) : vec3(1.0);
+  Lobe lobe = Lobe(c * repeat_color, vec3(1.0), 0.0, false);
+  Lobe none = Lobe(vec3(0.0), vec3(0.0), 0.0, false);
+  return reflecting(glossy_light(s, r, lobe, none));
+}
+
+Closure closure_principled(vec3 base_color,
+                           float metallic,
+                           float roughness,
+                           float ior,
+                           float specular_level,
+                           vec3 specular_tint,
+                           vec3 emission_color,
+                           float emission_strength)
+{
+  Shading s = surface_shading();
+  // As in Cycles, a base brighter than white is one only where it is diffuse.
+  vec3 base = max(number_or_zero(base_color), vec3(0.0));
+  float metal = clamp(number_or_zero(metallic), 0.0, 1.0);
+  float r = clamp(number_or_zero(roughness), 0.0, 1.0);
+  vec3 tint = max(number_or_zero(specular_tint), vec3(0.0));
+  // Beyond, all is reflected already.
+  float eta = clamp(number_or_zero(ior), 1e-5, 1e5);
+  float f0 = f0_from_ior(eta);
+  specular_level = number_or_zero(specular_level);
+  if (specular_level != 0.5) {
+    f0 *= 2.0 * max(specular_level, 0.0);
+    float raised = ior_from_f0(f0);
+    eta = (eta < 1.0) ? 1.0 / raised : raised;
+    f0 = f0_from_ior(eta);
+  }
+  vec3 albedo = ggx_albedo(ggx_tx, s.cos_view, r);
+  Lobe metal_lobe = Lobe(vec3(metal), min(base, vec3(1.0)), 0.0, true);
+  Lobe dielectric = Lobe(vec3(1.0 - metal), clamp(f0 * tint, 0.0, 1.0), eta, true);
+  Reflected reflected = glossy_light(s, r, metal_lobe, dielectric);
+  if (metal < 1.0) {
+    // The diffuse layer gets what the coat of the dielectric does not reflect.
+    vec3 taken = lobe_albedo(dielectric, albedo);
+    float left = (1.0 - metal) * clamp(1.0 - max(taken.r, max(taken.g, taken.b)), 0.0, 1.0);
+    Reflected diffuse = diffuse_light(s);
+    reflected.light += base * left * diffuse.light;
+    reflected.unsplit += base * left * diffuse.unsplit;
+  }
+  Closure closure = reflecting(reflected);
+  closure.radiance += finite_light(emission_color * emission_strength);
+  return closure;
+}
+
+#else
+
+Closure closure_diffuse(vec3 color)
+{
+  return closure_none();
+}
+
+Closure closure_glossy(vec3 color, float roughness, bool repeats)
+{
+  return closure_none();
+}
+
+Closure closure_principled(vec3 base_color,
+                           float metallic,
+                           float roughness,
+                           float ior,
+                           float specular_level,
+                           vec3 specular_tint,
+                           vec3 emission_color,
+                           float emission_strength)
+{
+  return closure_none();
+}
+
+#endif

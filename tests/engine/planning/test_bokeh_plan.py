@@ -1,0 +1,112 @@
+"""What of a frame is splatted, and where highlights are searched."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from addon.engine.planning.bokeh_search import tiles_of
+from addon.engine.planning.plan import plan_frame
+from addon.sampling.highlights import highlight_share
+from addon.sampling.iris import Iris
+from addon.sampling.thin_lens import ThinLens
+from addon.snapshot.scene import BokehSettings
+from tests.gpu.conftest import triangles_snapshot
+
+LENS = ThinLens(0.1, 3.0, Iris())
+TRIANGLE = np.array([[-0.1, -0.1, -8.0], [0.1, -0.1, -8.0], [0.0, 0.1, -8.0]])
+
+
+def snapshot(colors=((5.0, 5.0, 5.0),), corners=(TRIANGLE,), lens=LENS, method="ADAPTIVE", **own):
+    made = triangles_snapshot(corners, colors, 96, 64, lens)
+    return replace(
+        made,
+        camera=replace(made.camera, bokeh=BokehSettings(**own)),
+        sampling=replace(made.sampling, method=method),
+    )
+
+
+def test_nothing_is_splatted_without_settings_without_lens_or_where_nothing_shines():
+    assert plan_frame(snapshot()).bokeh is not None
+    without = snapshot()
+    without = replace(without, camera=replace(without.camera, bokeh=None))
+    assert plan_frame(without).bokeh is None
+    assert plan_frame(snapshot(lens=None)).bokeh is None
+    assert plan_frame(snapshot(colors=((0.9, 0.9, 0.9),))).bokeh is None
+    assert plan_frame(snapshot(threshold=6.0)).bokeh is None
+
+
+def test_the_reference_method_splats_only_when_asked():
+    made = snapshot(method="REFERENCE")
+    assert plan_frame(made).bokeh is None
+    made = replace(made, sampling=replace(made.sampling, reference_bokeh=True))
+    assert plan_frame(made).bokeh is not None
+
+
+def test_the_raster_reaches_as_far_beyond_the_frame_as_the_largest_blur():
+    plan = plan_frame(snapshot(overscan=1.0))
+    bokeh = plan.bokeh
+    radius = plan.coc_scale * (8.0 - 3.0) / (8.0 * 3.0)
+    assert bokeh.margin[0] == bokeh.margin[1] == int(np.ceil(radius)) + 2
+    assert (bokeh.width, bokeh.height) == (96 + 2 * bokeh.margin[0], 64 + 2 * bokeh.margin[1])
+    narrow = plan_frame(snapshot(overscan=0.02)).bokeh
+    assert narrow.margin == (4, 4)
+
+
+def test_a_pixel_of_the_raster_is_one_of_the_frame():
+    plan = plan_frame(snapshot())
+    bokeh = plan.bokeh
+    point = np.array([0.7, -0.4, -6.0, 1.0])
+    frame, raster = plan.projection @ point, bokeh.projection @ point
+    in_frame = (frame[:2] / frame[3] + 1) / 2 * (plan.width, plan.height)
+    in_raster = (raster[:2] / raster[3] + 1) / 2 * (bokeh.width, bokeh.height)
+    assert in_raster - in_frame == pytest.approx(bokeh.margin)
+
+
+def test_only_bright_surfaces_are_searched():
+    dark = TRIANGLE * [1, 1, 0.5]
+    bokeh = plan_frame(snapshot(((0.5, 0.5, 0.5), (5.0, 5.0, 5.0)), (dark, TRIANGLE))).bokeh
+    assert bokeh.shining == {(1, 0)}
+
+
+def test_small_triangles_are_searched_more_finely():
+    coarse = plan_frame(snapshot(corners=(TRIANGLE * [9, 9, 1],))).bokeh
+    fine = plan_frame(snapshot(corners=(TRIANGLE * [0.2, 0.2, 1],))).bokeh
+    assert coarse.subpixels < 4 < fine.subpixels
+
+
+def test_the_share_of_the_world_is_that_of_its_circle_of_confusion():
+    made = snapshot()
+    content = replace(made.content, world=replace(made.content.world, image=5))
+    plan = plan_frame(replace(made, content=content))
+    assert plan.bokeh.world
+    assert plan.bokeh.world_share == highlight_share(plan.empty_coc, plan.bokeh.least_coc)
+
+
+def test_lone_lamps_are_searched_where_they_are():
+    bokeh = plan_frame(snapshot(corners=(TRIANGLE * [0.2, 0.2, 1],))).bokeh
+    x, y, width, height = bokeh.part
+    assert min(x, y) >= 0 and x + width <= bokeh.width and y + height <= bokeh.height
+    assert 0 < width * height < 0.1 * bokeh.width * bokeh.height
+    # 45 sub-pixels across, and never more than the budget.
+    assert width * bokeh.subpixels >= 45
+    assert width * height * bokeh.subpixels**2 <= 1 << 21
+
+
+@pytest.mark.parametrize(
+    ("part", "subpixels"),
+    [((0, 0, 96, 64), 4), ((7, 3, 2000, 1200), 4), ((1, 0, 5, 3), 32), ((0, 9, 9000, 2), 8)],
+)
+def test_tiles_cover_the_part_once(part, subpixels):
+    tiles = tiles_of(part, subpixels)
+    x, y, width, height = part
+    covered = np.zeros((y + height, x + width), int)
+    for left, below, w, h in tiles:
+        assert w <= tiles[0][2] and h <= tiles[0][3] and min(w, h) > 0
+        assert w * h * subpixels**2 <= 1 << 22 and max(w, h) * subpixels <= 8192
+        covered[below : below + h, left : left + w] += 1
+    assert (covered[y:, x:] == 1).all() and covered.sum() == width * height
+
+
+def test_a_part_without_area_has_no_tiles():
+    assert tiles_of((0, 0, 0, 0), 4) == []

@@ -1,0 +1,53 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from addon.errors import InputError
+from addon.lens_bokeh.look.distortion import distorted, fitted_coefficient, undistorted
+
+POINTS = np.stack(np.meshgrid(np.linspace(-0.7, 0.7, 9), np.linspace(-0.6, 0.8, 9)), axis=-1)
+
+
+@given(st.floats(-0.5, 0.5))
+def test_inverse_undoes_the_model(k):
+    centre = (0.1, -0.05)
+    assert np.allclose(
+        distorted(undistorted(POINTS, k, centre), k, centre), POINTS, rtol=0, atol=1e-12
+    )
+
+
+def test_equation_of_the_paper():
+    d = np.array([0.3, 0.4])
+    assert np.allclose(undistorted(d, -0.1), d / (1.0 - 0.1 * 0.25))
+
+
+def test_barrel_draws_points_inwards_and_pincushion_outwards():
+    corner = np.array([0.6, 0.6])
+    assert np.hypot(*distorted(corner, -0.2)) < np.hypot(*corner)
+    assert np.hypot(*distorted(corner, 0.2)) > np.hypot(*corner)
+
+
+def test_zero_changes_nothing():
+    assert np.array_equal(undistorted(POINTS, 0.0), POINTS)
+    assert np.allclose(distorted(POINTS, 0.0), POINTS, rtol=0, atol=0)
+
+
+def test_what_a_picture_cannot_show_stays_finite():
+    far = distorted(np.array([[3.0, 0.0], [100.0, 100.0]]), 0.4)
+    # The model turns round at radius 1 / sqrt(K).
+    assert np.allclose(np.hypot(far[:, 0], far[:, 1]), 1.0 / np.sqrt(0.4))
+
+
+def test_the_pole_is_refused():
+    with pytest.raises(InputError, match="radius"):
+        undistorted(np.array([2.0, 0.0]), -0.4)
+
+
+def test_fit_finds_the_coefficient_and_scale_of_a_distortion():
+    u = np.linspace(0.0, 0.9, 12)
+    d = distorted(np.stack([1.02 * u, 0 * u], axis=-1), -0.15)[:, 0]
+    k, scale = fitted_coefficient(u, d)
+    assert k == pytest.approx(-0.15, abs=1e-10) and scale == pytest.approx(1.02, abs=1e-10)
+    with pytest.raises(InputError):
+        fitted_coefficient(np.zeros(4), np.zeros(4))

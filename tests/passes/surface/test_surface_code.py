@@ -1,0 +1,75 @@
+"""Graphs of one shape generate one text; only what can be seen through gives up the depth test."""
+
+import numpy as np
+import pytest
+
+from addon.passes.surface import surface_code
+from addon.passes.surface.environment import ggx_table
+from addon.passes.surface.light_table import light_texels
+from addon.snapshot.scene import Light
+from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph, emission_graph
+
+
+def shaders(*kinds_and_color):
+    return tuple(
+        ShaderNode(kind, (("Color", Constant(color)), ("Strength", Constant((1.0,)))))
+        for kind, color in kinds_and_color
+    )
+
+
+def added(first, second):
+    nodes = shaders(first, second)
+    outputs = [{"emission": "Emission"}.get(node.kind, "BSDF") for node in nodes]
+    parts = (("Shader", Link(0, outputs[0])), ("Shader_001", Link(1, outputs[1])))
+    return SurfaceGraph((*nodes, ShaderNode("add_shader", parts)), Link(2, "Shader"))
+
+
+def test_constants_are_no_part_of_the_text():
+    red = surface_code.generate(emission_graph((1.0, 0.0, 0.0)), ())
+    blue = surface_code.generate(emission_graph((0.0, 0.0, 1.0), 3.0), ())
+    assert red.source == blue.source
+    assert red.constants != blue.constants
+
+
+def test_an_attribute_that_the_mesh_lacks_is_zero():
+    node = ShaderNode("color_attribute", settings=(("name", "Col"),))
+    glow = ShaderNode("emission", (("Color", Link(0, "Color")), ("Strength", Constant((1.0,)))))
+    graph = SurfaceGraph((node, glow), Link(1, "Emission"))
+    assert surface_code.generate(graph, ()).attributes == ()
+    assert surface_code.generate(graph, ("color:Col",)).attributes == ("color:Col",)
+
+
+@pytest.mark.parametrize(
+    "first, second, transparent, glows",
+    [
+        (("emission", (1, 1, 1)), ("emission", (1, 1, 1)), False, False),
+        (("transparent", (1, 1, 1)), ("emission", (1, 1, 1)), True, True),
+        (("transparent", (0.5,)), ("transparent", (0.5,)), True, False),
+    ],
+)
+def test_light_added_to_what_is_let_through_is_drawn_apart(first, second, transparent, glows):
+    code = surface_code.generate(added(first, second), ())
+    assert (code.transparent, code.glows) == (transparent, glows)
+
+
+def test_smooth_lobes_reflect_everything_and_rough_ones_lose_what_theory_says():
+    table = ggx_table()
+    total = table[..., 0] + table[..., 1]
+    assert total[0, 4:] == pytest.approx(np.ones(28), abs=2e-3)
+    assert (total < 1.001).all() and (total > 0.2).all()
+    # Along the normal a lobe of roughness 1 keeps what is left by masking: the integral over the
+    # upper half of D G2 / 4 cos by quadrature, alpha = 1.
+    theta = (np.arange(4000) + 0.5) / 4000 * np.pi / 2
+    visibility = 0.5 / (np.cos(theta) + 1.0)
+    density = 1.0 / np.pi
+    light = density * visibility * np.cos(theta) * np.sin(theta) * 2 * np.pi
+    expected = light.sum() * (np.pi / 2 / 4000)
+    # 512 samples a table entry.
+    assert total[-1, -1] == pytest.approx(expected, abs=5e-3)
+
+
+def test_no_lights_are_one_row_that_is_none():
+    assert light_texels(()).shape == (1, 7, 4)
+    assert light_texels(())[0, 0, 3] == 0.0
+    sun = Light("SUN", (0, 0, 0), (0, 0, -1), (1, 1, 1))
+    assert light_texels([sun] * 3)[:, 0, 3].tolist() == [1.0, 1.0, 1.0]
