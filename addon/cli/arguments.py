@@ -10,18 +10,17 @@ from pathlib import Path
 
 from ..errors import InputError
 from .lens.lens_arguments import add_lens, check_lens
-from .render.sampling_arguments import MAX_SAMPLES, add_sampling, check_sampling
+from .render.sampling_arguments import add_sampling, check_sampling
 from .words.option_values import (
     file_with_ending,
     joined_negatives,
-    pixel_size,
     positive_number,
     whole_number,
 )
+from .words.parser import RESOLUTION, Parser, add_output_options
 from .words.version import version
 
-# Bounds of Blender's own properties.
-MIN_SIDE, MAX_SIDE = 4, 65536
+# Bound of Blender's own property.
 MAX_FRAME = 1048574
 
 ENDINGS = (".exr", ".png")
@@ -29,23 +28,12 @@ ENDINGS = (".exr", ".png")
 # argparse would take a negative number after these for an option.
 _MAY_BE_NEGATIVE = {"--frames", "--level-bias", "--field-deg", "--planes-mm", "--rho"}
 
-# Of `bench --bokeh`.
-BOKEH_MEASURES = (
-    *("pictures", "truth", "models", "culling", "visibility", "time", "peers", "pan"),
-    *("scaling", "focus-pull", "lens"),
-)
-
 _LATER = {
     "capture": "depth layers",
     "refocus": "depth layers",
     "--method layered": "depth layers",
     "--layers": "depth layers",
 }
-
-
-class _Parser(argparse.ArgumentParser):
-    def error(self, message):
-        raise InputError(f"{message} (see `{self.prog} --help`)")
 
 
 def parse(words, program="aplanat"):
@@ -60,7 +48,7 @@ def parse(words, program="aplanat"):
     Returns
     -------
     argparse.Namespace
-        With ``command``, ``render`` or ``bench``, and its options.
+        With ``command``, ``render`` or ``lens``, and its options.
 
     Raises
     ------
@@ -69,6 +57,11 @@ def parse(words, program="aplanat"):
     SystemExit
         After printing the help or the version.
     """
+    if words and words[0] == "bench":
+        raise InputError(
+            f"{program} bench measures in a checkout of the sources; an installed Aplanat has none:"
+            " get the sources (see README.md) and call scripts/aplanat bench there"
+        )
     if words and words[0] in _LATER:
         raise _not_yet(f"{program} {words[0]}", words[0])
     arguments = _parser(program).parse_args(joined_negatives(words, _MAY_BE_NEGATIVE))
@@ -76,8 +69,6 @@ def parse(words, program="aplanat"):
         raise InputError(f"no command given (see `{program} --help`)")
     if arguments.command == "render":
         _check_render(arguments)
-    elif arguments.command == "bench":
-        _check_bench(arguments)
     elif arguments.command == "lens":
         check_lens(arguments)
     return arguments
@@ -111,18 +102,7 @@ def _check_render(arguments):
         raise InputError(f"-o {arguments.output[0]} is given twice; give two different names")
 
 
-def _check_bench(arguments):
-    for option in ("focus_pull", "peers"):
-        if getattr(arguments, option) and (arguments.method != "adaptive" or arguments.lens):
-            raise InputError(f"--{option.replace('_', '-')} belongs to --method adaptive")
-    if arguments.chromatic and (arguments.method != "reference" or arguments.lens):
-        raise InputError("--chromatic measures both methods; give neither --method nor --lens")
-    if arguments.bokeh is not None and (arguments.method != "reference" or arguments.lens):
-        raise InputError("--bokeh measures both methods; give neither --method nor --lens")
-
-
 _frame = whole_number(-MAX_FRAME, MAX_FRAME)
-_resolution = pixel_size(MIN_SIDE, MAX_SIDE)
 
 
 def _frame_range(text):
@@ -146,17 +126,17 @@ def _focus(text):
 
 
 def _parser(program):
-    parser = _Parser(
+    parser = Parser(
         prog=program,
         description="Aplanat renders Blender scenes through a camera lens.",
-        epilog="Exit code: 0 success, 2 unusable arguments or input, 1 failure.",
+        epilog="A checkout of the sources has `scripts/aplanat bench` besides. Exit code: 0 success,"
+        " 2 unusable arguments or input, 1 failure.",
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"aplanat {version()}")
-    commands = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=Parser)
     _add_render(commands)
-    _add_bench(commands)
-    add_lens(commands, _Parser)
+    add_lens(commands, Parser)
     return parser
 
 
@@ -191,7 +171,7 @@ def _add_render(commands):
         help="of --frames: render every Nth only; default: the scene's frame step",
     )
     add("--camera", metavar="NAME", help="camera object to render from")
-    add("--resolution", metavar="WxH", type=_resolution, help="in pixels, at 100 %%")
+    add("--resolution", metavar="WxH", type=RESOLUTION, help="in pixels, at 100 %%")
     add("--method", choices=("reference", "adaptive", "layered"), help="default: the scene's")
     add("--layers", metavar="K", type=whole_number(1, 64), help=argparse.SUPPRESS)
     add_sampling(parser)
@@ -220,91 +200,4 @@ def _add_render(commands):
         help="take warnings for errors: exit code 2, and no file is written",
     )
     add("--stats", metavar="FILE", type=Path, help="write statistics as JSON")
-    _add_output_options(parser)
-
-
-def _add_bench(commands):
-    parser = commands.add_parser(
-        "bench",
-        help="measure cost and quality",
-        description="Renders scenes with and without depth of field and compares the cost of a"
-        " lens sample with that of a pinhole pass, and the pictures with references. With --method"
-        " adaptive: compares work, time and quality of the adaptive method with plain accumulation."
-        " With --lens: traces lenses, and compares their bokeh profiles with a direct trace.",
-        allow_abbrev=False,
-    )
-    add = parser.add_argument
-    what = parser.add_mutually_exclusive_group()
-    what.add_argument(
-        "--lens",
-        metavar="ID|FILE",
-        action="append",
-        default=[],
-        help="measure tracer and bokeh profile of a lens instead; may be repeated",
-    )
-    what.add_argument(
-        "--scene",
-        metavar="FILE|NAME",
-        action="append",
-        default=[],
-        help=".blend file, or the name of a shared test scene (default: toys); may be repeated",
-    )
-    add("-o", "--output", metavar="FILE", type=Path, help="write the result as JSON")
-    add(
-        "--method",
-        choices=("reference", "adaptive"),
-        default="reference",
-        help="what is measured (default reference)",
-    )
-    also = parser.add_mutually_exclusive_group()
-    also.add_argument(
-        "--focus-pull",
-        action="store_true",
-        help="adaptive method: measure flicker in a focus pull instead",
-    )
-    also.add_argument(
-        "--peers",
-        action="store_true",
-        help="adaptive method: compare with EEVEE and Cycles at equal quality instead; takes long",
-    )
-    also.add_argument(
-        "--chromatic",
-        action="store_true",
-        help="measure chromatic aberration instead: against its model and Cycles, noise, cost",
-    )
-    also.add_argument(
-        "--bokeh",
-        nargs="*",
-        metavar="MEASURE",
-        choices=BOKEH_MEASURES,
-        help="measure highlights instead: " + ", ".join(BOKEH_MEASURES) + " (default: all of"
-        " them, which takes hours)",
-    )
-    add(
-        "--samples",
-        metavar="N",
-        type=whole_number(1, MAX_SAMPLES),
-        help="lens samples of the reference method (default 512; 2048 for christmas_tree)",
-    )
-    add(
-        "--resolution",
-        metavar="WxH",
-        type=_resolution,
-        help="default 480x270; 1024x576 with --method adaptive, 320x180 with --chromatic",
-    )
-    add(
-        "--reference",
-        metavar="FILE.exr",
-        type=Path,
-        help="picture to compare a single scene with; shared scenes know theirs",
-    )
-    add("--look", choices=("flat", "lit"), default="flat", help="of shared scenes (default flat)")
-    add("--pictures", metavar="FOLDER", type=Path, help="also write the pictures, as .exr")
-    _add_output_options(parser)
-
-
-def _add_output_options(parser):
-    parser.add_argument("--json", action="store_true", help="print one JSON object on stdout")
-    parser.add_argument(
-        "--verbose", action="store_true", help="show Blender's own messages on stderr"
-    )
+    add_output_options(parser)

@@ -7,6 +7,8 @@ with ``--json`` the answer on stdout is one object in either case.
 import re
 import sys
 import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
 
 from ..errors import (
     AplanatError,
@@ -20,10 +22,19 @@ from . import arguments as words_of
 from .words.console import Console
 from .words.json_file import json_text
 
+
+@dataclass(frozen=True)
+class _Command:
+    """How words become arguments, and arguments what carries them out; see `main`."""
+
+    parse: Callable
+    runner_of: Callable
+
+
 _REFUSALS = (InputError, DeviceUnavailableError, DeviceLimitError)
 
 
-def main(words, program="aplanat"):
+def main(words, program="aplanat", parse=words_of.parse, runner_of=None):
     """Run a command in a Blender where Aplanat is registered.
 
     Parameters
@@ -31,22 +42,29 @@ def main(words, program="aplanat"):
     words : list of str
     program : str
         How the command is called.
+    parse : callable
+        Words and program to arguments; see `arguments.parse`.
+    runner_of : callable, optional
+        Arguments, and a function that registers Aplanat, to what carries them out; default: the
+        commands of this package.
 
     Returns
     -------
     int
         The exit code. Stdout and stderr are as before.
     """
-    return _run(words, program, lambda: None, lambda console: console.close())
+    command = _Command(parse, runner_of or _runner)
+    return _run(command, words, program, lambda: None, lambda console: console.close())
 
 
-def run_process():
-    """Run the command of `sys.argv` as this process, and end it.
+def run_process(parse=words_of.parse, runner_of=None):
+    """Run the command of `sys.argv` as this process, and end it; arguments as of `main`.
 
     Stdout and stderr stay with the command to the end: what Blender still prints while it ends
     belongs to nobody.
     """
-    sys.exit(_run(sys.argv[1:], "aplanat", _register, lambda console: None))
+    command = _Command(parse, runner_of or _runner)
+    sys.exit(_run(command, sys.argv[1:], "aplanat", _register, lambda console: None))
 
 
 def run_in_blender(words):
@@ -56,12 +74,13 @@ def run_in_blender(words):
     -------
     int
     """
-    return _run(words, "aplanat", lambda: None, lambda console: None)
+    command = _Command(words_of.parse, _runner)
+    return _run(command, words, "aplanat", lambda: None, lambda console: None)
 
 
-def _run(words, program, prepare, finish):
+def _run(command, words, program, prepare, finish):
     try:
-        arguments = words_of.parse(words, program)
+        arguments = command.parse(words, program)
     except SystemExit as done:
         return done.code or 0
     except InputError as error:
@@ -71,7 +90,7 @@ def _run(words, program, prepare, finish):
         return 2
     console = Console(arguments.verbose)
     try:
-        return _carry_out(arguments, console, prepare)
+        return _carry_out(command, arguments, console, prepare)
     finally:
         finish(console)
 
@@ -82,9 +101,9 @@ def _register():
     register()
 
 
-def _carry_out(arguments, console, prepare):
+def _carry_out(command, arguments, console, prepare):
     try:
-        answer = _runner(arguments, prepare)(arguments, console)
+        answer = command.runner_of(arguments, prepare)(arguments, console)
     except AplanatError as error:
         for line in _lines(error):
             console.say(line)
@@ -112,20 +131,9 @@ def _runner(arguments, prepare):
     # A lens needs no Blender, and is told sooner than one starts.
     if arguments.command == "lens":
         from .lens.lens_command import lens as run
-    elif arguments.command == "bench" and arguments.lens:
-        from benchmarks.benches.lens import bench_lenses as run
     else:
         prepare()
-        if arguments.command == "render":
-            from .render.render_command import render as run
-        elif arguments.chromatic:
-            from benchmarks.benches.chromatic import bench_chromatic as run
-        elif arguments.bokeh is not None:
-            from benchmarks.bokeh.bench import bench_bokeh as run
-        elif arguments.method == "adaptive":
-            from benchmarks.benches.adaptive import bench_adaptive as run
-        else:
-            from benchmarks.benches.reference_method import bench as run
+        from .render.render_command import render as run
     return run
 
 

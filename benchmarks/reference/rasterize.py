@@ -1,4 +1,4 @@
-"""What one lens sample sees, triangle by triangle: the twin of `passes.surface.surface` and `passes.surface.data`.
+"""What one lens sample sees, triangle by triangle: the twin of `surface` and `data` of the passes.
 
 A pixel belongs to the nearest triangle that covers its middle. Values are interpolated linearly in
 the world, that is, divided by the clip coordinate w on the way.

@@ -460,6 +460,7 @@ def run(count, names, seed=0, say=lambda line: None):
 
 
 def main():
+    """Read mutated lens files and tell what failed."""
     parser = argparse.ArgumentParser(description="Read mutated lens files.")
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=0)

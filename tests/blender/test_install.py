@@ -8,7 +8,7 @@ def test_zip_has_no_development_files(extension_zip):
     assert "blender_manifest.toml" in names
     assert "__init__.py" in names
     for name in names:
-        assert not name.startswith(("tests/", "scripts/", "addon/reference/", "requirements"))
+        assert not name.startswith(("tests/", "scripts/", "benchmarks/", "requirements"))
         assert not name.endswith(".pyc")
 
 

@@ -11,88 +11,137 @@ import pytest
 REPOSITORY = Path(__file__).resolve().parents[2]
 ADDON = REPOSITORY / "addon"
 
-# Rooms from the bottom up; each may import what stands in its list, besides itself and errors.
-# scene is split: its values (snapshot, surface_graph) know no Blender, its readers do.
+# The drawing (docs/architecture.md): rooms from the bottom up, each with the rooms that it may
+# import besides itself and errors. A room may only import rooms that stand above it in this list,
+# so there are no circles between rooms. A room is a folder; its sub-rooms are rooms of their own.
 ROOMS = {
-    "files": set(),
-    "optics": set(),
-    "sampling": set(),
-    "bokeh": {"optics", "sampling"},
-    "lens_io": {"files", "optics", "bokeh", "sampling"},
+    # Values and arithmetic: no Blender, no graphics device.
+    "files": (),
+    "optics": (),
+    "optics.rays": ("optics",),
+    "sampling": (),
+    "lens_bokeh": (),
+    "lens_bokeh.tables": ("optics", "optics.rays", "sampling"),
+    "lens_bokeh.look": ("optics", "lens_bokeh.tables"),
+    "lens_io.glasses": ("optics", "sampling"),
+    "lens_io.toml": ("optics", "optics.rays", "lens_io.glasses"),
+    "lens_io.importers.draft": ("optics", "lens_io.glasses", "lens_io.toml"),
+    "lens_io.importers.zemax": ("optics", "lens_io.importers.draft"),
+    "lens_io.importers.codev": ("optics", "lens_io.importers.draft"),
+    "lens_io.importers": (
+        *("optics", "optics.rays", "lens_io.toml"),
+        *("lens_io.importers.draft", "lens_io.importers.zemax", "lens_io.importers.codev"),
+    ),
+    "lens_io": (
+        *("files", "optics", "lens_bokeh.tables"),
+        *("lens_io.toml", "lens_io.importers"),
+    ),
     # Drawings of lenses, with a plotting library that is imported inside functions.
-    "plots": {"files", "optics", "bokeh", "sampling", "lens_io"},
-    "scene.snapshot": {"sampling", "optics", "bokeh", "scene.surface_graph"},
-    "scene.surface_graph": set(),
-    "device": set(),
-    "passes": {"device", "sampling", "bokeh", "scene.surface_graph", "scene.snapshot"},
-    "reference": {"sampling", "scene.snapshot", "optics", "bokeh"},
-    "scene": {
-        *("sampling", "optics", "bokeh", "lens_io"),
-        *("scene.snapshot", "scene.surface_graph"),
-    },
-    "layers": {"sampling", "scene.snapshot"},
-    "engine": {
-        *("files", "device", "passes", "sampling", "optics", "bokeh"),
-        *("scene", "scene.snapshot", "scene.surface_graph"),
-    },
-    "compositor": {"engine", "scene.snapshot"},
-    "ui": {
-        *("files", "optics", "bokeh", "sampling", "lens_io", "plots"),
-        *("engine", "scene", "scene.snapshot"),
-    },
-    "cli": {
-        *("files", "optics", "bokeh", "sampling", "lens_io", "plots"),
-        *("engine", "scene", "device", "ui"),
-        # Measuring against it, in a checkout.
-        "reference",
-    },
+    "plots": (
+        *("files", "optics", "optics.rays", "sampling"),
+        *("lens_bokeh.look", "lens_bokeh.tables", "lens_io"),
+    ),
+    "snapshot": ("optics", "sampling", "lens_bokeh.look"),
+    "levels.making": ("snapshot",),
+    "levels": ("files", "snapshot", "levels.making"),
+    # The graphics device, and passes on it.
+    "device": (),
+    "passes.surface": ("device", "sampling", "snapshot"),
+    "passes.visibility": ("device", "passes.surface"),
+    "passes.bokeh": ("device", "passes.surface", "passes.visibility"),
+    "passes": ("device", "sampling", "passes.surface", "passes.bokeh"),
+    # Blender's data read into a snapshot.
+    "scene.images": ("snapshot",),
+    "scene.nodes": ("snapshot", "scene.images"),
+    "scene.camera": (
+        *("optics.rays", "sampling", "lens_bokeh.look", "lens_io", "lens_io.glasses"),
+        *("snapshot", "scene.images"),
+    ),
+    "scene.shading": ("snapshot", "scene.images", "scene.nodes"),
+    "scene.geometry": ("snapshot", "scene.camera", "scene.shading"),
+    "scene": ("snapshot", "scene.camera", "scene.geometry", "scene.shading"),
+    # A frame: planned, drawn, shown.
+    "engine.planning": ("sampling", "snapshot", "levels"),
+    "engine.drawing": (
+        *("device", "sampling", "passes", "passes.surface"),
+        *("levels", "levels.making"),
+    ),
+    "engine.visibility": (
+        *("device", "passes.surface", "passes.visibility", "passes.bokeh"),
+        "engine.drawing",
+    ),
+    "engine.bokeh": (
+        *("device", "optics", "lens_bokeh.look", "lens_bokeh.tables", "lens_io"),
+        *("passes", "passes.surface", "passes.bokeh"),
+        *("engine.planning", "engine.visibility"),
+    ),
+    "engine.frame": (
+        *("device", "sampling", "snapshot", "passes", "passes.surface", "passes.bokeh"),
+        *("engine.planning", "engine.drawing", "engine.visibility", "engine.bokeh"),
+    ),
+    "engine": (
+        *("device", "snapshot", "levels", "scene"),
+        *("engine.planning", "engine.drawing", "engine.bokeh", "engine.frame"),
+    ),
+    # What a user meets.
+    "ui.jobs": (),
+    "ui.previews": ("lens_bokeh.look", "plots", "scene.camera", "ui.jobs"),
+    "ui.operators": (
+        *("optics", "sampling", "lens_io", "lens_io.importers.draft"),
+        *("levels", "scene.camera", "ui.jobs"),
+    ),
+    "ui.properties": (
+        *("sampling", "lens_io.glasses", "scene.camera", "ui.operators", "ui.previews"),
+    ),
+    "ui.presets": ("ui.properties",),
+    "ui.panels": (
+        *("optics", "levels", "scene.camera", "engine"),
+        *("ui.jobs", "ui.operators", "ui.presets", "ui.previews"),
+    ),
+    "ui": (),
+    "cli.words": ("files",),
+    "cli.render": (
+        *("files", "device", "sampling", "lens_bokeh.look", "lens_io", "scene", "scene.camera"),
+        *("engine", "cli.words"),
+    ),
+    "cli.lens": (
+        *("files", "optics", "optics.rays", "lens_bokeh.tables", "plots", "scene.camera"),
+        *("lens_io", "lens_io.toml", "lens_io.importers", "cli.words"),
+    ),
+    "cli": ("cli.words", "cli.render", "cli.lens"),
 }
+
+# What stands in no room: the package, its exceptions, and what makes it known to Blender.
+ROOF = {"", "errors", "registration"}
 
 # Modules of Blender that only its Python has.
 BLENDER = {"bpy", "bl_ui", "bl_operators", "bpy_extras", "mathutils", "addon_utils"}
 
 # Where Blender is read or driven. Everything else works on values.
-BLENDER_FACING = {
-    "registration",
-    "cli",
-    "ui",
-    "compositor",
-    "scene",
-    "engine.render_engine",
-    "engine.final_render",
-    "engine.viewport",
-}
-# Whole rooms that run without Blender.
+BLENDER_FACING = {"registration", "cli", "ui", "scene", "engine"}
+# Whole rooms, with their sub-rooms, that run without Blender.
 PURE_ROOMS = tuple(
     f"{name}."
-    for name in ("files", "optics", "bokeh", "sampling", "lens_io", "plots", "device", "passes")
+    for name in (
+        *("files", "optics", "sampling", "lens_bokeh", "lens_io", "plots", "snapshot", "levels"),
+        *("device", "passes", "cli.words", "cli.lens"),
+        *(f"engine.{name}" for name in ("planning", "drawing", "visibility", "bokeh", "frame")),
+    )
 )
 # In a room that may, these may not: they are values or arithmetic.
 BLENDER_FREE = {
-    "scene.snapshot",
-    "scene.surface_graph",
-    "scene.brightness",
-    "scene.changes",
-    "scene.cryptomatte",
-    "scene.vertex_split",
+    "scene.geometry.vertex_split",
     "cli.arguments",
-    "cli.bench_curve",
-    "cli.console",
-    "cli.json_file",
-    "cli.lens",
-    "cli.lens_arguments",
-    "cli.lens_bake",
-    "cli.lens_bench",
-    "cli.lens_import",
-    "cli.lens_info",
-    "cli.lens_list",
-    "cli.lens_plot",
-    "cli.lens_trace",
-    "cli.option_values",
-    "cli.text_table",
-    "cli.picture_metrics",
     "cli.command",
+    "cli.render.sampling_arguments",
+    "engine.outcome",
+    "engine.pacing",
+    "engine.report",
+    "engine.views",
 }
+
+# A folder that one finds one's way in at a glance, and a file that one reads in one sitting.
+MOST_FILES, MOST_LINES = 16, 400
 
 
 @dataclass(frozen=True)
@@ -106,7 +155,9 @@ class Import:
 
 
 def modules():
-    files = sorted(path for path in ADDON.rglob("*.py") if "presets" not in path.parts)
+    # Presets are scripts that Blender runs.
+    presets = ADDON / "ui" / "presets" / "aplanat"
+    files = sorted(path for path in ADDON.rglob("*.py") if presets not in path.parents)
     return {module_name(path): path for path in files}
 
 
@@ -147,25 +198,58 @@ OWN = [found for found in IMPORTS if found.relative]
 
 
 def room(module):
-    if module in ROOMS:
+    """Return the room of a module: the folder that it lies in."""
+    if (ADDON / module.replace(".", "/")).is_dir():
         return module
-    return module.partition(".")[0]
+    return module.rpartition(".")[0]
 
 
-def test_every_module_has_a_room():
-    rooms = {room(name) for name in MODULES if name and "." in name}
-    assert rooms <= set(ROOMS), "describe the new room above: what it may import, and why"
+def test_every_folder_is_a_room_and_every_room_a_folder():
+    folders = {room(name) for name in MODULES} - {""}
+    known = set(ROOMS)
+    assert folders - known == set(), "draw the new room above and in docs/architecture.md"
+    assert {name for name in known - folders if not (ADDON / name.replace(".", "/")).is_dir()} == (
+        set()
+    )
 
 
-@pytest.mark.parametrize("name", sorted({room(n) for n in MODULES if "." in n}))
-def test_room_imports_only_from_below(name):
-    allowed = ROOMS[name] | {name, "errors", ""}
-    wrong = {
-        f"{found.module} imports {found.target}"
-        for found in OWN
-        if room(found.module) == name and "." in found.module and room(found.target) not in allowed
-    }
-    assert not wrong
+def test_rooms_import_downwards():
+    order = list(ROOMS)
+    for name, allowed in ROOMS.items():
+        for other in allowed:
+            assert order.index(other) < order.index(name), f"{name} would climb to {other}"
+
+
+@pytest.mark.parametrize("name", sorted(ROOMS))
+def test_room_imports_what_the_drawing_says(name):
+    inside = [i for i in OWN if i.module not in ROOF and room(i.module) == name]
+    found = {room(i.target) for i in inside if i.target not in ROOF} - {name}
+    assert found <= set(ROOMS[name]), f"{name} imports {sorted(found - set(ROOMS[name]))}"
+    assert set(ROOMS[name]) <= found, f"{name} no longer imports {set(ROOMS[name]) - found}"
+
+
+def test_only_the_command_line_looks_up_to_the_roof():
+    up = {(i.module, i.target) for i in OWN if i.target in ROOF - {"errors"} and i.module}
+    # A process that is no Blender yet makes Aplanat known to it.
+    assert {module for module, _ in up - {("registration", "")}} <= {"cli.command"}
+
+
+def test_nothing_imports_what_measures():
+    assert not [i for i in IMPORTS if i.target.partition(".")[0] in {"benchmarks", "tests"}]
+
+
+@pytest.mark.parametrize("top", ["addon", "benchmarks", "gpu_shaders", "tests", "scripts", "docs"])
+def test_folders_are_small_and_files_short(top):
+    folders, files = {}, {}
+    for path in (REPOSITORY / top).rglob("*"):
+        if "__pycache__" in path.parts or not path.is_file():
+            continue
+        folder = str(path.parent.relative_to(REPOSITORY))
+        folders[folder] = folders.get(folder, 0) + 1
+        if path.suffix in {".py", ".glsl"}:
+            files[str(path.relative_to(REPOSITORY))] = len(path.read_text().splitlines())
+    assert {k: v for k, v in folders.items() if v > MOST_FILES} == {}
+    assert {k: v for k, v in files.items() if v > MOST_LINES} == {}
 
 
 def test_errors_imports_nothing():

@@ -8,7 +8,7 @@ from bl_ui.utils import PresetPanel
 
 _SUBFOLDER = "aplanat/sampling"
 # Blender looks below it for presets/aplanat/sampling.
-_FOLDER = str(Path(__file__).resolve().parent)
+_FOLDER = str(Path(__file__).resolve().parents[1])
 
 
 class APLANAT_OT_sampling_preset_add(AddPresetBase, bpy.types.Operator):
