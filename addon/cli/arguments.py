@@ -129,8 +129,8 @@ def _parser(program):
     parser = Parser(
         prog=program,
         description="Aplanat renders Blender scenes through a camera lens.",
-        epilog="A checkout of the sources has `scripts/aplanat bench` besides. Exit code: 0 success,"
-        " 2 unusable arguments or input, 1 failure.",
+        epilog="A checkout of the sources has `scripts/aplanat bench` besides. Exit code: 0"
+        " success, 2 unusable arguments or input, 1 failure.",
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"aplanat {version()}")
