@@ -103,7 +103,7 @@ def _info(group, work):
     stem = "bokeh_cones_groups" if group else "bokeh_cones"
     return ShaderInfo(
         name=f"aplanat_{stem}",
-        compute=shader_source.load(f"passes/{stem}_comp.glsl"),
+        compute=shader_source.load(f"passes/visibility/{stem}_comp.glsl"),
         typedefs=VISIBILITY_PARAMS.source,
         samplers=tuple(samplers),
         images=tuple(images),
