@@ -12,7 +12,9 @@ to the next.
 
 A tile is done when its error is at most the number that was asked for, the picture when the mean of
 all tiles is. Of a picture whose first samples are far better than that, such as a few lamps before
-a plain wall, the mean tells nothing about the places that matter: there each tile has to be good.
+a plain wall, the mean tells nothing about the places that matter: there the mean is that of the
+tiles that were not good enough at first. (Not the worst of them: what is asked of a picture full
+of things is no more.)
 """
 
 import numpy as np
@@ -27,7 +29,8 @@ _LEAST_POWER, _MOST_POWER = 1.0, 1.5
 # Aims below the number: a picture is stopped when its error looks small, which is more often by
 # chance than not.
 _AIM = 0.93
-# A picture that the fewest samples bring to this share of the number is judged tile by tile.
+# Of a picture that the fewest samples bring to this share of the number, only the tiles that are
+# above it then are judged.
 _PLAIN_SHARE = 0.5
 # Of a comparison with half the samples; the rest is that of one with more of them.
 HALF_SHARE = 0.7
@@ -66,7 +69,8 @@ class TileControl:
         self.active = np.ones(self._share.shape, bool)
         self.errors = None
         self.done = False
-        self._is_plain = False
+        # What the mean that decides is taken over.
+        self._judged = self._share
         self._changes = {}
         self._ratios = []
         self._samples = 0
@@ -136,14 +140,15 @@ class TileControl:
         measured = smoothed(errors)
         if self.errors is None:
             self.errors = measured
-            self._is_plain = self.error <= _PLAIN_SHARE * self.target
+            if self.error <= _PLAIN_SHARE * self.target:
+                self._judge(self.errors > self.target)
         else:
             expected = self.errors * (self._samples / samples) ** self.power
             self.errors = np.where(
                 self.active, _NEW_SHARE * measured + (1.0 - _NEW_SHARE) * expected, self.errors
             )
         self._samples = samples
-        good = self.left == 0 if self._is_plain else self.error <= _AIM * self.target
+        good = (self.errors * self._judged).sum() <= _AIM * self.target
         if samples >= self._most or (samples >= self._least and good):
             self.active = np.zeros_like(self.active)
             self.done = True
@@ -154,6 +159,11 @@ class TileControl:
         """End sampling whatever the error is."""
         self.active = np.zeros_like(self.active)
         self.done = True
+
+    def _judge(self, tiles):
+        """Let only some tiles decide when the picture is done."""
+        share = self._share * tiles
+        self._judged = share / max(share.sum(), 1e-30)
 
     def _narrow(self, factor):
         """Stop the tiles that are good enough, as far as the picture comes to its number so."""
@@ -166,7 +176,7 @@ class TileControl:
         aim = _AIM * self.target
 
         def error_with(chosen):
-            return float((np.where(chosen, factor, 1.0) * self.errors * self._share).sum())
+            return float((np.where(chosen, factor, 1.0) * self.errors * self._judged).sum())
 
         if error_with(wanted) <= aim or error_with(self.active) > aim:
             return wanted
@@ -174,7 +184,7 @@ class TileControl:
         # a few tiles that go on for long cost more than many that go on for a little.
         rest = np.flatnonzero(self.active & ~wanted)
         order = rest[np.argsort(-self.errors.ravel()[rest], kind="stable")]
-        gained = np.cumsum((1.0 - factor) * (self.errors * self._share).ravel()[order])
+        gained = np.cumsum((1.0 - factor) * (self.errors * self._judged).ravel()[order])
         count = int(np.searchsorted(gained, error_with(wanted) - aim)) + 1
         chosen = wanted.copy()
         chosen.ravel()[order[:count]] = True

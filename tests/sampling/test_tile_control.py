@@ -60,6 +60,19 @@ def test_a_picture_that_is_good_enough_stops_at_the_first_look():
     assert control.done
 
 
+def test_a_plain_picture_is_as_good_where_it_is_not_plain_as_a_full_one():
+    errors = np.full((6, 10), 1e-5)
+    errors[2:4, 2:5] = np.array([[0.1, 0.02, 0.04], [0.02, 0.6, 0.05]])
+    control, counts = play(errors, 0.05)
+    assert errors.mean() < 0.5 * 0.05 and not (counts == 16).all()
+    judged = smoothed(errors) > 0.05
+    mean = control.errors[judged].mean()
+    assert 0.4 * 0.05 < mean <= 0.05
+    # The worst tile of a full picture is above the number, too.
+    assert control.errors.max() > 0.05
+    assert (counts[:, 7:] == 16).all()
+
+
 def test_the_least_and_the_most_samples_are_bounds():
     _, counts = play(np.full((6, 10), 0.001), 0.01, least=64)
     assert (counts == 64).all()

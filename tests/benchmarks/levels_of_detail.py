@@ -1,0 +1,136 @@
+"""What levels of detail do to the light and the picture, against the reference method.
+
+Each scene is drawn by the adaptive method with a fixed number of samples: with levels off, with
+levels as chosen, and with every object forced to level 1, 2 and 3; and by the reference method.
+Energy is a sum over the picture, of the channel that differs most. With and without levels the same
+places on the lens are used, but a level moves each highlight and edge a little, so that the samples
+hit others: noise, which two seeds tell from bias. Of the differences `d0` and `d1` that levels make
+with the two, noise is independent and bias is not: the mean of ``d0 d1`` is the bias squared.
+
+    python tests/benchmarks/levels_of_detail.py                         # the shared scenes
+    python tests/benchmarks/levels_of_detail.py fishes:flat --samples 256
+
+Exit code 1 if a bar is missed: energy within 0.3 % as chosen and 1 % forced; PSNR, of the bias
+alone if need be, 42 dB.
+"""
+
+import argparse
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(REPOSITORY))
+
+from addon.cli.picture_metrics import srgb  # noqa: E402  (after the path is set)
+from addon.engine import levels, scene_drawing  # noqa: E402
+from tests.benchmarks.noise_threshold import SCENES, Results, fingerprint, opened  # noqa: E402
+
+CHOSEN, FORCED, PSNR = 0.003, 0.01, 42.0
+
+
+def main():
+    """Measure and print a table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("cases", nargs="*", help="as of noise_threshold.py")
+    parser.add_argument("--resolution", default="240x135")
+    parser.add_argument("--samples", type=int, default=128)
+    parser.add_argument("--folder", type=Path, default=REPOSITORY / "build" / "levels_of_detail")
+    parser.add_argument("--label", default="", help="measure anew under this name")
+    options = parser.parse_args()
+    options.size = tuple(map(int, options.resolution.split("x")))
+    options.cycles = False
+    options.folder.mkdir(parents=True, exist_ok=True)
+    results = Results(options.folder / "levels.jsonl", options.label or fingerprint())
+    cases = options.cases or [f"{name}:{look}" for look in ("flat", "lit") for name in SCENES]
+    print("| scene | chosen | level 1 | 2 | 3 | PSNR | other seed | bias alone | triangles |")
+    print("| --- " * 9 + "|")
+    missed = False
+    for case in cases:
+        key = (case, options.resolution, options.samples, "reference")
+        if key not in results.found:
+            names = ("case", "size", "number", "reference")
+            results.add(dict(zip(names, key, strict=True)) | measured(case, options))
+        text, missing = line(results.found[key])
+        missed |= missing
+        print(text, flush=True)
+    sys.exit(missed)
+
+
+def measured(case, options):
+    """Return what levels do to a case."""
+    bench = opened(case, options)
+    off = [picture(bench, options, seed, uses_levels=False)[0] for seed in (0, 1)]
+    on, work = zip(*(picture(bench, options, seed) for seed in (0, 1)), strict=True)
+    snapshot = bench.sampled("REFERENCE", options.samples)
+    right = bench.draw(replace(snapshot, passes=("Combined",))).picture
+    found = {
+        "off": ratio(off[0], right),
+        "chosen": ratio(on[0], right),
+        "forced": [ratio(forced(bench, options, level), right) for level in (1, 2, 3)],
+        "psnr": decibels(np.square(srgb(on[0]) - srgb(off[0])).mean()),
+        "other_seed": decibels(np.square(srgb(off[1]) - srgb(off[0])).mean()),
+        "bias": decibels(
+            np.mean(
+                [srgb(a) - srgb(b) for a, b in zip(on, off, strict=True)][0]
+                * (srgb(on[1]) - srgb(off[1]))
+            )
+        ),
+        "triangles": work[0]["triangles_submitted"] / max(work[0]["triangles_full_detail"], 1),
+    }
+    bench.close()
+    return found
+
+
+def picture(bench, options, seed, **settings):
+    """Draw a case by the adaptive method; return the picture and the counts of its work."""
+    snapshot = bench.sampled("ADAPTIVE", options.samples, seed=seed, **settings)
+    snapshot = replace(snapshot, passes=("Combined",))
+    bench.make_levels(snapshot)
+    found = bench.draw(snapshot)
+    return found.picture, found.work
+
+
+def forced(bench, options, level):
+    """Draw a case with all objects at a level."""
+    modules = (levels, scene_drawing)
+    own = [(m.choose_levels, m.allowed_levels) for m in modules]
+    for module in modules:
+        module.choose_levels = lambda seen, *_: np.full(len(seen.radius), float(level))
+        module.allowed_levels = lambda chosen, wanted: np.minimum(chosen, len(wanted))
+    try:
+        return picture(bench, options, 0)[0]
+    finally:
+        for module, (choose, allow) in zip(modules, own, strict=True):
+            module.choose_levels, module.allowed_levels = choose, allow
+
+
+def ratio(test, right):
+    """Return the energy over that of the right picture, in the channel where it differs most."""
+    ratios = test.sum(axis=(0, 1), dtype=np.float64) / right.sum(axis=(0, 1), dtype=np.float64)
+    return float(ratios[np.abs(ratios - 1.0).argmax()])
+
+
+def decibels(square):
+    """Return a mean square of differences in dB; none, or less than none by chance, is 99."""
+    return float(min(-10.0 * np.log10(max(square, 1e-30)), 99.0))
+
+
+def line(row):
+    """Return a row of the table, and whether it misses a bar."""
+    checks = [
+        (f"{row['chosen']:.4f}", abs(row["chosen"] - 1.0) > CHOSEN),
+        *((f"{each:.4f}", abs(each - 1.0) > FORCED) for each in row["forced"]),
+        (f"{row['psnr']:.1f}", row["psnr"] < PSNR and row["bias"] < PSNR),
+        (f"{row['other_seed']:.1f}", False),
+        (f"{row['bias']:.1f}", False),
+        (f"{100.0 * row['triangles']:.0f} %", False),
+    ]
+    cells = [f"**{text}**" if missed else text for text, missed in checks]
+    return f"| {row['case']} | {' | '.join(cells)} |", any(missed for _, missed in checks)
+
+
+if __name__ == "__main__":
+    main()
