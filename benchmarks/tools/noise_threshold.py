@@ -9,8 +9,8 @@ goes on when it is started again; results of other sources are measured anew.
 With --cycles, flat scenes are compared with the pictures of Cycles that lie beside the checkout, of
 thousands of samples and twice the size; both then have a box filter of one pixel.
 
-    python tests/benchmarks/noise_threshold.py           # the shared scenes, a focus pull
-    python tests/benchmarks/noise_threshold.py toys:lit pull:3 zoo:7:12 mine.blend
+    python -m benchmarks.tools.noise_threshold           # the shared scenes, a focus pull
+    python -m benchmarks.tools.noise_threshold toys:lit pull:3 zoo:7:12 mine.blend
 
 Exit code 1 if an error is above 1.3 times its number, or below half of it with more than the
 fewest samples.
@@ -28,23 +28,24 @@ from pathlib import Path
 import numpy as np
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(REPOSITORY))
+if str(REPOSITORY) not in sys.path:
+    sys.path.insert(0, str(REPOSITORY))
 
-from addon.cli.bench_frames import BenchScene  # noqa: E402  (after the path is set)
-from addon.cli.picture_metrics import compare, read_picture  # noqa: E402
-from addon.cli.shared_scenes import shared_references, shared_scene  # noqa: E402
-from addon.device.context import ensure_context  # noqa: E402
-from addon.engine.pipeline import FrameRenderer  # noqa: E402
-from addon.engine.plan import plan_frame  # noqa: E402
+from addon.device.context import ensure_context  # noqa: E402  (after the path is set)
+from addon.engine.frame.pipeline import FrameRenderer  # noqa: E402
+from addon.engine.planning.plan import plan_frame  # noqa: E402
 from addon.sampling.rounds import first_look  # noqa: E402
+from benchmarks.benches.frames import BenchScene  # noqa: E402
+from benchmarks.referees.picture_metrics import compare, read_picture  # noqa: E402
+from benchmarks.referees.shared_scenes import shared_references, shared_scene  # noqa: E402
 
 SCENES = ("balls", "toys", "fishes", "street", "christmas_tree", "toy_dinosaurs", "dragons")
 PULL_FRAMES = 8
-# A focus pull is as that of `aplanat bench --focus-pull`, from and to these shares of the distance.
+# A focus pull is as that of `scripts/aplanat bench --focus-pull`, from and to these shares of the distance.
 PULL_FROM, PULL_TO = 3.0 / 4.0, 4.0 / 3.0
 MOST, LEAST = 1.3, 0.5
 _FEWEST_REFERENCE, _TIMED = 256, 8
-_SOURCES = ("addon/engine", "addon/passes", "addon/sampling", "addon/scene", "gpu_shaders")
+_SOURCES = ("addon/engine", "addon/levels", "addon/passes", "addon/sampling", "gpu_shaders")
 
 
 def main():

@@ -7,8 +7,8 @@ places on the lens are used, but a level moves each highlight and edge a little,
 hit others: noise, which two seeds tell from bias. Of the differences `d0` and `d1` that levels make
 with the two, noise is independent and bias is not: the mean of ``d0 d1`` is the bias squared.
 
-    python tests/benchmarks/levels_of_detail.py                         # the shared scenes
-    python tests/benchmarks/levels_of_detail.py fishes:flat --samples 256
+    python -m benchmarks.tools.levels_of_detail                         # the shared scenes
+    python -m benchmarks.tools.levels_of_detail fishes:flat --samples 256
 
 Exit code 1 if a bar is missed: energy within 0.3 % as chosen and 1 % forced; PSNR, of the bias
 alone if need be, 42 dB.
@@ -22,11 +22,13 @@ from pathlib import Path
 import numpy as np
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(REPOSITORY))
+if str(REPOSITORY) not in sys.path:
+    sys.path.insert(0, str(REPOSITORY))
 
-from addon.cli.picture_metrics import srgb  # noqa: E402  (after the path is set)
-from addon.engine import levels, scene_drawing  # noqa: E402
-from tests.benchmarks.noise_threshold import SCENES, Results, fingerprint, opened  # noqa: E402
+from addon.engine.drawing import scene_drawing  # noqa: E402  (after the path is set)
+from addon.levels import choosing  # noqa: E402
+from benchmarks.referees.picture_metrics import srgb  # noqa: E402
+from benchmarks.tools.noise_threshold import SCENES, Results, fingerprint, opened  # noqa: E402
 
 CHOSEN, FORCED, PSNR = 0.003, 0.01, 42.0
 
@@ -95,7 +97,7 @@ def picture(bench, options, seed, **settings):
 
 def forced(bench, options, level):
     """Draw a case with all objects at a level."""
-    modules = (levels, scene_drawing)
+    modules = (choosing, scene_drawing)
     own = [(m.choose_levels, m.allowed_levels) for m in modules]
     for module in modules:
         module.choose_levels = lambda seen, *_: np.full(len(seen.radius), float(level))
