@@ -41,7 +41,7 @@ from benchmarks.referees.shared_scenes import shared_references, shared_scene  #
 
 SCENES = ("balls", "toys", "fishes", "street", "christmas_tree", "toy_dinosaurs", "dragons")
 PULL_FRAMES = 8
-# A focus pull is as that of `scripts/aplanat bench --focus-pull`, from and to these shares of the distance.
+# Of the distance of focus, as of `scripts/aplanat bench --focus-pull`.
 PULL_FROM, PULL_TO = 3.0 / 4.0, 4.0 / 3.0
 MOST, LEAST = 1.3, 0.5
 _FEWEST_REFERENCE, _TIMED = 256, 8
