@@ -30,9 +30,10 @@ void main()
   }
   if (open) {
     vec2 rate = source_reach(visibility_buf);
-    float steps = max(rate.x, rate.y) * max(source.depth - record.x, 0.0);
+    float steps = 0.5 * max(rate.x, rate.y) * max(source.depth - record.x, 0.0);
     float side = visibility_buf.tiles.y * exp2(float(size));
-    uint work = uint(ceil(side * side * (1.0 + 0.5 * steps) / 64.0));
+    float walked = 1.0 + min(steps, float(VISIBILITY_STEPS));
+    uint work = uint(ceil(side * side * walked / 64.0));
     imageAtomicAdd(counts_img, ivec2(COUNT_WORK, 0), work);
   }
 }

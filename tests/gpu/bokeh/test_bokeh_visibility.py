@@ -280,3 +280,12 @@ def test_masks_are_the_same_where_pairs_are_listed_in_parts(monkeypatch):
     _, at_once, _ = scene.find(sources, "RASTER")
     for a, b in zip(in_parts, at_once, strict=True):
         assert (a is None and b is None) or np.array_equal(a, b)
+
+
+def test_rays_are_not_counted_as_longer_than_they_are_walked():
+    # Sources close to a wide lens: the way over the raster is longer than the most steps of a ray.
+    shot = snapshot([*square(0.0, 0.0, 0.11, 0.005), *slanted(9)])
+    wide = ThinLens(1.0, 3.0, Iris())
+    scene = Scene(replace(shot, camera=replace(shot.camera, lens=wide)))
+    _, _, counts = scene.find(sources_at((0.25, 0.3)), "WARP")
+    assert counts.work == (1 + 192) * counts.texels
