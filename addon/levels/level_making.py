@@ -197,24 +197,6 @@ def content_key(mesh, least_triangles):
     return digest.digest()
 
 
-def size_of_levels(levels):
-    """Return how many bytes levels of detail take.
-
-    Parameters
-    ----------
-    levels : iterable of MeshLevel
-
-    Returns
-    -------
-    int
-    """
-    return sum(
-        array.nbytes
-        for level in levels
-        for array in (level.positions, level.triangles, level.merged, *level.attributes.values())
-    )
-
-
 def _shape_key(mesh, positions, places, seams, least_triangles):
     """Hash what the collapses depend on: places, the triangles between them, slots and seams."""
     shape = _bare(mesh, positions, places)

@@ -9,14 +9,16 @@ for those who wait. What is kept from before only saves time: see `level_making`
 import atexit
 import threading
 import weakref
-from collections import OrderedDict, deque
-from dataclasses import dataclass, field
+from collections import deque
+from dataclasses import dataclass
 from functools import cache
 
 from ..errors import RenderCancelledError
 from ..files.cache_folder import cache_folder
 from .level_files import LevelFiles
-from .level_making import LevelMaker, LevelWork, content_key, size_of_levels
+from .level_making import LevelMaker, LevelWork, content_key
+from .level_requests import LevelRequests
+from .made_levels import MadeLevels
 
 _MEMORY_LIMIT = 1 << 30
 _DISK_LIMIT = 2 << 30
@@ -24,58 +26,9 @@ _DISK_LIMIT = 2 << 30
 _POLL_SECONDS = 0.05
 
 
-@dataclass(eq=False)
-class _Client:
-    """What one handle asked for.
-
-    Attributes
-    ----------
-    wanted : dict of int to MeshSnapshot
-        By uid.
-    keys : dict of int to bytes
-        Content of those whose levels were made.
-    queue : OrderedDict of int to MeshSnapshot
-        Those that are still to be made, in that order.
-    batch, done : dict of int to int
-        Triangles of what was asked for since nothing was left to do, and of what is done of it.
-    begun : int
-        Triangles done of the mesh that is being made.
-    """
-
-    least_triangles: int = 0
-    wanted: dict = field(default_factory=dict)
-    keys: dict = field(default_factory=dict)
-    queue: OrderedDict = field(default_factory=OrderedDict)
-    batch: dict = field(default_factory=dict)
-    done: dict = field(default_factory=dict)
-    begun: int = 0
-    errors: dict = field(default_factory=dict)
-    work: LevelWork = field(default_factory=LevelWork)
-    waits: bool = False
-
-    def is_small(self, mesh):
-        return len(mesh.triangles) < 2 * self.least_triangles
-
-    def progress(self):
-        total = sum(self.batch.values())
-        return min(sum(self.done.values()) + self.begun, total), total
-
-    def finish_mesh(self, uid):
-        self.begun = 0
-        if uid in self.batch:
-            self.done[uid] = self.batch[uid]
-
-    def give_up(self):
-        """Ask for nothing that is still to be made."""
-        self.queue.clear()
-        self.batch.clear()
-        self.done.clear()
-        self.begun = 0
-
-
 @dataclass(frozen=True, eq=False)
 class _Job:
-    client: _Client
+    client: LevelRequests
     mesh: object
     least_triangles: int
     generation: int
@@ -104,7 +57,6 @@ class LevelStore:
 
     def __init__(self, memory_limit=_MEMORY_LIMIT, folder=None, disk_limit=_DISK_LIMIT):
         self.work = LevelWork()
-        self._memory_limit = memory_limit
         files = LevelFiles(cache_folder("levels") if folder is None else folder, disk_limit)
         self._maker = LevelMaker(files, memory_limit)
         self._changed = threading.Condition()
@@ -112,8 +64,7 @@ class LevelStore:
         # Of handles that were lost without being closed; taken off where the lock is held, because
         # garbage may be collected anywhere.
         self._abandoned = deque()
-        self._made = OrderedDict()
-        self._sizes = {}
+        self._made = MadeLevels(memory_limit)
         self._generation = 0
         self._job = None
         self._thread = None
@@ -128,7 +79,7 @@ class LevelStore:
         LevelHandle
             To be closed; one that is lost closes itself.
         """
-        client = _Client()
+        client = LevelRequests()
         with self._changed:
             self._clients.append(client)
         handle = LevelHandle(self, client)
@@ -153,7 +104,7 @@ class LevelStore:
     def memory_bytes(self):
         """Bytes of all levels kept in memory."""
         with self._changed:
-            return sum(self._sizes.values())
+            return self._made.bytes
 
     @property
     def generation(self):
@@ -168,11 +119,8 @@ class LevelStore:
             # What is being made at this moment was begun with what is forgotten now.
             self._generation += 1
             self._made.clear()
-            self._sizes.clear()
             for client in self._clients:
-                client.keys.clear()
-                client.errors.clear()
-                client.give_up()
+                client.begin_anew()
                 self._enqueue(client)
 
     def close(self):
@@ -191,10 +139,8 @@ class LevelStore:
         with self._changed:
             if client in self._clients:
                 self._clients.remove(client)
-                client.give_up()
-                client.wanted.clear()
-                client.keys.clear()
-                self._evict()
+                client.end()
+                self._make_room()
                 self._changed.notify_all()
 
     def _forget_abandoned(self):
@@ -204,51 +150,20 @@ class LevelStore:
     def _request(self, client, meshes, least_triangles):
         with self._changed:
             self._forget_abandoned()
-            if least_triangles != client.least_triangles:
-                client.least_triangles = least_triangles
-                client.keys.clear()
-                client.give_up()
-            client.wanted = {mesh.uid: mesh for mesh in meshes}
-            client.keys = {u: k for u, k in client.keys.items() if u in client.wanted}
-            client.errors = {u: e for u, e in client.errors.items() if u in client.wanted}
-            for uid in [uid for uid in client.queue if uid not in client.wanted]:
-                del client.queue[uid]
-                client.batch.pop(uid, None)
+            client.replace(meshes, least_triangles)
             self._enqueue(client)
-            self._evict()
+            self._make_room()
 
     def _ready(self, client, uid):
         with self._changed:
-            mesh = client.wanted.get(uid)
-            if mesh is not None and client.is_small(mesh):
-                return ()
-            return self._made.get(client.keys.get(uid))
+            return client.levels_of(uid, self._made)
 
     def _is_made_for(self, client):
         return self._job is not None and self._job.client is client
 
     def _enqueue(self, client):
-        """Put what a client wants and lacks into its queue, the meshes with most triangles last."""
-        current = self._job.mesh.uid if self._is_made_for(client) else None
-        if current not in client.batch:
-            # Given up; it ends without levels.
-            current = None
-        missing = [
-            mesh
-            for uid, mesh in client.wanted.items()
-            if client.keys.get(uid) not in self._made
-            and uid not in client.queue
-            and uid not in client.errors
-            and uid != current
-            and not client.is_small(mesh)
-        ]
-        if missing and not client.queue and current is None:
-            client.batch.clear()
-            client.done.clear()
-        for mesh in sorted(missing, key=lambda mesh: len(mesh.triangles)):
-            client.queue[mesh.uid] = mesh
-            client.batch[mesh.uid] = len(mesh.triangles)
-            client.done.pop(mesh.uid, None)
+        """Have made what a client wants and lacks."""
+        client.enqueue(self._made, self._job.mesh.uid if self._is_made_for(client) else None)
         if client.queue and self._thread is None and not self._stopping:
             self._thread = threading.Thread(target=self._run, name="aplanat-levels", daemon=True)
             self._thread.start()
@@ -303,11 +218,10 @@ class LevelStore:
         if error is not None and wanted:
             client.errors[uid] = error
         if levels is not None:
-            self._made[key] = levels
-            self._sizes[key] = size_of_levels(levels)
+            self._made.add(key, levels)
             if wanted:
                 client.keys[uid] = key
-            self._evict()
+            self._make_room()
         if levels is not None or error is not None:
             client.finish_mesh(uid)
 
@@ -322,16 +236,8 @@ class LevelStore:
                 raise RenderCancelledError("levels of detail are not needed any more")
             client.begun = done
 
-    def _evict(self):
-        used = {key for client in self._clients for key in client.keys.values()}
-        for key in used & self._made.keys():
-            self._made.move_to_end(key)
-        spare = sum(size for key, size in self._sizes.items() if key not in used)
-        for key in [key for key in self._made if key not in used]:
-            if spare <= self._memory_limit:
-                break
-            del self._made[key]
-            spare -= self._sizes.pop(key)
+    def _make_room(self):
+        self._made.make_room({key for client in self._clients for key in client.keys.values()})
 
 
 class LevelHandle:

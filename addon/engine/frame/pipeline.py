@@ -4,11 +4,8 @@ Only the sums of the samples and the Cryptomatte tables outlive a sample, so mem
 on their number.
 """
 
-import time
 from contextlib import nullcontext
 from dataclasses import replace
-
-import numpy as np
 
 from ...device import geometry, keeping, readback
 from ...device.targets import Targets, TargetSpec
@@ -18,10 +15,10 @@ from ...passes.surface import chromatic, surface
 from ..bokeh.stage import BokehStage, highlight_buffer
 from ..drawing.scene_drawing import DrawingCounts, SceneDrawing
 from ..drawing.view_resources import chromatic_resources, view_params
-from ..planning.bokeh_plan import draft_of
 from ..planning.plan import extended
 from ..visibility.stage import SceneOccluders
 from . import render_passes, sample_sums
+from .frame_bokeh import FrameBokeh
 from .frame_pictures import FramePictures
 from .readable_frame import ReadableFrame
 from .subsampling import SubsampleBlur
@@ -29,8 +26,6 @@ from .tile_sampling import TileSampling
 
 # Samples that may wait in the device's queue: the queue's memory, too, is bounded.
 _SAMPLES_IN_FLIGHT = 32
-# A bokeh that takes no longer needs no draft, s.
-_QUICK = 0.03
 
 
 class FrameRenderer(ReadableFrame):
@@ -46,18 +41,15 @@ class FrameRenderer(ReadableFrame):
     Attributes
     ----------
     samples_done : int
-    bokeh_drafted : bool
-        What is shown is a draft of the bokeh, or none yet.
     """
 
     def __init__(self, plan, snapshot, buffers, drafts=False, leader=None):
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
         self._content = self._levels = self._drawing = self._blur = self._plain = None
-        self._target = self._bokeh = self._occluders = self._pictures = None
+        self._target = self._occluders = self._pictures = self._targets = None
         self._graded = {}
-        self._targets = self._refining = None
-        self._bokeh_seconds = np.inf
+        self._bokeh = FrameBokeh()
         self.restart(plan, snapshot, drafts, leader)
 
     def restart(self, plan, snapshot, drafts=False, leader=None):
@@ -75,7 +67,7 @@ class FrameRenderer(ReadableFrame):
             Whose tiles are drawn, with `automatic` sampling of a picture beside another.
         """
         keeping.let_go()
-        self._stop_refining()
+        self._bokeh.stop()
         self.plan = plan
         self.samples_done = 0
         self._stopped = False
@@ -108,12 +100,7 @@ class FrameRenderer(ReadableFrame):
             self._blur = SubsampleBlur(plan, self._drawing.nearest, wavelengths)
         # A draft of the bokeh comes and goes with the time that is left: it must decide nothing.
         self._measures_bokeh = bool(plan.bokeh) and not drafts
-        self._bokeh = self._whole = self._draft = None
-        if plan.bokeh:
-            self._bokeh = self._whole = self._stage(plan)
-            if drafts and self._bokeh_seconds > _QUICK:
-                self._draft = self._stage(replace(plan, bokeh=draft_of(plan.bokeh)))
-        self.bokeh_drafted = self._draft is not None
+        self._bokeh.restart(plan, self._stage, drafts)
         self._prepare_targets()
         self._pictures = FramePictures(
             plan,
@@ -160,17 +147,22 @@ class FrameRenderer(ReadableFrame):
     @property
     def highlights(self):
         """What became of the frame's highlights, as `HighlightCounts`; None without bokeh."""
-        return self._bokeh.counts if self._bokeh else None
+        return self._bokeh.stage.counts if self._bokeh.stage else None
 
     @property
     def fates(self):
         """As `BokehStage.fates`; empty without bokeh."""
-        return self._bokeh.fates if self._bokeh else {}
+        return self._bokeh.stage.fates if self._bokeh.stage else {}
 
     @property
     def report(self):
         """What is not drawn as the camera asks, one sentence each; known after a sample."""
-        return self._bokeh.report if self._bokeh else ()
+        return self._bokeh.stage.report if self._bokeh.stage else ()
+
+    @property
+    def bokeh_drafted(self):
+        """Whether what is shown is a draft of the bokeh, or none yet."""
+        return self._bokeh.drafted
 
     def _prepare_targets(self):
         size = (self.plan.width, self.plan.height)
@@ -287,13 +279,9 @@ class FrameRenderer(ReadableFrame):
         readback.wait(self._targets.framebuffer("sum"))
 
     def _render_sample(self, index, stage):
-        if self._bokeh and index == 0:
+        if self._bokeh.stage and index == 0:
             with stage("bokeh"):
-                self._bokeh = self._draft or self._whole
-                start = time.perf_counter()
                 self._bokeh.run(self._fullscreen, self._targets, self._pixels, stage)
-                if self._bokeh is self._whole:
-                    self._bokeh_seconds = time.perf_counter() - start
         with stage("surfaces"):
             self._draw_sample(index)
         with stage("sum"):
@@ -302,25 +290,9 @@ class FrameRenderer(ReadableFrame):
 
     def refine_bokeh(self):
         """Make a part of the whole bokeh; the last part replaces the draft."""
-        if not self.bokeh_drafted:
-            return
-        self._targets.forget_framebuffers()
-        if self._refining is None:
-            self._refining = self._whole.steps(self._fullscreen, self._targets, self._pixels)
-            self._bokeh_seconds = 0.0
-        start = time.perf_counter()
-        done = next(self._refining, self) is self
-        self._bokeh_seconds += time.perf_counter() - start
-        if done:
-            self._refining = None
-            self._bokeh = self._whole
-            self.bokeh_drafted = False
-
-    def _stop_refining(self):
-        if self._refining is not None:
-            self._refining.close()
-            self._refining = None
-            self._bokeh_seconds = np.inf
+        if self.bokeh_drafted:
+            self._targets.forget_framebuffers()
+            self._bokeh.refine(self._fullscreen, self._targets, self._pixels)
 
     def _draw_sample(self, index):
         targets = self._targets
@@ -386,13 +358,13 @@ class FrameRenderer(ReadableFrame):
 
     def release(self):
         """Give back to the device what nobody else holds; the renderer is of no use after it."""
-        self._stop_refining()
+        self._bokeh.release()
         self._release_targets()
         if self._plain:
             self._plain.release()
         self._plain = self._buffers = self._drawing = self._blur = self._graded = None
         self._tiles = None
-        self._bokeh = self._whole = self._draft = self._occluders = self._pictures = None
+        self._occluders = self._pictures = None
         keeping.let_go()
 
     def _release_targets(self):

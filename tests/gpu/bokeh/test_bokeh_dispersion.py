@@ -205,7 +205,7 @@ def test_every_band_lies_within_what_culling_allows_for():
 def test_a_draft_has_few_bands_and_the_same_light():
     snapshot = with_bokeh(scene("several", aberration()), passes=("Combined", "Bokeh"))
     renderer = make_renderer(snapshot)
-    renderer._bokeh_seconds = np.inf
+    renderer._bokeh.seconds = np.inf
     plan = plan_frame(snapshot)
     renderer.restart(plan, snapshot, drafts=True)
     renderer.advance(plan.samples)

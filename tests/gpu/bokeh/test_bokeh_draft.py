@@ -57,7 +57,7 @@ def snapshot():
 def renderer(snapshot):
     renderer = make_renderer(snapshot)
     # However quick the device is.
-    renderer._bokeh_seconds = np.inf
+    renderer._bokeh.seconds = np.inf
     begin(renderer, snapshot)
     yield renderer
     renderer.release()
@@ -120,7 +120,7 @@ def test_a_movement_in_between_begins_anew(renderer, snapshot):
 
 
 def test_a_quick_bokeh_has_no_draft(renderer, snapshot):
-    renderer._bokeh_seconds = 0.001
+    renderer._bokeh.seconds = 0.001
     begin(renderer, snapshot)
     assert not renderer.bokeh_drafted
     renderer.advance(4)

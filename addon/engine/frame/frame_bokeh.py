@@ -1,0 +1,83 @@
+"""The bokeh of a frame as time goes on: whole at once, or a draft first that the whole replaces."""
+
+import time
+from contextlib import nullcontext
+from dataclasses import replace
+
+import numpy as np
+
+from ..planning.bokeh_plan import draft_of
+
+# A bokeh that takes no longer needs no draft, s.
+_QUICK = 0.03
+
+
+class FrameBokeh:
+    """Runs the bokeh of a frame, and of the same frame with another view after that.
+
+    Attributes
+    ----------
+    stage : BokehStage or None
+        Made what is shown; None without bokeh.
+    drafted : bool
+        What is shown is a draft, or none yet.
+    seconds : float
+        What the last whole bokeh took; infinite while none was made.
+    """
+
+    def __init__(self):
+        self.stage = None
+        self.drafted = False
+        self.seconds = np.inf
+        self._whole = self._draft = self._refining = None
+
+    def restart(self, plan, make_stage, drafts):
+        """Begin a frame anew.
+
+        Parameters
+        ----------
+        plan : FramePlan
+        make_stage : callable
+            Returns the `BokehStage` of a plan.
+        drafts : bool
+            Begin with a draft, unless the last whole bokeh was quick.
+        """
+        self.release()
+        if plan.bokeh:
+            self.stage = self._whole = make_stage(plan)
+            if drafts and self.seconds > _QUICK:
+                self._draft = make_stage(replace(plan, bokeh=draft_of(plan.bokeh)))
+        self.drafted = self._draft is not None
+
+    def run(self, fullscreen, targets, view, stage=nullcontext):
+        """Make the draft, or the whole without one; as `BokehStage.run`."""
+        self.stage = self._draft or self._whole
+        start = time.perf_counter()
+        self.stage.run(fullscreen, targets, view, stage)
+        if self.stage is self._whole:
+            self.seconds = time.perf_counter() - start
+
+    def refine(self, fullscreen, targets, view):
+        """Make a part of the whole bokeh; the last part replaces the draft."""
+        if self._refining is None:
+            self._refining = self._whole.steps(fullscreen, targets, view)
+            self.seconds = 0.0
+        start = time.perf_counter()
+        done = next(self._refining, self) is self
+        self.seconds += time.perf_counter() - start
+        if done:
+            self._refining = None
+            self.stage = self._whole
+            self.drafted = False
+
+    def stop(self):
+        """Give back what a whole bokeh that is half done holds on the device."""
+        if self._refining is not None:
+            self._refining.close()
+            self._refining = None
+            self.seconds = np.inf
+
+    def release(self):
+        """Give back everything; how long the last one took is remembered."""
+        self.stop()
+        self.stage = self._whole = self._draft = None
