@@ -69,22 +69,27 @@ class VisibilityCounts:
         return self.pairs * CLUSTER
 
 
-def note(found):
+def note(found, room=LARGEST_ATLAS):
     """Return the counts of a table of counts, as `VisibilityCounts`.
 
     Parameters
     ----------
     found : ndarray of shape (N,)
         See `passes.visibility.culling`.
+    room : int
+        Texels that masks may take; where they are made smaller, less is walked.
 
     Returns
     -------
     VisibilityCounts
     """
     states = culling.STATES.items()
+    masks = found[culling.COUNT_SIZES :][: culling.SIZES].astype(np.int64)
+    asked_for = int((masks * _sides(len(masks)) ** 2).sum())
+    made = int((masks * lay_out(masks, room).sizes[:, 2] ** 2).sum())
     return VisibilityCounts(
         **{name: sum(int(found[place]) for place in places) for name, places in states},
-        work=64 * int(found[culling.COUNT_WORK]),
+        work=64 * int(found[culling.COUNT_WORK]) * made // max(asked_for, 1),
         pairs=int(found[culling.COUNT_PAIRS]),
         surface_pairs=int(found[culling.COUNT_GROUPS :].sum()),
     )
@@ -243,12 +248,17 @@ def lay_out(numbers, most_texels=LARGEST_ATLAS):
     AtlasLayout
     """
     numbers = np.asarray(numbers, np.int64)
-    sides = culling.LEAST_SIDE << np.arange(len(numbers))
+    sides = _sides(len(numbers))
     largest = sides[-1]
     while (numbers * sides**2).sum() > most_texels and largest > culling.LEAST_SIDE // 4:
         largest //= 2
         sides = np.minimum(sides, largest)
     return _stack(numbers, sides)
+
+
+def _sides(kinds):
+    """Return the sides of masks of each size where there is room for all, texels."""
+    return culling.LEAST_SIDE << np.arange(kinds)
 
 
 def lay_out_more(layout, before, numbers):

@@ -274,7 +274,7 @@ class _Search:
 
     def _read_counts(self):
         self._found = np.asarray(self._tables.counts.read()).ravel().astype(np.int64)
-        return note(self._found)
+        return note(self._found, self._room())
 
     def _note_masks(self, counts):
         found = np.asarray(self._tables.counts.read()).ravel()

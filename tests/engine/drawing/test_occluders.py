@@ -12,7 +12,7 @@ from addon.engine.drawing.occluders import (
     depth_first,
     occluder_tables,
 )
-from addon.engine.visibility.plan import lay_out, lay_out_more
+from addon.engine.visibility.plan import lay_out, lay_out_more, note
 from addon.passes.visibility import culling
 
 
@@ -97,6 +97,17 @@ def test_many_masks_share_the_room_that_there_is():
     layout = lay_out(many, room)
     assert (sides[1] ** 2 * 10000).sum() <= room
     assert layout.width * layout.height < 1.2 * room
+
+
+def test_the_work_of_rays_is_that_of_the_masks_that_there_is_room_for():
+    found = np.zeros(culling.COUNT_GROUPS, np.int64)
+    found[culling.COUNT_SIZES + 5] = 1000
+    side = culling.LEAST_SIDE << 5
+    # Ten steps a texel.
+    found[culling.COUNT_WORK] = 1000 * side**2 * 10 // 64
+    assert note(found, 1000 * side**2).work == 1000 * side**2 * 10
+    assert note(found, 100 * side**2).work == 1000 * (side // 4) ** 2 * 10
+    assert note(np.zeros_like(found)).work == 0
 
 
 @pytest.mark.parametrize("leaves", [1, 8, 9, 65, 700])
