@@ -15,7 +15,7 @@ _FOCUS = ("aplanat_accumulate_focus", "passes/focus_frag.glsl", ("FLOAT", "out_s
 
 
 @variants(
-    # Sharpness has no colour.
+    # The focus matte has one channel and no tint.
     allowed=lambda kind, subpixels, tinted: kind is _PICTURE or not tinted,
     kind=(_PICTURE, _FOCUS),
     subpixels=(1, 2, 3, 4),
@@ -57,13 +57,13 @@ def accumulate(fullscreen, sample, weights, tint=None):
 
 
 def accumulate_focus(fullscreen, mattes, weights):
-    """Add a sample's share of sharpness to the bound frame buffer of one channel.
+    """Add a lens sample's focus matte to the bound frame buffer of one channel.
 
     Parameters
     ----------
     fullscreen : GPUBatch
     mattes : GPUTexture
-        Second target of `surface.COLOR_AND_MATTES`, as large as the sample.
+        Second target of `passes.surface.surface.COLOR_AND_MATTES`, as large as the sample.
     weights : ndarray of shape (2, k)
     """
     _add(fullscreen, _FOCUS, mattes, weights)

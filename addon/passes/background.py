@@ -1,4 +1,4 @@
-"""What surrounds the scene, behind it: the world at infinity, seen through the lens (methods 1)."""
+"""The background: the world at infinity, seen through the lens (methods 1)."""
 
 from ..device import shader_source, state
 from ..device.shader_variants import variants
@@ -11,7 +11,7 @@ from .surface.surface import HIGHLIGHT_PARAMS, VIEW_PARAMS
 
 
 @variants(
-    # Highlights are listed for no wavelength of their own.
+    # The search for highlights has no wavelength of its own.
     allowed=lambda define, in_wavelengths: define != "EXCESS" or not in_wavelengths,
     define=(None, "HIGHLIGHTS", "EXCESS"),
     in_wavelengths=(False, True),
@@ -47,7 +47,7 @@ def draw(
     highlights=None,
     wavelength=None,
 ):
-    """Draw the world's image where no surface is; needs the surfaces' depth.
+    """Draw the world's image where the depth buffer shows no surface.
 
     Parameters
     ----------
@@ -59,8 +59,8 @@ def draw(
     lens_sample : sequence of 4 float
         Place on the lens in m, jitter in clip units.
     highlights : GPUUniformBuf or None
-        `HighlightParams`: without the light that is splatted.
-    wavelength : chromatic.ChromaticSample, optional
+        `HighlightParams`: the light that is splatted as bokeh is left out.
+    wavelength : passes.surface.chromatic.ChromaticSample, optional
     """
     state.behind()
     define = None if highlights is None else "HIGHLIGHTS"
@@ -69,7 +69,7 @@ def draw(
 
 
 def list_highlights(fullscreen, view_buffer, environment_buffer, image, split, lists):
-    """Append to lists the light of the world's image above the threshold.
+    """Append the texels of the world's image above the highlight threshold to fragment lists.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def list_highlights(fullscreen, view_buffer, environment_buffer, image, split, l
         As for `draw`; seen from the lens' centre.
     split : GPUUniformBuf
         `HighlightParams`.
-    lists : passes.highlights.FragmentLists
+    lists : passes.bokeh.highlights.FragmentLists
         Cleared.
     """
     state.overwrite()

@@ -17,7 +17,7 @@ from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from ..sampling.tile_control import TILE
 from .accumulate import padded
 
-# Channel of `surface.COLOR_AND_MATTES`' second target that holds the id.
+# Channel of the second target of `passes.surface.surface.COLOR_AND_MATTES` that holds the id.
 CHANNELS = {"CryptoObject": 0, "CryptoMaterial": 1}
 
 _GROUP = 8
@@ -88,11 +88,11 @@ def count(mattes, tables, kinds, weights, active=None):
     tables : GPUTexture
         ``slot_pairs(kinds)`` layers a kind, cleared to zero before the first sample.
     kinds : dict of str to int
-        As `render_passes.cryptomatte_kinds` gives them.
+        As `engine.frame.render_passes.cryptomatte_kinds` gives them.
     weights : ndarray of shape (2, k)
         Of the columns and rows of a pixel's sub-pixels; `mattes` is ``k`` times as large.
     active : GPUTexture or None
-        1 for the tiles that count, else 0; None: all.
+        1 for the tiles that the sample is drawn for, else 0; None: all tiles.
     """
     subpixels = len(weights[0])
     shader = compile_shader(_count_info(slot_pairs(kinds), subpixels, active is not None))
@@ -125,7 +125,7 @@ def draw_ranks(fullscreen, tables, kinds, kind, index, weight, scales=None):
     weight : float
         Summed weight of the samples.
     scales : GPUTexture or None
-        Instead: one over that of each tile.
+        Used instead of `weight`: one over the summed weight of each tile.
     """
     pairs = slot_pairs(kinds)
     shader = compile_shader(_rank_info(pairs, scales is not None))

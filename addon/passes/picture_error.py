@@ -1,8 +1,8 @@
 """The error of a picture, tile by tile, from how it changed while samples were added.
 
-In units of the number for quality: 1 - SSIM of the picture as displayed in sRGB (Wang et al., IEEE
+In units of the noise threshold: 1 - SSIM of the picture as displayed in sRGB (Wang et al., IEEE
 TIP 13(4), 2004; Gaussian window, sigma 1.5 px). Windows lie every 4 px: they overlap so much that
-more would tell nothing new. A picture's alpha counts where it is worse than its colours.
+a denser grid would add no information. Alpha counts where its error is larger than the colours'.
 """
 
 from ..device import shader_source, state
@@ -58,7 +58,7 @@ def specs(width, height, pictures):
         Also ``windows`` and ``tile_errors``.
     """
     return [
-        # Half floats hold encoded values to a tenth of what a display shows of them.
+        # Half floats hold sRGB-encoded values to a tenth of a step of an 8-bit display.
         *(TargetSpec(name, "RGBA16F") for name in pictures),
         TargetSpec("windows", "RGBA32F", size=(-(-width // STRIDE), -(-height // STRIDE))),
         TargetSpec("tile_errors", "RGBA32F", size=(-(-width // TILE), -(-height // TILE))),
@@ -99,7 +99,7 @@ def measure(fullscreen, targets, picture, earlier, rest):
     picture, earlier : str
         Names of the pictures.
     rest : float
-        Variance of the picture's error over that of its change since the earlier one.
+        Variance of the error that is left over the variance of the change since `earlier`.
     """
     state.overwrite()
     with targets.framebuffer("windows").bind():

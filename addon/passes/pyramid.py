@@ -1,4 +1,4 @@
-"""Pyramid of a lens sample: means of its colour and extremes of its depth over larger squares."""
+"""Mip pyramid of a lens sample: mean colours and depth ranges of ever larger squares."""
 
 from ..device import shader_source
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
@@ -19,7 +19,7 @@ _INFO = ShaderInfo(
 
 
 def build(sample, depth, means, ranges, top, levels):
-    """Fill a pyramid.
+    """Fill the mip pyramid of a lens sample.
 
     Parameters
     ----------

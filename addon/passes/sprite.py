@@ -1,4 +1,4 @@
-"""Drawings of one object that several lens samples share: kept as sprites, copied (methods 4)."""
+"""Sprites: one drawing of an object that is copied for several lens samples (methods 4)."""
 
 from ..device import shader_source, state
 from ..device.shader_variants import variants
@@ -48,7 +48,7 @@ def copy(fullscreen, color, depth, mattes, origin):
     ----------
     fullscreen : GPUBatch
     color, depth : GPUTexture
-        Of the sprite; its depth is a colour.
+        Of the sprite; depth lies in a colour texture, not in a depth buffer.
     mattes : GPUTexture or None
     origin : tuple of 2 int
         Texel of the sprite that comes to lie at texel 0, 0.

@@ -65,17 +65,17 @@ def blur(
     depths : sequence of 2 float
         Least and largest value that the depth buffer may have.
     cell : float
-        Side of the part of the lens that a ray stands for, m.
+        Side of the part of the lens that a subsample's ray stands for, m.
     top : int
-        Levels of means that are used; 0 uses none.
+        Levels of the pyramid's mean colours that are used; 0 uses none.
     levels : int
-        Levels of ranges.
+        Levels of its depth ranges.
     weight : float
     index, count : int
-        Row of the offsets, and how many there are in it.
+        Row of the offsets, and number of subsamples in it.
     gain : sequence of 4 float, optional
-        With chromatic aberration: of the sweep, by the inverse of the focus distance.
-    wavelength : chromatic.ChromaticSample, optional
+        With chromatic aberration: change of `sweep` by the inverse of the focus distance.
+    wavelength : passes.surface.chromatic.ChromaticSample, optional
         The sample's; its subsamples have the same.
     """
     state.additive()

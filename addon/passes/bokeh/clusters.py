@@ -1,15 +1,16 @@
-"""Merging similar highlights: fewer sources that look the same (methods 9).
+"""Clustering of highlights: similar sources are merged into fewer that look the same (methods 9).
 
-As in the reduction of a picture's mip levels, neighbours are merged level by level, but in cells of
-world space that stay where they are while the camera moves: a highlight does not change its
-company because the raster of pixels slides over the scene. The cells of level l have sides of
-``2^l`` times a share of the circle of confusion in object space; the sources in a cell become one
-where that does no visible harm, else they go on as they are. Instead of a horizontal and a vertical
-pass, each level has two with cells half a side apart: what a border parts meets in the other pass.
+Neighbours are merged level by level, as in the reduction of a mip pyramid, but in cells of world
+space that stay where they are while the camera moves: which highlights merge does not depend on
+how the raster of pixels lies over the scene, so clusters do not flicker. The cells of level l have
+sides of ``2^l`` times a share of the circle of confusion in object space; the sources in a cell
+become one where that does no visible harm (see `Similarity`), else they go on as they are. Instead
+of a horizontal and a vertical pass, each level has two passes whose cells are half a side apart:
+sources on both sides of a cell's border meet in the other pass.
 
-What is merged has the sum of the energies, their mean place, and the extent of a square that
-spreads light as they did. Energies are added up as whole numbers: no order of the device's threads
-changes a bit, and no energy is lost.
+A merged source has the summed energy and the mean place of its parts, and the extent of a square
+with the variance of their places. Energies are added up as whole numbers: the order of the device's
+threads changes no bit, and no energy is lost.
 
 References
 ----------
@@ -30,7 +31,7 @@ from ..visibility.prefix_sums import COLUMNS
 
 CLUSTER_PARAMS = UniformStruct("shared/cluster_params.glsl", "ClusterParams")
 
-# More are not compared with one another.
+# Most sources that are compared pair by pair.
 MOST_PAIRED = 8192
 
 _THREADS = 64
@@ -209,8 +210,8 @@ def cluster(sources, count, parameters, similarity):
     count : int
         How many are left.
     unpaired : int
-        How many were too many to be compared with one another; 0 where that was done, or not asked
-        for.
+        Number of sources where they were too many to be compared pair by pair; 0 where they were
+        compared, or pairwise merging was not asked for.
     """
     rows = -(-count // COLUMNS)
     slots = 1 << int(2 * count - 1).bit_length()
@@ -232,7 +233,7 @@ def cluster(sources, count, parameters, similarity):
             (level, shift) for level in range(1, similarity.levels + 1) for shift in (0.0, 0.5)
         ]
         cells, unpaired = len(steps), 0
-        # None stands for pairs.
+        # None as a level stands for pairwise merging.
         steps += [(similarity.levels, None)] * similarity.pairs
         for done in range(len(steps)):
             if done == cells and run.number() > MOST_PAIRED:
@@ -248,14 +249,16 @@ def cluster(sources, count, parameters, similarity):
 
 
 def soften(sources, count, visibility, soft):
-    """Blur the masks of merged sources as far as their parts see what hides them shifted.
+    """Blur the visibility masks of merged sources by the parallax of their occluders.
+
+    The parts of a merged source see an occluder at different places on the lens.
 
     Parameters
     ----------
     sources : GPUTexture
         First texture of the list.
     count : int
-    visibility : engine.bokeh_visibility.Visibility
+    visibility : engine.visibility.stage.Visibility
         With masks.
     soft : GPUTexture
         R16F, as large as the atlas; gets the blurred masks.
@@ -297,7 +300,7 @@ class _Run:
         return int(np.asarray(self._tables[f"number_{self._turn}"].read()).ravel()[0])
 
     def group(self, sources, level, shift):
-        """Say for every source which is the first of its group."""
+        """Find the group of each source, named by the number of its first member."""
         clear = ("sizes", "starts", "merged", "table", "marks")
         for name in clear:
             self._tables[name].clear(format="UINT", value=(0,))
@@ -312,7 +315,7 @@ class _Run:
             self._step(_COUNT_PAIRS)
 
     def merge(self, sources, target):
-        """Merge the groups where that is harmless; the result is in `target`."""
+        """Merge the groups whose harm is small enough; the result is in `target`."""
         self._scan()
         self._step(_FILL, cursors_img="marks")
         self._step(_MERGE, tuple(zip(("a_img", "b_img"), sources, strict=True)))

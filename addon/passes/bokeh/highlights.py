@@ -1,9 +1,10 @@
 """From drawn surfaces to a list of highlights, in an order that is always the same (methods 9).
 
-Surfaces that shine are drawn once, into a raster with several texels a pixel; each fragment
-brighter than the threshold is appended to its texel's list, whatever lies in front. The texels'
-lists are then put in order, the highlights of each pixel counted, the counts added up, and each
-pixel writes its own to where they belong. Only tiles in which anything shines take part.
+Surfaces that may exceed the highlight threshold are drawn once, into a raster with several texels a
+pixel; each fragment brighter than the threshold is appended to its texel's list, whatever lies in
+front. The texels' lists are then sorted by depth, the highlights of each pixel counted, prefix sums
+of the counts taken, and each pixel writes its highlights to its place in the list. Only tiles with
+fragments in them take part.
 
 The list of highlights lies in two textures of `COLUMNS` columns: x, y, depth (camera space, m) and
 extent (px); energy (radiance times pixels) and the region of the lens that the highlight stands
@@ -34,7 +35,7 @@ from ..visibility.prefix_sums import COLUMNS
 TILE = 8
 
 _THREADS = 64
-# Groups along the first axis of a dispatch, at most.
+# Most groups along the first axis of a dispatch.
 _GROUPS = 16384
 
 _DEFINES = (("SOURCE_COLUMNS", f"{COLUMNS}u"),)
@@ -48,7 +49,7 @@ APPEND_IMAGES = (
     ("RGBA32F", "FLOAT_2D", "light_img", ("WRITE",)),
     ("RGBA32UI", "UINT_2D", "nodes_img", ("WRITE",)),
 )
-# And of one that counts the texels of instances.
+# What a shader declares besides that counts the texels of instances.
 COUNT_IMAGES = ((*_NUMBERS, "hits_img", ("READ", "WRITE")),)
 COUNT_SAMPLERS = (("FLOAT_2D", "areas_tx"),)
 APPEND_CONSTANTS = (("INT", "capacity"), ("INT", "tile_texels"))
@@ -114,7 +115,7 @@ def _gather_info(emits):
 
 @dataclass(frozen=True)
 class SearchedRaster:
-    """How a raster was drawn that highlights are listed from.
+    """How the raster was drawn from which highlights are listed.
 
     Parameters
     ----------
@@ -127,9 +128,10 @@ class SearchedRaster:
     lens : tuple of 2 float
         Place on the lens that it was seen from, m.
     region : int
-        Of the lens, that it stands for; 0 is all of it.
+        Number of the region of the lens that this view represents; 0 is the whole lens.
     field : tuple of (str, GPUUniformBuf or GPUTexture) or None
-        `chromatic.resources`: the light is divided as that of samples of many wavelengths is.
+        `passes.surface.chromatic.resources`, with chromatic aberration: light is then split by the
+        mean circle of confusion of all wavelengths.
     """
 
     view: object
@@ -142,13 +144,13 @@ class SearchedRaster:
 
 
 class TexelCounts:
-    """How many texels of a raster instances have, beside the area that they have there.
+    """Numbers of texels that instances cover in a raster, and areas of their triangles there.
 
     Parameters
     ----------
     areas : sequence of float
-        Of each row of the instance table, in texels: the light that is found of it is brought to
-        that area; 0 leaves it as it is.
+        Of each row of the instance table, in texels: the light that is found of it is scaled by
+        this area over the counted texels; 0 leaves the light as it is.
     """
 
     def __init__(self, areas=()):
@@ -166,7 +168,7 @@ class TexelCounts:
         return self._targets["hits"]
 
     def bindings(self, counting):
-        """Return what a shader binds that counts; nothing is added unless `counting`."""
+        """Return the bindings of a shader that counts texels; counts grow only if `counting`."""
         return (("hits_img", self.hits), ("areas_tx", self.areas if counting else self._none))
 
     def release(self):
@@ -211,7 +213,7 @@ class FragmentLists:
             self.targets[name].clear(format="UINT", value=(0,))
 
     def bindings(self):
-        """Return what a shader binds that appends: names and textures or numbers."""
+        """Return the bindings of a shader that appends fragments: names, textures or numbers."""
         names = [name for _, _, name, _ in APPEND_IMAGES]
         images = [(name, self.targets[name.removesuffix("_img")]) for name in names]
         return (*images, ("capacity", self.capacity), ("tile_texels", self._tile_texels))
@@ -224,7 +226,7 @@ class FragmentLists:
         number : int
             Of fragments; may be more than there was room for.
         tiles : ndarray of shape (N, 2)
-            Column and row of those in which anything shines.
+            Column and row of the tiles that have fragments.
         """
         shader = compile_shader(_FINISH)
         shader.bind()
@@ -241,7 +243,7 @@ class FragmentLists:
 
 
 def order(raster, lists, number, scene=None, counts=None):
-    """Put the fragments of each texel in order, without what nothing of the lens sees.
+    """Sort the fragments of each texel by depth; drop those hidden from the whole lens.
 
     Parameters
     ----------
@@ -276,7 +278,7 @@ def order(raster, lists, number, scene=None, counts=None):
 
 
 def emit(raster, lists, tiles, sources, first):
-    """Write the highlights of a raster behind those listed before.
+    """Append the highlights of a raster to the list of highlights.
 
     Parameters
     ----------
@@ -286,16 +288,16 @@ def emit(raster, lists, tiles, sources, first):
     tiles : ndarray of shape (N, 2)
         As of `FragmentLists.read`.
     sources : tuple of 2 GPUTexture
-        RGBA32F, `COLUMNS` wide; what they have no room for is left out.
+        RGBA32F, `COLUMNS` wide; highlights beyond their size are left out.
     first : int
-        Highlights listed before.
+        Number of highlights in the list so far.
 
     Returns
     -------
     count : int
         Highlights listed now.
     sharp : int
-        Pixels with light too sharp to be splatted.
+        Pixels with light above the threshold whose circle of confusion is too small to be splatted.
     """
     rows = -(-len(tiles) // COLUMNS)
     listed = np.zeros((rows * COLUMNS, 4), np.float32)

@@ -1,7 +1,7 @@
 """The debug view of highlights: a mark for each on the dimmed picture (methods 10).
 
-Marks have a fixed size in pixels, whatever the disc's; the disc's edge is a ring. They are blended
-one over the other in the order of the list, with edges a pixel wide.
+Dots and outlines have a fixed size in pixels, whatever the disc's; a ring shows the edge of the
+disc. Marks are blended one over the other in the order of the list, with edges a pixel wide.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from .highlights import COLUMNS
 
 MARK_PARAMS = UniformStruct("shared/mark_params.glsl", "MarkParams")
 
-# What may become of a highlight, in the order of their numbers in lib/bokeh/mark_lib.glsl.
+# Fates of highlights (culled, masked, splatted, ...), by their numbers in lib/bokeh/mark_lib.glsl.
 FATES = ("SHARP", "OUTSIDE", "HIDDEN", "VISIBLE", "FREE", "MASKED", "IN_SPLAT")
 # Straight pieces of a ring: their corners are a third of a pixel off where it is 300 px wide.
 _RING_PIECES = 64
@@ -31,8 +31,8 @@ class Marks:
     shape : {'DOT', 'OUTLINE', 'RING'}
         A dot, the square of pixels that a source stands for, or its disc's edge.
     color : {'OWN', 'FATES', 'SHARP'}
-        The source's own colour, or that of what became of it; the last marks only sources that are
-        too sharp to be splatted.
+        The source's own colour, or that of its fate; `SHARP` marks only sources whose circle of
+        confusion is too small to be splatted.
     """
 
     shape: str
@@ -96,7 +96,7 @@ def draw_marks(square, marks, count, textures, view_buffer, parameters, stride=1
     parameters : GPUUniformBuf
         `MarkParams`.
     stride : int
-        Every how manyth highlight has a mark.
+        1 marks every highlight, 2 every second one, and so on.
     """
     number = -(-count // stride)
     if number == 0:

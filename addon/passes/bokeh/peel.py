@@ -1,7 +1,8 @@
-"""What a pinhole at a place on the lens sees, and what lies behind it (methods 9).
+"""Depth peeling from one place on the lens, and lists of bright fragments (methods 9).
 
-`OCCLUDERS`: layers of all surfaces, each the nearest behind the layer before. `OPAQUE`: depth of
-the nearest opaque surface. `HIGHLIGHTS`: lists of all fragments brighter than the threshold.
+`OCCLUDERS`: depth-peeled layers of all surfaces, each the nearest behind the layer before.
+`OPAQUE`: depth of the nearest opaque surface. `HIGHLIGHTS`: lists of all fragments brighter than
+the highlight threshold.
 
 References
 ----------
@@ -25,7 +26,7 @@ OPAQUE = replace(OCCLUDERS, outputs=(), samplers=(), defines=())
 HIGHLIGHTS = surface.SurfaceTarget(
     "passes/bokeh/peel_frag.glsl",
     (),
-    # Without it, for a surface whose light is never splatted, only its depth is left.
+    # Without this define (surfaces whose light is never splatted) only depth is written.
     defines=(surface.SPLIT,),
     samplers=highlights.COUNT_SAMPLERS,
     images=highlights.APPEND_IMAGES + highlights.COUNT_IMAGES,
@@ -41,13 +42,13 @@ def draw_layer(draws, view_buffer, instances, textures):
     Parameters
     ----------
     draws : list of Draw
-        Of `surface.build_draws` for `OCCLUDERS`.
+        Of `passes.surface.surface.build_draws` for `OCCLUDERS`.
     view_buffer : GPUUniformBuf
         `ViewParams` of the raster.
     instances : GPUTexture
         The instance table.
     textures : sequence of 1 GPUTexture
-        Depth of the layer before, all 0 for the first.
+        Depth of the previous layer; all 0 for the first layer.
     """
     state.opaque()
     bindings = tuple(zip(("front_tx",), textures, strict=True))
@@ -71,7 +72,7 @@ def draw_opaque(draws, view_buffer, instances, lens):
 
 
 def list_highlights(draws, view_buffer, instances, lens, lists, split, counts, counting):
-    """Append to lists what is brighter than the threshold; draws the depth of what is opaque.
+    """Append fragments above the highlight threshold to lists, and draw the depth of opaque ones.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def list_highlights(draws, view_buffer, instances, lens, lists, split, counts, c
         `HighlightParams`.
     counts : highlights.TexelCounts
     counting : bool
-        The texels that are drawn are added to them.
+        The texels that are drawn are added to `counts`.
     """
     state.opaque()
     sample = (*lens, 0.0, 0.0)

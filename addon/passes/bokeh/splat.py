@@ -1,7 +1,7 @@
 """Splatting highlights: a disc each, in the shape of the opening, added up (methods 13).
 
-What the shape depends on beside the opening has a variant of the shader each: PROFILE (radial
-profile of a lens), RIMS (analytic vignetting), TILES (patterns of a real lens over the field).
+Shader variants add to the shape of the opening: PROFILE (radial bokeh profile of a traced lens),
+RIMS (analytic optical vignetting), TILES (patterns of a real lens over the field).
 """
 
 from ...device import shader_source, state
@@ -95,16 +95,16 @@ def splat(square, count, textures, look, view_buffer, rays=None):
     count : int
         How many highlights.
     textures : sequence of 4 GPUTexture
-        The list of highlights (see `passes.bokeh.highlights`), what becomes of each, and the atlas
+        The list of highlights (see `passes.bokeh.highlights`), the mask of each, and the atlas
         of masks (see `engine.visibility.stage`).
-    look : engine.bokeh_look.BokehLook
+    look : engine.bokeh.look.BokehLook
         Shape of the discs, as ``variants``, ``textures`` and, for each band of wavelengths,
-        ``blocks``; ``field`` as in `passes.bokeh.highlights.PeeledRaster`, empty without bands.
+        ``blocks``; ``field`` as in `passes.bokeh.highlights.SearchedRaster`, empty without bands.
     view_buffer : GPUUniformBuf
         `ViewParams` of the frame.
     rays : tuple or None
-        What sources without a mask cast rays through: layers, opacity and states (GPUTexture),
-        and `VisibilityParams` (GPUUniformBuf).
+        For visibility that is tested by rays while splatting: peeled layers, opacity and states
+        (GPUTexture), and `VisibilityParams` (GPUUniformBuf).
     """
     if count == 0:
         return

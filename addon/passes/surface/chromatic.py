@@ -1,7 +1,8 @@
-"""What shaders need to know of chromatic aberration (methods 8); see ``lib/chromatic_lib.glsl``.
+"""Chromatic aberration in shaders: variants, shared resources, a sample's wavelength (methods 8).
 
-Passes that draw one lens sample have a variant for it, `declared`; what its samples share comes
-from `resources`, and a sample's own numbers are in its `ChromaticSample`.
+Passes that draw one lens sample have a variant for it, `declared`; what all samples share comes
+from `resources`, and a sample's own numbers are in its `ChromaticSample`. The shader side is
+``lib/chromatic_lib.glsl``.
 """
 
 from dataclasses import dataclass, replace
@@ -25,9 +26,10 @@ class ChromaticSample:
     Parameters
     ----------
     dispersion : tuple of 2 float
-        Relative difference of its focal length, and lateral strength.
+        Relative difference of the focal length from the reference wavelength's, and lateral
+        strength.
     tint : tuple of 4 float
-        Its weight in red, green, blue and alpha.
+        Weight of the sample in red, green, blue and alpha.
     resources : tuple of (str, GPUUniformBuf or GPUTexture)
         As `resources` gives them.
     """
@@ -37,18 +39,18 @@ class ChromaticSample:
     resources: tuple
 
     def bind(self, shader):
-        """Give a bound shader what `declared` has declared."""
+        """Set what `declared` has declared in a bound shader."""
         self.bind_resources(shader)
         shader.uniform_float("dispersion", self.dispersion)
 
     def bind_resources(self, shader):
-        """Give it to a shader that asks for no wavelength."""
+        """Bind only the shared resources, for a shader `over_field` without a wavelength."""
         for name, resource in self.resources:
             bind_resource(shader, name, resource)
 
 
 def over_field(info):
-    """Return the variant of a shader that looks up the field, for no wavelength of its own.
+    """Return the variant of a shader that looks up the field table, but has no wavelength.
 
     Parameters
     ----------
@@ -85,7 +87,7 @@ def declared(info, push_constants=()):
 
 
 def resources(*, table, radius, parallel, focus, raster, extremes, typical):
-    """Upload what all samples share.
+    """Upload what all samples of a frame share: field table and `ChromaticParams`.
 
     Parameters
     ----------
@@ -102,7 +104,7 @@ def resources(*, table, radius, parallel, focus, raster, extremes, typical):
     extremes : tuple of 3 float
         Least and largest difference of the focal length, largest lateral strength.
     typical : tuple of 2 float
-        Differences of the focal length that stand for all.
+        Differences of the focal length whose circles of confusion represent all wavelengths.
 
     Returns
     -------

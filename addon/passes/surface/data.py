@@ -1,4 +1,4 @@
-"""The data passes: what a pinhole at the lens' centre sees, as geometry (methods 1).
+"""The data passes: depth, normal, position, motion and CoC seen by a pinhole (methods 1).
 
 One draw of the scene fills Depth, Normal, Position, Vector and CoC together, from the middle of
 each pixel: these values must not be averaged across an edge.
@@ -65,7 +65,7 @@ def target(names):
 
 
 def empty_values(empty_coc):
-    """Return what each target holds where nothing is.
+    """Return what each target holds where there is no surface.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
-"""The world as a light: diffuse and glossy light of an equirectangular image, made once an image.
+"""Image-based lighting: prefiltered diffuse and glossy maps of the world, made once an image.
 
-Both are octahedral maps of the image's mean over a lobe around each direction: glossy ones of a GGX
-lobe seen along its axis (normal, view and mirrored direction alike), for each of a few roughnesses,
-and a diffuse one of the cosine lobe. Multiplied by what the lobe reflects of white surroundings the
-glossy light is the split sum. The image's colour factor and rotation are applied when the maps are
-read, so that changing them computes nothing.
+All are octahedral maps of the image's mean over a lobe around each direction: glossy ones of a GGX
+lobe seen along its axis (normal = view = mirrored direction), for each of a few roughnesses, and a
+diffuse one of the cosine lobe. The glossy light is the split-sum approximation: the map times the
+lobe's reflectance under white surroundings (`ggx_table`). The image's colour factor and rotation
+are applied when the maps are read, so that changing them computes nothing.
 
 References: Karis, SIGGRAPH 2013 course; Krivanek and Colbert, GPU Gems 3, chapter 20 (samples of a
 lobe, each read from a level as coarse as the sample).
@@ -84,10 +84,10 @@ def shrink(pixels, largest):
 
 
 def squared(pixels, least=1):
-    """Give an image whose texels are long and narrow more rows or columns, interpolated.
+    """Interpolate more rows or columns into an image whose texels are far from square.
 
-    Lobes are averaged over texels as if these were about square, and over directions to their
-    middles: a strip of one row would light only what looks at the horizon.
+    Lobes are averaged over texels as if these were about square and lay in one direction: an image
+    of one row would light only surfaces that face the horizon.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def _halve(pixels):
 
 @cache
 def ggx_table(size=32, samples=512):
-    """Tabulate what a GGX lobe reflects of white surroundings.
+    """Tabulate the reflectance of a GGX lobe under white surroundings (directional albedo).
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def ggx_texture():
 
 
 def prefilter(pixels):
-    """Make the glossy levels and the diffuse light of an image.
+    """Prefilter an image: its glossy levels by roughness, and its diffuse light.
 
     Parameters
     ----------
@@ -263,5 +263,5 @@ def environment_buffer(world):
 
 
 def single_texel():
-    """Return a texture for samplers that a world without image leaves unread."""
+    """Return a texture of one texel, for samplers that are not read where a world has no image."""
     return texture_2d(np.zeros((1, 1, 4), np.float32))

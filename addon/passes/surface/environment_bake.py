@@ -1,6 +1,6 @@
 """The nodes of a world as one equirectangular image: images turned, mixed and coloured.
 
-They are computed once where the world changes, so that background, highlights and light see a
+They are computed once when the world changes, so that background, highlights and lighting read a
 world of one image.
 """
 
@@ -12,13 +12,13 @@ from ...device.targets import Targets, TargetSpec
 from ...device.uniforms import uniform_buffer
 from . import surface_code
 
-# Texels along the longer side of images that are computed twice as finely, and of what is computed
-# at least: what lies between texels is interpolated after the nodes, not before.
+# Images below the first size (texels along the longer side) are baked twice as finely, and none
+# smaller than the second: the baked result is interpolated after the nodes, not before.
 _SMALL, _LEAST = 2048, 1024
 
 
 def bake(graph, images, textures):
-    """Compute what a world's nodes give.
+    """Evaluate the nodes of a world into one image.
 
     Parameters
     ----------

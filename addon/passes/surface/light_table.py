@@ -18,7 +18,7 @@ def light_texels(lights):
     Returns
     -------
     ndarray of shape (rows, 7, 4)
-        float32; one row that is no light where there are none.
+        float32; one unlit row where there are no lights.
     """
     texels = np.zeros((max(1, len(lights)), _TEXELS, 4), np.float32)
     for row, light in zip(texels, lights, strict=False):

@@ -13,8 +13,8 @@ from ...device.uniform_block import UniformStruct
 from ...device.uniforms import bind_resource
 from . import chromatic, environment, surface_code
 
-# Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and what
-# a lobe reflects of white surroundings.
+# Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and the
+# reflectance table of GGX lobes.
 LIGHTING_TEXTURES = ("lights_tx", "environment_tx", "environment_levels_tx", "ggx_tx")
 
 VIEW_PARAMS = UniformStruct("shared/view_params.glsl", "ViewParams")
@@ -40,18 +40,18 @@ class SurfaceTarget:
     outputs : tuple of (str, str)
         Type and name by colour slot.
     varyings : tuple of (str, str)
-        What its vertex shader gives beside the usual ones.
+        Outputs of its vertex shader besides the usual ones.
     attributes : tuple of str
         Mesh attributes that it reads itself, such as ``"normal"``, where the mesh has them.
     defines : tuple of str
     structs : str
         Declarations of its own uniform blocks.
     uniforms, samplers : tuple of (str, str)
-        Its own ones, bound once a shader through `draw_sample`'s `bindings`.
+        The target's own, bound once a shader through `draw_sample`'s `bindings`.
     images : tuple of tuples
-        Its own ones, as those of `device.shaders.ShaderInfo`, bound as samplers are.
+        The target's own, as in `device.shaders.ShaderInfo`, bound as samplers are.
     push_constants : tuple of (str, str)
-        Its own ones.
+        The target's own.
     values : tuple of (str, str)
         Defines with a value.
     names_material : bool
@@ -59,9 +59,9 @@ class SurfaceTarget:
     shades : bool
         It calls ``surface_closure()`` for every surface, not only for transparent ones.
     splits : bool
-        It divides light into highlights and the rest; reads ``highlight_buf``.
+        It splits light at the highlight threshold; reads ``highlight_buf``.
     seen : bool
-        It is seen through the lens: reads ``view_buf``, `lens_sample` and `sample_index`.
+        It is drawn through the lens: reads ``view_buf``, `lens_sample` and `sample_index`.
     vertex : str
         Its vertex shader below ``gpu_shaders/``; it must call ``forward_attributes()``.
     """
@@ -86,7 +86,7 @@ class SurfaceTarget:
 
 COLOR = SurfaceTarget("passes/surface/surface_frag.glsl", (("VEC4", "out_color"),))
 
-# The same, with what the mattes are gathered from beside it.
+# The same, with a second target from which Focus Matte and Cryptomattes are accumulated.
 COLOR_AND_MATTES = SurfaceTarget(
     "passes/surface/surface_frag.glsl",
     (("VEC4", "out_color"), ("VEC4", "out_mattes")),
@@ -95,7 +95,7 @@ COLOR_AND_MATTES = SurfaceTarget(
 )
 
 
-# The define of a target that divides light.
+# The define of a target that splits light at the highlight threshold.
 SPLIT = "HIGHLIGHTS"
 
 
@@ -139,7 +139,7 @@ class Draw:
     constants : GPUUniformBuf or None
     textures : tuple of (str, GPUTexture)
     transparent : bool
-        Chance decides what it shows: another sample's picture of it cannot be shared.
+        Its opacity is decided by a random number per sample, so lens samples share no drawing.
     lighting : tuple of (str, GPUUniformBuf or GPUTexture)
         What a lit surface reads of the lights and the world, the same for all of them.
     material_id : float or None
@@ -168,7 +168,7 @@ class Draw:
 
 
 def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, glow=False):
-    """Return what the shader of a surface on a mesh is made of.
+    """Return the declarations and sources of the shader of a surface on a mesh.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
     ShaderInfo
     """
     if holdout:
-        # A hole has no light to split.
+        # A holdout has no light to split.
         target = _whole(target)
     attributes = [("VEC3", "pos")]
     varyings = [("VEC3", "world_position"), ("FLAT INT", "instance_row"), *target.varyings]
@@ -255,12 +255,12 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
 
 
 def build_draws(content, buffers, target=COLOR, wanted=None):
-    """List the draw calls of a scene, sorted by state.
+    """List the draw calls of a scene, sorted by shader and material.
 
     Parameters
     ----------
     content : SceneContent
-    buffers : engine.scene_buffers.SceneBuffers
+    buffers : engine.drawing.scene_buffers.SceneBuffers
     target : SurfaceTarget
     wanted : set of (int, int) or None
         Group and slot of the surfaces to list; None lists all.
@@ -274,7 +274,7 @@ def build_draws(content, buffers, target=COLOR, wanted=None):
 
 
 def build_glow_draws(content, buffers, target=COLOR):
-    """List the draw calls of `draw_glows`: surfaces that add light to what is behind them."""
+    """List the draw calls of `draw_glows`: surfaces that add light to what they are in front of."""
     return _list_draws(content, buffers, target, glow=True)
 
 
@@ -352,10 +352,10 @@ def _levels_of_groups(content, buffers):
 
 
 def draw_glows(draws, view_buffer, instances, lens_sample, highlights=None, wavelength=None):
-    """Add the light of surfaces that glow to what the frame buffer shows behind them.
+    """Add the light of glowing transparent surfaces to what the frame buffer shows behind them.
 
-    Unlike opacity, which is decided by chance, their light is added wherever no surface of this
-    sample is in front, so its mean is exact also where the surface lets everything through.
+    Opacity is decided by a random number per sample; this light is added wherever no surface of
+    the sample is in front, so that its mean is exact even where the surface is fully transparent.
 
     Parameters
     ----------

@@ -31,14 +31,14 @@ class SurfaceCode:
     images : tuple of int
         `ImageSnapshot.uid` of samplers ``image_0_tx``, ``image_1_tx``, ...
     transparent : bool
-        The surface may let light through. Opaque ones keep the early depth test.
+        The surface may be transparent somewhere. Opaque ones keep the early depth test.
     lit : bool
         The surface reflects lights and the world.
     glows : bool
-        The surface may add light to what it lets through, so its light cannot be decided by the
-        same chance as its opacity.
+        The surface may emit where it is transparent, so that its light must be added for every
+        sample and not only for those that find it opaque.
     libraries : tuple of str
-        Below ``gpu_shaders/``: what the code calls beside what every surface has.
+        Shader files below ``gpu_shaders/`` that the code calls, besides those of every surface.
     """
 
     source: str
@@ -53,7 +53,7 @@ class SurfaceCode:
 
 @dataclass
 class Writer:
-    """What the node generators write to.
+    """Collects the code, constants, images and attributes that node generators write.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Writer:
     luminance : tuple of 3 float
         Weights with which a colour becomes a value.
     transmitting, dark : set of str
-        Closures that may let light through, and those that add no light of their own.
+        Closures that may be transparent, and those that add no light of their own.
     glows : bool
     """
 
@@ -114,7 +114,7 @@ class Writer:
         return f"v_{attribute_identifier(key)}"
 
     def light(self):
-        """Take note that the surface is lit: it reads the normal, where the mesh has it."""
+        """Note that the surface is lit: it reads the normal, where the mesh has one."""
         self.lit = True
         if "normal" in self.available and "normal" not in self.attributes:
             self.attributes.append("normal")

@@ -76,7 +76,7 @@ def _transparent(node, writer):
 
 @generates("holdout")
 def _holdout(node, writer):
-    # A hole is neither light nor something behind; it counts as what must not be lost by chance.
+    # A holdout has no light but is not `dark`: its hole must not depend on the random opacity.
     return writer.closure("Holdout", "closure_holdout()")
 
 
@@ -102,7 +102,7 @@ def _add_shader(node, writer):
     name = result["Shader"][1]
     if {first, second} & writer.transmitting:
         writer.transmitting.add(name)
-        # Light that does not grow less as the surface lets more through.
+        # Light that does not fade as the surface gets more transparent.
         writer.glows = writer.glows or not {first, second} <= writer.dark
     if {first, second} <= writer.dark:
         writer.dark.add(name)

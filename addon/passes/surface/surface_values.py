@@ -298,7 +298,7 @@ def _look_up(writer, table, place, in_steps):
 
 
 def _interpolated(writer, first, count, place):
-    """Write a table's value at a place from 0 to 1; its ends are continued straight on."""
+    """Write the interpolated value of a table at a place, 0 to 1; extrapolated linearly beyond."""
     at = writer.let("float", f"number_or_zero({place}) * {float(count - 1)}")
     index = writer.let("int", f"int(clamp(floor({at}), 0.0, {float(count - 2)}))")
     ends = [f"material_buf.constants[{first + i} + {index}]" for i in range(2)]

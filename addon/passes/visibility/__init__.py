@@ -1,1 +1,1 @@
-"""Passes that find what hides a highlight from the lens (methods 10, 11)."""
+"""Passes that find the occluders between highlights and the lens (methods 10, 11)."""

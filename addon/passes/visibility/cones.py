@@ -1,8 +1,8 @@
-"""What meets the cone of rays from each highlight to the lens (methods 10).
+"""Occluders that meet the cone of rays from a highlight to the lens (methods 10).
 
-Opaque triangles are found in clusters, by trees of boxes (see `engine.drawing.occluders`); surfaces
-that let light through by the boxes of their instances. What meets no cone hides nothing; pairs of
-source and cluster are what masks are drawn from.
+Opaque triangles are found in clusters, by trees of bounding boxes (see `engine.drawing.occluders`);
+transparent surfaces by the bounding boxes of their instances. Occluders outside of every cone are
+culled; the pairs of source and cluster that are left are rasterised into visibility masks.
 
 References
 ----------
@@ -34,7 +34,7 @@ _TABLES = ("part_boxes", "parts", "shapes", "boxes", "corners")
 
 @dataclass(frozen=True, eq=False)
 class GroupRange:
-    """Instances of one mesh that are tested as wholes.
+    """Instances of one transparent mesh, each tested by its bounding box.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class GroupRange:
 
 @dataclass(frozen=True, eq=False)
 class ConeScene:
-    """Sources, and what may meet their cones.
+    """Sources, and the occluders that their cones are tested against.
 
     Parameters
     ----------
@@ -60,12 +60,12 @@ class ConeScene:
     count : int
     parameters : GPUUniformBuf
         `VisibilityParams`.
-    occluders : engine.occluders.Occluders
+    occluders : engine.drawing.occluders.Occluders
     instances : GPUTexture
         The instance table.
     groups : sequence of GroupRange
     culls : bool
-        False: sources that are decided are tested, too, for comparison.
+        False: sources whose visibility is decided already are tested, too, for comparison.
     """
 
     sources: object
@@ -120,12 +120,12 @@ def _info(group, work):
 
 
 def find_edges(scene, tables):
-    """Leave undecided what something outside the raster of the layers may hide.
+    """Mark sources as undecided again that an occluder outside the layers' raster may hide.
 
     Parameters
     ----------
     scene : ConeScene
-    tables : bokeh_culling.CullingTables
+    tables : passes.visibility.culling.CullingTables
     """
     for number in range(-1, len(scene.groups)):
         shader = _bind(scene, number, tables, "EDGES")
@@ -134,12 +134,12 @@ def find_edges(scene, tables):
 
 
 def count_pairs(scene, tables, pairs):
-    """Count what meets the cones of the undecided sources; those of nothing are seen whole.
+    """Count the occluders in the cone of each undecided source; without any it is fully visible.
 
     Parameters
     ----------
     scene : ConeScene
-    tables : bokeh_culling.CullingTables
+    tables : passes.visibility.culling.CullingTables
     pairs : GPUTexture
         RGBA32F, `COLUMNS` wide: gets pairs of source and cluster in any order, as many as it has
         room for.
@@ -156,18 +156,18 @@ def count_pairs(scene, tables, pairs):
 
 
 def fill_pairs(scene, number, tables, pairs, window):
-    """Write pairs that `count_pairs` has counted, after `bokeh_culling.scan`.
+    """Write pairs that `count_pairs` has counted, after `passes.visibility.culling.scan`.
 
     Parameters
     ----------
     scene : ConeScene
     number : int
         Which of the groups; -1 for clusters.
-    tables : bokeh_culling.CullingTables
+    tables : passes.visibility.culling.CullingTables
     pairs : GPUTexture
         RGBA32F: source, row of the instance table, cluster.
     window : tuple of 2 int
-        Which of all prefix sums' places: first and number.
+        First pair and number of pairs to write, by their prefix sums.
     """
     shader = _bind(scene, number, tables, "FILL")
     shader.uniform_sampler("states_tx", tables.states)
@@ -179,7 +179,7 @@ def fill_pairs(scene, number, tables, pairs, window):
 
 
 def room_of(pairs):
-    """Return how many pairs a texture has room for."""
+    """Return how many pairs fit into a texture."""
     return pairs.width * pairs.height
 
 

@@ -1,9 +1,9 @@
-"""Which highlights need a mask of what hides them from the lens, and which do not (methods 10).
+"""Culling of highlights: dropped, fully visible, or in need of a visibility mask (methods 10).
 
-A test leaves a highlight out (its disc is outside the frame, nothing of the lens sees it) or finds
-that it is seen whole (no surface of the peeled layers before it, no triangles in its cone, see
-`passes.visibility.cones`). Only what is decided beyond doubt changes its way: the picture stays the
-same. Masks that turn out to hide everything or nothing are found last, and not used.
+A test drops a highlight (its disc is outside the frame, or it is hidden from the whole lens) or
+finds it fully visible (no surface of the peeled layers in front of it, no triangles in its cone,
+see `passes.visibility.cones`). A test decides only where it is certain, so the picture is the same
+without it. Masks that turn out to hide everything or nothing are found last, and not used.
 
 The results lie in tables as the list of highlights does, `prefix_sums.COLUMNS` columns wide.
 
@@ -157,7 +157,7 @@ def build_bounds(layers, opacity, bounds, levels, cell):
 
 
 def cull_frame(sources, count, parameters, states):
-    """Leave out the sources whose disc is outside the frame.
+    """Drop the sources whose disc is outside the frame.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def cull_frame(sources, count, parameters, states):
     parameters : GPUUniformBuf
         `VisibilityParams`.
     states : GPUTexture
-        RGBA32F, as large as the list; gets what was found.
+        RGBA32F, as large as the list; gets the state of each source.
     """
     shader = _bind_cull(sources, count, parameters, states, layered=False)
     dispatch(shader, -(-count // _THREADS), 1)
@@ -183,7 +183,7 @@ def cull(sources, count, parameters, layers, bounds, cell, again, states):
     layers, bounds : GPUTexture
     cell : int
     again : bool
-        Only those that earlier tests have left undecided.
+        Only sources that earlier tests have left undecided.
     """
     shader = _bind_cull(sources, count, parameters, states, layered=True)
     shader.uniform_sampler("layers_tx", layers)
@@ -205,16 +205,16 @@ def _bind_cull(sources, count, parameters, states, layered):
 
 @dataclass(frozen=True, eq=False)
 class CullingTables:
-    """What the tests write.
+    """Results of the culling tests on the device.
 
     Parameters
     ----------
     rows : int
         Of the list of sources.
     culls : bool
-        False gives the sources that are decided masks, too, for comparison.
+        False gives masks to the decided sources, too, for comparison.
     states : GPUTexture
-        RGBA32F, as large as the list: see passes/bokeh_culling_comp.
+        RGBA32F, as large as the list: see passes/visibility/bokeh_culling_comp.glsl.
     keys : GPUTexture
         R32UI, `segments` times as high.
     totals : GPUTexture
@@ -232,7 +232,7 @@ class CullingTables:
 
     @property
     def kinds(self):
-        """Segments of the keys for masks by size."""
+        """Number of segments of `keys` for masks, one a size."""
         return kinds(self.culls)
 
     def pair_segment(self, number):
@@ -241,7 +241,7 @@ class CullingTables:
 
 
 def kinds(culls):
-    """Return how many segments the keys have for masks: those for comparison have their own."""
+    """Return how many segments of `keys` are for masks; masks for comparison have their own."""
     return SIZES if culls else 2 * SIZES
 
 
@@ -274,12 +274,12 @@ def mark_sizes(sources, count, parameters, tables):
 
 
 def scan(tables):
-    """Turn the keys into prefix sums over all of them."""
+    """Turn `keys` into prefix sums over the whole table."""
     prefix_sums.add_up(tables.keys, tables.totals)
 
 
 def place_tiles(sources, count, parameters, layout, kind, tables, tiles, masked):
-    """Say for every source what becomes of it, and give the masks their places.
+    """Write the final state of every source, and place the masks in the atlas.
 
     Parameters
     ----------
@@ -312,7 +312,7 @@ def place_tiles(sources, count, parameters, layout, kind, tables, tiles, masked)
 
 
 def cull_masks(count, masks, tiles, counts):
-    """Do without the masks that hide everything or nothing.
+    """Drop the sources whose mask hides everything, and the masks that hide nothing.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Tables of numbers on the device, and what comes before each of them.
+"""Prefix sums of tables of whole numbers on the device.
 
 A table is a list in rows of `COLUMNS` columns, as textures are not long enough for one row.
 """
@@ -39,7 +39,7 @@ def add_up(numbers, totals):
     numbers : GPUTexture
         R32UI, `COLUMNS` wide.
     totals : GPUTexture
-        R32UI, `COLUMNS` wide: gets for each row what comes before it.
+        R32UI, `COLUMNS` wide: gets for each row the sum of all rows before it.
     """
     for over_rows in (False, True):
         shader = compile_shader(_info(over_rows))

@@ -1,10 +1,10 @@
-"""Masks of what hides highlights from the lens, by drawing the scene from them (methods 11).
+"""Visibility masks by rasterising the scene from each highlight onto the lens (methods 11).
 
-Seen from a highlight, a point of the scene lies before one place on the lens: a projection from the
-highlight onto the lens makes its mask, without gaps and without noise. All highlights are drawn at
-once into an atlas, and of the scene only the clusters of triangles that meet a highlight's cone.
-Opaque triangles need no order: they clear. Surfaces that let light through multiply by what they
-let through, which needs no order either.
+Seen from a highlight, a point of the scene hides one place on the lens, so a projection from the
+highlight onto the lens makes its mask, without gaps and without noise. All masks are drawn at once
+into an atlas, and of the scene only the clusters of triangles that meet a highlight's cone. Opaque
+triangles clear the mask and transparent surfaces multiply it by their transmittance: neither needs
+an order.
 
 References
 ----------
@@ -19,7 +19,7 @@ from .culling import TILE_LAYOUT, VISIBILITY_PARAMS
 from .prefix_sums import COLUMNS
 
 _CLIP_DISTANCES = 6
-# Pairs that an instance of the batch draws: instances of few corners leave devices idle.
+# Pairs of source and cluster a GPU instance: instances of few vertices leave devices idle.
 _PAIRS_A_DRAW = 256
 BATCH_CORNERS = _PAIRS_A_DRAW * CLUSTER_CORNERS
 _DEFINES = (("SOURCE_COLUMNS", str(COLUMNS)),)
@@ -46,7 +46,7 @@ _RASTER = ShaderInfo(
     ),
 )
 
-# Surfaces that let light through, drawn with what their materials say.
+# Transparent surfaces, drawn with their materials.
 TARGET = surface.SurfaceTarget(
     "passes/visibility/visibility_surface_frag.glsl",
     (("VEC4", "out_mask"),),
@@ -87,11 +87,11 @@ def draw_clusters(batch, count, tables, parameters, layout):
 
 
 def draw_surfaces(draws, count, tables, parameters, layout):
-    """Draw pairs of source and instance whose surface lets light through.
+    """Draw pairs of source and instance of a transparent surface.
 
     Parameters
     ----------
-    draws : sequence of passes.surface.Draw
+    draws : sequence of passes.surface.surface.Draw
         Of the instances' group, made for `TARGET`.
     count : int
         Pairs.

@@ -1,7 +1,7 @@
-"""Masks of what hides highlights from the lens, by rays through the peeled layers (methods 11).
+"""Visibility masks by warping: rays from highlights to the lens through peeled layers (methods 11).
 
-Nothing is drawn again: the rays from a highlight to the lens move straight through the raster of
-the layers. What hides a highlight behind four other surfaces, or outside the raster, is missed.
+No geometry is drawn: the rays move straight through the raster of the depth-peeled layers. An
+occluder behind four other surfaces, or outside the raster, is missed.
 
 References
 ----------
@@ -13,7 +13,7 @@ from ...device.shaders import ShaderInfo, compile_shader, dispatch
 from .culling import TILE_LAYOUT, VISIBILITY_PARAMS
 from .prefix_sums import COLUMNS
 
-# As many as a texel has channels.
+# Most layers: as many as a texel has channels.
 MOST_LAYERS = 4
 
 _GROUP = 8
@@ -48,7 +48,7 @@ _WARP = ShaderInfo(
 
 
 def pack(color, depth, channel, layers, opacity):
-    """Put a layer into a channel of two textures; the first clears the others.
+    """Write a layer into one channel of two textures; the first layer clears the other channels.
 
     Parameters
     ----------
