@@ -39,14 +39,15 @@ vec2 field_strengths(sampler2D field_tx, vec2 place, ChromaticParams params)
   return mix(below, above, across);
 }
 
-// Where a point of camera space lies in the field; what is not in front of the camera, far outside.
+// Where a point of camera space lies in the field; points that are not in front of the camera lie far
+// outside.
 vec2 field_place(vec3 eye, ChromaticParams params)
 {
   return (params.field.y > 0.5) ? eye.xy : eye.xy / max(-eye.z, 1e-9);
 }
 
-// One over the focus distance of a wavelength whose focal length differs by `change` (relative to the
-// reference's), where the axial strength moves it back to the reference's.
+// One over the focus distance, 1/m, of a wavelength whose focal length differs by `change` relative to
+// the reference wavelength's; `axial`: value of the axial field map, 0 the whole difference, 1 none.
 float chromatic_focus(float change, float axial, ChromaticParams params)
 {
   float ratio = max(1.0 + change * (1.0 - axial), LEAST_FOCAL_SHARE);
@@ -58,8 +59,8 @@ float lateral_scale(float lateral, float strength, ChromaticParams params)
   return max(1.0 + lateral * strength, params.focus.w);
 }
 
-// Radius of the circle of confusion that stands for those of all wavelengths, px: the root of about
-// their mean square. `place` in the field; `lens` as in ViewParams.
+// Radius of the circle of confusion that represents all wavelengths, px: about the root of their mean
+// square. `place` in the field; `lens` as in ViewParams.
 float chromatic_coc_px(
     sampler2D field_tx, vec2 place, float depth, vec4 lens, ChromaticParams params)
 {

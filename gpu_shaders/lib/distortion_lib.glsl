@@ -3,7 +3,7 @@
 #ifndef DISTORTION_LIB_GLSL
 #define DISTORTION_LIB_GLSL
 
-// Blur that is left out, px: it would change the variance of a pixel's filter by a hundredth.
+// Least blur that is applied, px: less changes the variance of a pixel's filter by a hundredth.
 #define LEAST_SPREAD 0.04
 
 struct Distorted {
@@ -25,7 +25,7 @@ Distorted distorted_place(vec2 pixel, vec4 to_field, vec4 from_field, vec4 model
   float far = length(away);
   away = (far > 0.0) ? away / far : vec2(1.0, 0.0);
   vec2 growth = model.z * vec2(along, across);
-  // The filter of a pixel of the raster, and this, make that of a pixel of the picture.
+  // This blur and the filter of a raster's pixel together make the filter of a picture's pixel.
   vec2 spread = model.w * sqrt(max(growth * growth - 1.0, 0.0));
   Distorted found;
   found.place = field * across * from_field.xy + from_field.zw;
@@ -44,8 +44,7 @@ vec4 cubic_weights(float t)
               -0.5 * s * t * t);
 }
 
-// Cubic interpolation, within the range of the neighbours: next to something very bright it would
-// swing below them.
+// Cubic interpolation, clamped to the range of the neighbours: it would ring beside bright pixels.
 vec4 cubic_sample(sampler2D tx, vec2 place)
 {
   ivec2 last = textureSize(tx, 0) - 1;
@@ -67,7 +66,7 @@ vec4 cubic_sample(sampler2D tx, vec2 place)
   return clamp(total, low, high);
 }
 
-// The blur is that of two places along each axis.
+// The blur averages two places along each axis.
 vec4 distorted_sample(sampler2D tx, Distorted at)
 {
   int n = (length(at.along) > LEAST_SPREAD) ? 2 : 1;

@@ -7,8 +7,8 @@
 // LARGEST_RADIANCE of addon/snapshot/surface_graph.py.
 #define LARGEST_RADIANCE 1e30
 
-// Channel by channel, as Cycles drops light. Told by the bits: a compiler may take for granted that
-// there is no NaN, and then a comparison says nothing.
+// Channel by channel, as Cycles drops light. Found by the bits: a compiler may assume that there is no
+// NaN and remove a comparison.
 vec3 finite_light(vec3 light)
 {
   uvec3 magnitude = floatBitsToUint(light) & uvec3(0x7fffffffu);

@@ -23,7 +23,8 @@ float coc_radius_at(float depth, float focus, vec4 lens)
   return lens.z * ((lens.y > 0.5) ? depth * focus - 1.0 : focus - 1.0 / depth);
 }
 
-// Share of a point's light that falls inside the largest circle that counts as sharp.
+// Focus matte of a point: share of its light inside the largest circle of confusion that counts as
+// sharp.
 float focus_share(float coc_px, float sharp_px)
 {
   float ratio = sharp_px / max(abs(coc_px), sharp_px);

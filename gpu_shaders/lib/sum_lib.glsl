@@ -2,7 +2,7 @@
 #ifndef SUM_LIB_GLSL
 #define SUM_LIB_GLSL
 
-// Of a number 1; a float has no more digits at 1, and small ones keep theirs.
+// Fixed-point value of 1: as fine as a float is at 1; smaller numbers lose what is below that.
 #define SUM_ONE 2147483648.0
 
 struct Sum {

@@ -3,8 +3,8 @@
 #define TILE_LIB_GLSL
 #include "lib/bokeh/source_lib.glsl"
 
-// tile: x, y, side, texels. The tile's sides, the clip start and the source's own surface cut off
-// what lies beyond: otherwise a floor would cover the whole atlas.
+// tile: x, y, side, texels. Clip distances cut off what lies beyond the tile's sides, in front of the
+// clip start or behind the source's own surface: otherwise a floor would cover the whole atlas.
 vec4 tile_project(Source source, vec4 tile, vec3 eye)
 {
   vec3 lens = cone_project(source.cone, eye, visibility_buf.opening.xy);

@@ -1,8 +1,8 @@
-// The world at infinity as one place on the lens sees it, where no surface is.
+// The world background at infinity, seen from one place on the lens, where no surface is.
 // Inputs: view_buf; lens_sample (xy: place on the lens, m; zw: sub-pixel jitter in clip units);
-// environment_buf; environment_tx (equirectangular, scene linear); with HIGHLIGHTS, where the light
-// that is splatted is left out, and with EXCESS, where the light that may be is listed, highlight_buf
-// and what highlights_append needs.
+// environment_buf; environment_tx (equirectangular, scene linear). HIGHLIGHTS: highlight_buf; the light
+// that is splatted as bokeh is left out. EXCESS: highlight_buf and the inputs of highlights_append;
+// light above the threshold is listed.
 // CHROMATIC: as in surface_vert.
 // Outputs: opaque scene-linear colour; with EXCESS lists of fragments: light above the threshold.
 // Source: methods 1: the ray from the lens' place through the pixel's point of the focus plane.
@@ -17,7 +17,7 @@
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
 
-// Of the search for the place in the field that a wavelength moves to the pixel's.
+// Steps of the search for the place in the field that a wavelength moves to the pixel's place.
 #define ITERATIONS 4
 #endif
 

@@ -10,7 +10,7 @@ void main()
 #ifdef BOKEH
   color += texelFetch(bokeh_tx, texel, 0);
 #endif
-  // What is not a number is black, as in the comparison of two files.
+  // NaN is black, as in the comparison of two files.
   color = mix(clamp(color, 0.0, 1.0), vec4(0.0), isnan(color));
   vec3 encoded = 1.055 * pow(max(color.rgb, vec3(1e-9)), vec3(1.0 / 2.4)) - 0.055;
   out_color = vec4(mix(encoded, 12.92 * color.rgb, lessThanEqual(color.rgb, vec3(0.0031308))),

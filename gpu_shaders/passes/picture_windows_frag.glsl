@@ -1,6 +1,6 @@
-// How much a picture differs from what it converges to, told by how much it changed: in a window every
-// STRIDE px, the structural similarity with a picture that differs from it by the square root of `rest`
-// times its change.
+// Estimated error of a picture, from its change since an earlier one: in a window every STRIDE px, the
+// structural similarity (SSIM) with a picture that differs from it by the square root of `rest` times
+// that change.
 // Inputs: picture_tx, earlier_tx (as displayed); rest (variance of the error over that of the change).
 // Outputs: x: 1 - SSIM; y: variance of the change.
 // Source: Wang et al., IEEE TIP 13(4), 2004 (Gaussian window, sigma 1.5 px, 11 x 11 px).
@@ -42,7 +42,7 @@ void main()
   mean_d /= total;
   vec4 spread = max(square_x / total - mean_x * mean_x, 0.0);
   vec4 change = max(square_d / total - mean_d * mean_d, 0.0);
-  // The picture that it converges to has no noise: its own spread is less by that.
+  // The converged picture has no noise, so its variance is less by that of the error.
   vec4 noise = rest * change, shift = rest * mean_d * mean_d;
   vec4 structure = noise / (spread + max(spread - noise, 0.0) + C2);
   vec4 level = shift / (mean_x * mean_x + max(mean_x * mean_x - shift, 0.0) + C1);

@@ -1,7 +1,7 @@
-// One level of a pyramid of a lens sample: means of its colour and extremes of its depth over
-// squares of texels, each twice as wide as in the level before.
-// Inputs: sample_tx, depth_tx; level (that is made, from 1 on); means (levels that have means); film
-// (texels of the sample).
+// One level of the mip pyramid of a lens sample: mean colour and depth range over squares of texels,
+// each twice as wide as in the level before.
+// Inputs: sample_tx, depth_tx; level (that is made, from 1 on); means (number of levels of mean
+// colours); film (texels of the sample).
 // Outputs: means_img, ranges_img, layer level - 1, at their lower left corner.
 #include "lib/extremes_lib.glsl"
 

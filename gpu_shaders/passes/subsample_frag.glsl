@@ -1,6 +1,6 @@
-// One lens sample's picture, blurred over the part of the lens that it stands for: rays from places
-// near the sample's are cast through its own colour and depth. Each ray stands for a cell of the lens,
-// and takes the mean of the colours that come to the pixel through it.
+// Subsample blur: one lens sample's picture, blurred over the part of the lens that it stands for. Rays
+// from subsamples, places on the lens near the sample's, are cast through its own colour and depth.
+// Each ray stands for a cell of the lens, and takes the mean colour that reaches the pixel through it.
 // Inputs: sample_tx, depth_tx (the sample); depths (least and largest that it may have); offsets_tx
 // (row: sample; column: place on the lens relative to the sample's, m); means_tx, ranges_tx (pyramid
 // of the sample: `top` levels of means, `levels` of ranges); sample_index, count; spread (largest
@@ -14,28 +14,28 @@
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
 
-// The sweep where the pixel's place in the field puts the focus.
+// The sweep for the focus at the pixel's place in the field.
 vec4 focused_sweep;
 #else
 #define focused_sweep sweep
 #endif
 
-// Neighbours are one surface if the ray's place on the lens parts them by no more, in texels.
+// Neighbouring texels are one surface if their movements for the ray differ by no more, in texels.
 #define SURFACE_STRETCH 1.0
-// Surfaces move alike across a cell if they do within so many texels.
+// Surfaces move alike if their movements across a cell of the lens differ by no more, in texels.
 #define MOVES_ALIKE 1.0
-// A way moves along an axis if it is longer than that, in texels.
+// Least length of a ray's path along an axis, in texels; a shorter one does not move along it.
 #define LEAST_WAY 1e-6
-// How often it is asked again how far away something may come from.
+// Iterations that narrow the depths that can reach a pixel (depths_in_reach).
 #define APPROACHES 3
 
-// Side of the square of texels over which a bilinear look-up spreads as far as a ray's cell does: in
-// a level of squares of side w its variance is w^2 / 4, that of a cell c^2 / 12. Wider by a half,
-// since the cells are no squares side by side.
+// Side of the pyramid's squares over that of a cell's movement, so that a bilinear look-up blurs as the
+// cell does: in a level of squares of side w its variance is w^2 / 4, that of a cell c^2 / 12. Wider by
+// a half, since the cells do not tile the lens as squares.
 #define WIDTH_OF_CELL 0.85
 
-// The mean of the colours round a texel that a cell of the lens brings to one pixel: over as many
-// texels as its surface moves across the cell, but only while what lies there moves alike.
+// Mean colour round a texel that a cell of the lens brings to one pixel: over as many texels as the
+// surface moves across the cell, but only where all surfaces there move alike.
 vec4 cell_color(ivec2 texel, ivec2 size)
 {
   float depth = texelFetch(depth_tx, texel, 0).x;
@@ -63,7 +63,7 @@ vec4 cell_color(ivec2 texel, ivec2 size)
   return texelFetch(sample_tx, texel, 0);
 }
 
-// Least and largest depth of the sample over a rectangle of texels and what shares squares with it.
+// Depth range of the sample over the pyramid's squares that a rectangle of texels touches.
 vec2 seen_depths(ivec2 a, ivec2 b)
 {
   ivec2 low = min(a, b), high = max(a, b);
@@ -77,7 +77,7 @@ vec2 seen_depths(ivec2 a, ivec2 b)
                            texelFetch(ranges_tx, ivec3(c.x, d.yz), 0).xy));
 }
 
-// Least and largest depth over a square of the pyramid, or of a texel.
+// Depth range over a square of the pyramid, or of a texel (level 0).
 vec2 square_depths(ivec2 square, int level)
 {
   return (level == 0) ? vec2(texelFetch(depth_tx, square, 0).x) :
@@ -87,17 +87,16 @@ vec2 square_depths(ivec2 square, int level)
 // The texel that a ray sees. Each texel is a square that moves with its surface; the ray ends at the
 // nearest that comes to cover the pixel's centre. So a surface of one depth covers as many pixels as
 // it has texels, wherever it moves to, and one in focus stays as it is.
-// From the least depth in reach to the largest, the place of what comes to the pixel runs along a
-// straight way. A texel is hit if its depth is one of those that it is crossed at. Whole squares that
-// lie behind the ray's depths, or in front of them, are crossed at once.
+// As the depth goes from the least in reach to the largest, the texel that would come to the pixel runs
+// along a straight path. A texel is hit if its depth lies between those at which the path enters and
+// leaves it. Whole squares of the pyramid in front of or behind the path's depths are skipped.
 ivec2 seen_texel(ivec2 pixel, ivec2 size, vec2 move, vec2 in_reach)
 {
   vec2 center = vec2(pixel) + 0.5;
   vec2 start = center - sweep_px(move, focused_sweep, in_reach.x);
   vec2 along = center - sweep_px(move, focused_sweep, in_reach.y) - start;
   vec2 part = vec2(0.0, 1.0);
-  // What is outside the picture is taken to continue its outermost texels: a way that lies beyond an
-  // edge runs along it.
+  // Outside, the picture's outermost texels are repeated: a path beyond an edge runs along it.
   for (int axis = 0; axis < 2; axis++) {
     float a = start[axis], b = a + along[axis], edge = float(size[axis]);
     if (max(a, b) < 0.0 || min(a, b) > edge) {
@@ -116,11 +115,11 @@ ivec2 seen_texel(ivec2 pixel, ivec2 size, vec2 move, vec2 in_reach)
   bvec2 moves = greaterThan(abs(along), vec2(LEAST_WAY));
   vec2 pace = vec2(stride) / max(abs(along), LEAST_WAY);
   float extent = max(in_reach.y - in_reach.x, 1e-20);
-  // Where it came into the texel, as a share of the way; also of the first, though it begins inside.
+  // Where the path entered the texel, as a share of its length; of the first texel, where it would have.
   vec2 enters = (vec2(texel) + max(-vec2(stride), 0.0) - start) * pace;
   enters = mix(vec2(-1e30), enters, moves);
   float entered = max(enters.x, enters.y);
-  // The last texel in front of whose surface the ray was, and whether that was the one before.
+  // The last texel whose surface the ray was in front of, and whether that is the previous texel.
   ivec2 ahead = texel;
   bool was_ahead = false, begun = false;
   int level = 0;
@@ -143,7 +142,7 @@ ivec2 seen_texel(ivec2 pixel, ivec2 size, vec2 move, vec2 in_reach)
     if (!in_front && !behind) {
       return texel;
     }
-    // The texel by which it leaves the square.
+    // The texel through which the path leaves the square.
     ivec2 leaving = last;
     if (any(goes_on)) {
       ivec2 on_way = ivec2(floor(start + along * left));
@@ -155,8 +154,8 @@ ivec2 seen_texel(ivec2 pixel, ivec2 size, vec2 move, vec2 in_reach)
       ahead = leaving;
     }
     else if (level == 0 && (was_ahead || !begun)) {
-      // It has met a slope between two texels, passed the edge of something nearer, or comes from
-      // beyond the picture's edge.
+      // The ray has crossed a slope between two texels, passed the edge of a nearer surface, or comes
+      // from beyond the picture's edge.
       vec2 parted = abs(move * focused_sweep.zw);
       float gap = texelFetch(depth_tx, ahead, 0).x - seen.x;
       if (!begun || gap * max(parted.x, parted.y) <= SURFACE_STRETCH) {
@@ -173,12 +172,13 @@ ivec2 seen_texel(ivec2 pixel, ivec2 size, vec2 move, vec2 in_reach)
     entered = left;
     level = min(level + 1, levels);
   }
-  // What the ray sees is hidden from the sample. The surface that vanished behind an edge goes on.
+  // The sample does not show what the ray sees: the surface that went behind an edge is continued.
   return ahead;
 }
 
-// Depths of all that the sample shows and that comes to a pixel from some place of its part of the
-// lens: those of all that it shows tell how far away that may lie, and so on. Also how far, in texels.
+// Depth range of what can reach a pixel from the sample's part of the lens, and how far away that may
+// lie, in texels: the depths of the whole picture bound the distance, the distance bounds the depths,
+// and so on.
 vec2 depths_in_reach(ivec2 pixel, ivec2 size, out int reach)
 {
   vec2 found = depths;

@@ -1,4 +1,4 @@
-// The world as a light.
+// The world for background and image-based lighting.
 struct EnvironmentParams {
   vec4 rotation_x;      // xyz: rows that turn a world direction into the image's
   vec4 rotation_y;

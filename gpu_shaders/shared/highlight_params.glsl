@@ -1,4 +1,4 @@
-// What is splatted as bokeh instead of being blurred by lens samples.
+// The highlight threshold: what is splatted as bokeh instead of being blurred by lens samples.
 struct HighlightParams {
   vec4 split;           // x: threshold; y: least circle of confusion, px; z: gain of what is
                         // splatted; w unused

@@ -1,4 +1,4 @@
-// How highlights are tested against what may hide them from the lens.
+// How highlights are tested against their occluders.
 struct VisibilityParams {
   mat4 view;            // world to camera space
   mat4 projection;      // camera space to clip space of the peeled raster

@@ -28,7 +28,7 @@ vec4 profile_texel(sampler2DArray tx, float radius, float row, float layer)
   return texture(tx, vec3(radius, (row * (count - 1.0) + 0.5) / count, layer));
 }
 
-// Share of light that a row of rims lets through in a layer of the opening; splat_rims.py.
+// Transmittance of a row of rims (optical vignetting) in a layer of the opening; splat_rims.py.
 float rim_share(vec4 rim, vec2 place, vec2 chief, float layer)
 {
   float width = max(OPENING_LEAST_BLUR * exp2(layer), opening_extent(layer) / 96.0);
@@ -43,7 +43,8 @@ float rim_share(vec4 rim, vec2 place, vec2 chief, float layer)
   return cleared / members;
 }
 
-// Light that rims leave of a layer; `rows` of the table a layer, `row` 0 to 1, field 0 to 1.
+// Share of a layer's light that passes the rims, by table look-up; `rows` of the table a layer, `row`
+// and `field` from 0 to 1.
 vec3 rims_left(sampler2DArray tx, float layer, float rows, float row, float field, vec2 chief)
 {
   vec2 size = vec2(textureSize(tx, 0).xy);
@@ -65,8 +66,8 @@ vec2 azimuth_of(vec2 chief)
   return (size > 1e-9) ? chief / size : vec2(0.0, 1.0);
 }
 
-// Outward shift of a pattern's middle and half its width across and along the azimuth, over
-// |c| + c0. `at`: field and depth, counted in tiles.
+// Outward shift of the middle of a bokeh pattern, and half its width across and along the azimuth,
+// all divided by |c| + c0. `at`: field and depth, counted in tiles.
 vec3 tile_place(sampler2D tx, vec2 at)
 {
   return texture(tx, (at.yx + 0.5) / vec2(TILE_DEPTHS, TILE_FIELDS)).xyz;
@@ -77,7 +78,7 @@ vec3 tile_corner(sampler2DArray tx, vec2 uv, float first, ivec2 at)
   return texture(tx, vec3(uv, first + float(at.x * TILE_DEPTHS + at.y))).rgb;
 }
 
-// Tiles of one blur: light, and light times the place in the stop.
+// Tiles blurred to one degree: light, and light times the place in the stop.
 vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at)
 {
   vec2 uv = place / (1.0 + blur) * 0.5 + 0.5;
@@ -106,7 +107,7 @@ vec3 tile_light(sampler2DArray sharp_tx, sampler2DArray soft_tx, vec2 place, flo
                                           3;
   float low = (layer == 0) ? TILE_BLUR_SHARP : TILE_BLUR_SOFT[layer - 1];
   float high = TILE_BLUR_SOFT[layer];
-  // Variances add up: the mixture has that of the blur.
+  // Variances add up: the mixture of two layers has the variance of the blur.
   float share = (wide * wide - low * low) / (high * high - low * low);
   vec3 softer = tile_layer(soft_tx, place, high, float(layer) * count, at);
   vec3 sharper = (layer == 0) ? tile_layer(sharp_tx, place, low, 0.0, at) :
@@ -116,7 +117,7 @@ vec3 tile_light(sampler2DArray sharp_tx, sampler2DArray soft_tx, vec2 place, flo
   return vec3(light.x, stop);
 }
 
-// Light that the opening leaves of tiles; array over tables and fields, azimuth by depth.
+// Share of the tiles' light that passes the opening; array over tables and fields, azimuth by depth.
 vec3 tile_left(sampler2DArray tx, float table, vec2 chief, vec2 at)
 {
   float turn = (dot(chief, chief) > 0.0) ? atan(chief.y, chief.x) / 6.28318531 : 0.25;

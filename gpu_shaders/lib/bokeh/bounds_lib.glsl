@@ -8,8 +8,8 @@ vec3 bounds_join(vec3 a, vec3 b)
   return vec3(min(a.x, b.x), max(a.yz, b.yz));
 }
 
-// Over the cells from `low` to `high`, both inside the stack; a long rectangle is widened to less
-// than a square.
+// Bounds over the cells from `low` to `high`, both inside the stack; of a long rectangle those of a
+// wider one, at most a square.
 vec3 bounds_of(sampler2DArray bounds_tx, ivec2 low, ivec2 high)
 {
   ivec2 extent = high - low + 1;

@@ -1,4 +1,4 @@
-// Which highlights are so close that they may be one (methods 9); the same as
+// Which highlights are similar enough to be merged into one cluster (methods 9); the same as
 // benchmarks/reference/clusters.py.
 //
 // Cells are cubes of world space, so that they stay where they are while the camera moves. The side
@@ -9,19 +9,19 @@
 #define CLUSTER_LIB_GLSL
 #include "lib/lens_lib.glsl"
 
-// Axes of the cells. Turned, because scenes are full of surfaces along the world's axes: one on the
-// border of two layers of cells would be in either by chance.
+// Axes of the cells. Turned, because scenes are full of surfaces along the world's axes: where one
+// lay on the border of two layers of cells, rounding would decide its cell.
 #define CELL_AXES \
   (mat3(vec3(-29.0, 26.0, -2.0), vec3(-14.0, -13.0, 34.0), vec3(22.0, 26.0, 19.0)) / 39.0)
-// Where a cell begins, in sides.
+// Offset of the cells' origin, in sides.
 #define CELL_SHIFT vec3(0.37, 0.61, 0.17)
-// Logarithms of sides are fewer.
+// More than the number of logarithms of sides.
 #define SCALES 1024
 // A blur of this many pixels is as visible in a larger disc as in one of this radius, px.
 #define HARM_RADIUS 8.0
 
-// The coordinates in which means are taken: where the picture shows a source, and what its circle
-// of confusion is linear in.
+// The coordinates in which sources are averaged: place in the picture, and the function of the depth
+// in which the circle of confusion is linear.
 vec3 cluster_place(vec3 source, vec4 lens)
 {
   return (lens.y > 0.5) ? source : vec3(source.xy, 1.0) / source.z;
@@ -74,7 +74,8 @@ uint cluster_hash(ivec4 cell)
   return hash ^ (hash >> 15u);
 }
 
-// Whether sources may be one: they are blurred over `extent`, px, then, and as bright as `peak`.
+// Whether sources may be merged: the merged disc is blurred over `extent`, px; `coc`: its radius, px;
+// `energy`: of its brightest channel.
 bool cluster_harmless(float extent, float coc, float energy, ClusterParams params)
 {
   float peak = energy / (3.14159265 * coc * coc);

@@ -1,4 +1,5 @@
-// The cone from a source to the lens, tested against boxes and triangles (passes/bokeh_cones*_comp).
+// The cone from a source to the lens, tested against boxes and triangles
+// (passes/visibility/bokeh_cones*_comp).
 //
 // Seen from the source, a place is projected onto the lens: homogeneous coordinates x, y and w, in
 // units of half the opening, are linear in the place (see lib/bokeh/visibility_lib.glsl). In them, the cone
@@ -8,7 +9,7 @@
 #define CONES_LIB_GLSL
 #include "lib/bokeh/occluder_blur_lib.glsl"
 
-// Of the sums that a coordinate is made from, for rounding.
+// Bound of the rounding error of a coordinate, as a share of the terms of its sum.
 #define CONE_ROUNDING 1e-6
 
 struct LensView {
@@ -28,7 +29,7 @@ LensView lens_view_of(Source source, float farthest, VisibilityParams params)
   view.x = vec4(1.0, 0.0, cone.b.x, -cone.a.x) / params.opening.x;
   view.y = vec4(0.0, 1.0, cone.b.y, -cone.a.y) / params.opening.y;
   view.w = vec4(0.0, 0.0, 1.0, cone.depth) * cone.rate;
-  // A mask is blurred when it is read: what lies 1.5 texels beyond the rim counts, also aslant.
+  // A mask is blurred when it is read: occluders up to 1.5 texels beyond the rim count, diagonally too.
   float side = params.tiles.y * exp2(float(source_class(source.coc, params)));
   view.reach = 1.0 + 4.3 / side;
   view.range = (cone.depth - vec2(farthest, params.opening.z)) * cone.rate;
@@ -94,13 +95,13 @@ bool meets_triangle(LensView view, vec3 a, vec3 b, vec3 c)
   {
     return false;
   }
-  // What clusters are filled up with are points.
+  // Clusters are padded with degenerate triangles (points).
   if (a == b && b == c) {
     return false;
   }
   vec3 qr = cross(q, r), rp = cross(r, p), pq = cross(p, q);
   float turn = dot(p, qr);
-  // Seen so nearly along its plane that rounding decides which way round it is.
+  // Seen edge-on: rounding decides its winding.
   if (abs(turn) <= 10.0 * CONE_ROUNDING * dot(abs(p), abs(qr))) {
     return true;
   }
@@ -108,8 +109,8 @@ bool meets_triangle(LensView view, vec3 a, vec3 b, vec3 c)
   return !(beyond(view, qr, turn) || beyond(view, rp, turn) || beyond(view, pq, turn));
 }
 
-// What a source's cone has met: how much, up to which w, and the sum and the weights of the blur
-// that its parts see it with.
+// Occluders that a source's cone has met: their number, their largest w, and the weighted sum and the
+// weights of the blur that they need where the source is merged (see occluder_blur_lib).
 struct Met {
   uint found;
   float most;
@@ -121,7 +122,7 @@ Met nothing_met()
   return Met(0u, 0.0, vec2(0.0));
 }
 
-// A box has been met that holds an `area` of triangles, m^2.
+// Notes a box that meets the cone and holds triangles of an `area`, m^2.
 void meet(inout Met met,
           LensView view,
           Source source,
@@ -147,7 +148,7 @@ bool state_is_open(float state)
   return state == STATE_OPEN || state == STATE_FREE;
 }
 
-// Depth beyond which nothing outside the raster of the layers reaches into the frame, m.
+// Depth beyond which no surface outside the layers' raster can hide the source in the frame, m.
 float edge_depth(Source source, VisibilityParams params)
 {
   float margin = min(params.frame.x, params.frame.y);

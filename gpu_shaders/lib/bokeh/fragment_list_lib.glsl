@@ -3,10 +3,10 @@
 #ifndef FRAGMENT_LIST_LIB_GLSL
 #define FRAGMENT_LIST_LIB_GLSL
 
-// Bits of a coordinate of a texel; the bit of opaque surfaces.
+// Bits of a texel's coordinate; the bit that marks opaque surfaces.
 #define KEY_BITS 15
 #define KEY_OPAQUE 0x80000000u
-// Of a list that has been put in order.
+// Marks the head of a list that has been sorted.
 #define IN_ORDER 0x80000000u
 
 ivec2 list_texel(uint index)

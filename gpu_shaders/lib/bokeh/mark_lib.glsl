@@ -1,4 +1,5 @@
-// What became of a source, as the debug view shows it: numbers of its colours.
+// The fate of a source (culled, masked, splatted, ...) as the debug view shows it: numbers of its
+// colours.
 #ifndef MARK_LIB_GLSL
 #define MARK_LIB_GLSL
 #include "lib/bokeh/source_lib.glsl"

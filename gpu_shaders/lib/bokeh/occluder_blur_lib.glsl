@@ -1,9 +1,9 @@
-// How far the parts of a merged source see an occluder's shadow shifted on the lens.
+// Parallax of an occluder across a merged source: how far its shadow on the lens is blurred.
 #ifndef OCCLUDER_BLUR_LIB_GLSL
 #define OCCLUDER_BLUR_LIB_GLSL
 #include "lib/bokeh/source_lib.glsl"
 
-// Blur over more than the lens is none the softer, radii of the lens.
+// Largest blur, radii of the lens: wider than the lens, more makes no difference.
 #define WIDEST_BLUR 2.0
 
 // Side of the square on the lens, in its radii, that the shadow of an occluder at depth z (m) is

@@ -1,5 +1,5 @@
-// The opening as a stack of its density, each layer blurred twice as much as the one before
-// (addon/lens_bokeh/look/opening.py).
+// The lens' opening as a stack of layers of its light density, each blurred twice as much as the one
+// before (addon/lens_bokeh/look/opening.py).
 #ifndef OPENING_LIB_GLSL
 #define OPENING_LIB_GLSL
 
@@ -27,7 +27,7 @@ vec2 opening_layers(float layers, float blur)
   float top = layers - 1.0;
   float level = clamp(log2(max(blur, 1e-6) / OPENING_LEAST_BLUR), 0.0, top);
   float lower = min(floor(level), max(top - 1.0, 0.0));
-  // Variances add up: the mixture has that of the blur.
+  // Variances add up: the mixture of two layers has the variance of the blur.
   return vec2(lower, (exp2(2.0 * (level - lower)) - 1.0) / 3.0);
 }
 

@@ -1,16 +1,16 @@
-// A source as the tests of its visibility see it.
+// A source (highlight or cluster of highlights) for the tests of its visibility.
 #ifndef SOURCE_LIB_GLSL
 #define SOURCE_LIB_GLSL
 #include "lib/lens_lib.glsl"
 #include "lib/bokeh/visibility_lib.glsl"
 
-// What a test has found.
+// States of a source that the tests write.
 #define STATE_OUTSIDE 1.0  // the disc does not meet the frame
-#define STATE_HIDDEN 2.0   // nothing of the lens sees it
-#define STATE_VISIBLE 3.0  // no surface of the layers lies before it
+#define STATE_HIDDEN 2.0   // hidden from the whole lens
+#define STATE_VISIBLE 3.0  // no surface of the peeled layers lies in front of it
 #define STATE_OPEN 4.0     // not decided
 #define STATE_FREE 5.0     // no triangles in the cone to the lens
-#define STATE_EDGE 6.0     // as STATE_VISIBLE, unless something outside the raster lies before it
+#define STATE_EDGE 6.0     // as STATE_VISIBLE, unless a surface outside the raster lies in front
 
 struct Source {
   Cone cone;
@@ -48,7 +48,7 @@ Source source_of(vec4 a, VisibilityParams params)
   return source;
 }
 
-// How far the line to the rim of the opening moves a unit of the depth buffer, texels.
+// Texels that the line to the rim of the opening moves for each unit of the depth buffer.
 vec2 source_reach(VisibilityParams params)
 {
   return params.sweep.xy * params.opening.xy;

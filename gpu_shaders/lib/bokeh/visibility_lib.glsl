@@ -1,4 +1,4 @@
-// What hides a highlight from places on the lens (methods 11).
+// Visibility of a highlight from places on the lens (methods 11).
 //
 // The line from a highlight at depth d to the place L on the lens passes, at depth z,
 //   xy(z) = a + b z + L (d - z) r        (a = 0, b = xy / d, r = 1 / d; for an orthographic camera
@@ -9,13 +9,13 @@
 #ifndef VISIBILITY_LIB_GLSL
 #define VISIBILITY_LIB_GLSL
 
-// What becomes of a source.
+// Kinds of a source in `tiles_tx`.
 #define SOURCE_DROP 0.0
 #define SOURCE_UNMASKED 1.0
 #define SOURCE_MASKED 2.0
 #define SOURCE_IN_SPLAT 3.0
 
-// Steps of a ray, at most; longer ways are walked in longer steps.
+// Most steps of a ray; longer rays take longer steps.
 #define VISIBILITY_STEPS 192
 
 vec4 visibility_opacities(sampler2D opacity_tx, vec2 place)
@@ -52,10 +52,10 @@ float window_depth(float depth, vec4 sweep, bool orthographic)
   return orthographic ? sweep.z + sweep.w * depth : sweep.z + sweep.w / depth;
 }
 
-// Depth from which on, towards the lens, surfaces hide the source. What lies behind that is seen by
-// the whole lens as by its centre, to within a movement of `same` pixels: it hides a source that is
-// seen from there nowhere, above all the surface that the source itself stands on.
-// `lens` as in ViewParams.
+// Depth of the farthest surface that counts as an occluder of the source. Surfaces between this depth
+// and the source move by less than `same` pixels between places on the lens: as they do not hide the
+// source from the centre, they hide it from nowhere. Above all this leaves out the surface that the
+// source itself lies on. `lens` as in ViewParams.
 float hiding_depth(float depth, vec4 lens, float same)
 {
   float move = same / max(lens.z, 1e-30);
@@ -63,7 +63,7 @@ float hiding_depth(float depth, vec4 lens, float same)
   return min(limit, depth * (1.0 - 1e-5));
 }
 
-// Up to four layers' depth buffer values; nothing is outside the raster.
+// Depth buffer values of up to four layers; outside the raster as where there is no surface.
 vec4 visibility_layers(sampler2D layers_tx, vec2 place)
 {
   ivec2 texel = ivec2(floor(place));
@@ -76,9 +76,9 @@ vec4 visibility_layers(sampler2D layers_tx, vec2 place)
 
 // Share of a source's light that reaches a place on the lens through the surfaces of the peeled
 // layers.
-// opacity_tx: how much each layer hides; place: the source's, texels; depth: its depth buffer value;
-// limit: surfaces at larger values hide nothing; nearest: value that nothing on the way falls below;
-// move: texels a unit of the depth buffer moves the line to that place.
+// opacity_tx: opacity of each layer; place: the source's, texels; depth: its depth buffer value;
+// limit: surfaces at larger values are no occluders; nearest: least value of any surface on the way;
+// move: texels that the line to that place on the lens moves for each unit of the depth buffer.
 // The ray is walked from the source to the lens. Between texels whose surfaces are joined, a layer
 // is a height field; elsewhere each texel's surface is flat.
 float visibility_cast(sampler2D layers_tx,

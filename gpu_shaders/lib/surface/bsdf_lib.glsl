@@ -91,16 +91,16 @@ float ior_from_f0(float f0)
   return (1.0 + r) / (1.0 - r);
 }
 
-// Where a dielectric stands between its reflectance at normal incidence (0) and at grazing (1).
+// Fresnel reflectance of a dielectric, scaled to 0 at normal incidence and 1 at grazing incidence.
 float fresnel_dielectric_rise(float cosine, float eta)
 {
   float f0 = f0_from_ior(eta);
   return clamp((fresnel_dielectric(cosine, eta) - f0) / max(1.0 - f0, 1e-6), 0.0, 1.0);
 }
 
-// Reflection of white surroundings by a lobe F = f0 + (1 - f0) rise: xy are the shares of f0 and of
-// the rise, z is the mean of x + y over the hemisphere. Table over cosine and roughness, see
-// passes/surface/environment.py.
+// Directional albedo of a lobe F = f0 + (1 - f0) rise: xy are the shares of f0 and of the rise, z is
+// the mean of x + y over the hemisphere. Table over cosine and roughness, see ggx_table of
+// addon/passes/surface/environment.py.
 vec3 ggx_albedo(sampler2D ggx_tx, float cos_view, float roughness)
 {
   vec2 size = vec2(textureSize(ggx_tx, 0));

@@ -1,13 +1,13 @@
-// A closure that has met its light: what it sends to the eye, and what it lets through.
+// A lit closure: radiance towards the eye, and transmittance.
 #ifndef CLOSURE_LIB_GLSL
 #define CLOSURE_LIB_GLSL
 #include "lib/finite_lib.glsl"
 
 struct Closure {
   vec3 radiance;       // scene linear, towards the eye
-  vec3 transmittance;  // share of what is straight behind the surface
-  float holdout;       // share of the picture that becomes a hole
-  vec3 unsplit;        // of the radiance, light of lamps that is never splatted
+  vec3 transmittance;  // share of the light from straight behind the surface
+  float holdout;       // share of the pixel that becomes transparent in the picture
+  vec3 unsplit;        // part of the radiance that is never splatted (lamps without highlights)
 };
 
 Closure closure_none()
@@ -48,7 +48,7 @@ Closure closure_add(Closure a, Closure b)
                  a.unsplit + b.unsplit);
 }
 
-// A surface of which only the share `alpha` is there.
+// A surface of opacity `alpha`.
 Closure closure_cover(Closure a, float alpha)
 {
   float t = clamp(number_or_zero(alpha), 0.0, 1.0);
@@ -56,7 +56,7 @@ Closure closure_cover(Closure a, float alpha)
       a.radiance * t, mix(vec3(1.0), a.transmittance, t), a.holdout * t, a.unsplit * t);
 }
 
-// Share of the light from behind that a pixel's decision by chance lets through.
+// Probability that a lens sample sees through the surface.
 float closure_through(Closure a)
 {
   return clamp(dot(a.transmittance, vec3(1.0 / 3.0)), 0.0, 1.0);

@@ -1,5 +1,5 @@
-// The world as a light: an equirectangular image, and a strip of octahedral maps of its mean over
-// GGX lobes, one a level of roughness, and last over the cosine lobe of a diffuse surface.
+// Image-based lighting: an equirectangular image, and a strip of octahedral maps of its mean over GGX
+// lobes, one a level of roughness, and last over the cosine lobe of a diffuse surface.
 #ifndef ENVIRONMENT_LIB_GLSL
 #define ENVIRONMENT_LIB_GLSL
 
@@ -9,7 +9,7 @@
 #define ENVIRONMENT_TILES 9.0
 #define ENVIRONMENT_DIFFUSE 8.0
 #define ENVIRONMENT_TILE 128.0
-// Texels around each map that repeat its other side, so that filtering does not leave it.
+// Gutter around each map, texels, that repeats its other side, so that filtering stays in the map.
 #define ENVIRONMENT_GUTTER 1.0
 
 // Blender's equirectangular mapping: +x in the middle of the image, z up.

@@ -15,7 +15,7 @@ struct Light {
   float radius;    // m; sun: sine of the disk's half angle
   vec3 direction;  // the way the light travels, unit length
   float soft;      // 1: a disk that faces the shaded point; 0: a sphere
-  float unsplit;   // 1: what is seen of it on surfaces is never splatted as a highlight
+  float unsplit;   // 1: what surfaces reflect of it is never splatted as a highlight
   vec2 factors;    // of diffuse and specular light
   vec2 cone;       // spot: cosine of the half angle, 1 / width of the edge in cosines;
                    // area: tangent of half the spread, its normalisation (0 for all directions)
@@ -77,7 +77,7 @@ float horizon_cosine(float cosine, float sin2)
   return max(form / (3.14159265358979 * sin2), 0.0);
 }
 
-// How much of a spot's or an area light's beam goes in the direction `ray`, away from the light.
+// Factor of a spot's or an area light's beam in the direction `ray`, away from the light.
 float light_beam(Light light, vec3 ray)
 {
   if (light.kind == LIGHT_SPOT) {
@@ -107,8 +107,8 @@ vec3 edge_irradiance(vec3 a, vec3 b)
   return (sine > 1e-9) ? axis * (atan(sine, dot(a, b)) / sine) : vec3(0.0);
 }
 
-// What a light sends to a point: `towards` the light's middle, irradiance of a surface that faces
-// it, squared sine of the light's half angle.
+// Illumination of a point by a light: direction `towards` its middle, irradiance of a surface that
+// faces it, squared sine of its half angle.
 struct Illumination {
   vec3 towards;
   vec3 irradiance;

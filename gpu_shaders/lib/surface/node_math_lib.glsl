@@ -1,5 +1,5 @@
-// Blender's Math, Vector Math, Clamp and Map Range nodes: an operation a function. What has no value
-// (a division by 0, the root of a negative number) is 0, as in Cycles.
+// Blender's Math, Vector Math, Clamp and Map Range nodes: an operation a function. Undefined results
+// (a division by 0, the root of a negative number) are 0, as in Cycles.
 #ifndef NODE_MATH_LIB_GLSL
 #define NODE_MATH_LIB_GLSL
 #include "lib/finite_lib.glsl"

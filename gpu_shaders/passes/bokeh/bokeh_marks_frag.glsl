@@ -6,7 +6,7 @@ void main()
 {
   float opacity = 1.0;
 #if defined(RING)
-  // Distance from an ellipse, in the first order.
+  // Distance from an ellipse, to first order.
   float ratio = mark_buf.size.w;
   vec2 place = v_offset * vec2(ratio, 1.0);
   float radius = max(length(place), 1e-6);

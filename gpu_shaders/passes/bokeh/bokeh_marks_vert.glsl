@@ -1,9 +1,9 @@
 // A mark for each highlight, where a pinhole at the lens' centre sees it: a dot, the OUTLINE of the
 // square of pixels that it stands for, or the RING that is its disc's edge, piece by piece.
 // Inputs: pos (corner, 0 or 1); sources_a_tx, sources_b_tx (see highlights_comp); view_buf (of the
-// frame), mark_buf; stride (every how manyth highlight has a mark). FATES: tiles_tx, states_tx (see
-// bokeh_culling_tiles_comp), whose colours are those of what became of the highlight; SHARP: only what
-// is too sharp to be splatted has a mark; otherwise colours are the highlights' own.
+// frame), mark_buf; stride (2 marks every second highlight, ...). FATES: tiles_tx, states_tx (see
+// bokeh_culling_tiles_comp); colours are those of the highlight's fate. SHARP: only highlights whose
+// circle of confusion is too small to be splatted have a mark. Otherwise colours are the highlights' own.
 // Outputs: place from the mark's middle, px (v_offset), size (v_size), colour (v_color).
 // Source: methods 10.
 #include "lib/lens_lib.glsl"
@@ -52,7 +52,7 @@ void main()
 #endif
 #ifdef SHARP
   if (coc > mark_buf.source.x) {
-    // No area.
+    // No mark: a triangle without area.
     v_offset = vec2(0.0);
   }
 #endif

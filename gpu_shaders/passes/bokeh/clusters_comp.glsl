@@ -1,8 +1,8 @@
-// Merges the sources of each group, where that does no harm. The steps, one after the other, with
+// Merges the sources of each group, where their harm (see cluster_lib) is small enough. The steps, with
 // prefix sums over `starts` after COUNT and after MARK:
 // COUNT: a group's size, at its first source. FILL: the groups' members, group after group.
-// MERGE: a group of several becomes one, in place of its first, if that is harmless. MARK: 1 for
-// each source that is left. WRITE: what is left, in the order of before.
+// MERGE: a group of several becomes one source, in place of its first, if that is harmless. MARK: 1 for
+// each source that is left. WRITE: the sources that are left, in their old order.
 // Inputs: number_tx (how many sources); COUNT: slots_tx, table_tx (see clusters_groups_comp), or
 // leaders_img where WITH_LEADERS; MERGE: cluster_buf.
 // Outputs: WRITE: a_out_img, b_out_img, number_img.
@@ -14,7 +14,7 @@ ivec2 list_texel(int index)
 }
 
 #ifdef PLACES
-// What the prefix sums say of a texel.
+// Prefix sum of a texel.
 uint place_of(ivec2 texel)
 {
   return texelFetch(starts_tx, texel, 0).x + texelFetch(totals_tx, list_texel(texel.y), 0).x;
@@ -94,7 +94,7 @@ void handle(int index, int number)
     vec3 span = max(bounds.high - bounds.low, vec3(1e-30));
     float strongest = power_above(largest(bounds.energy));
     float extent_scale = max(bounds.extent * bounds.extent, 1e-30);
-    // Whole numbers: the members come in any order.
+    // Sums of whole numbers do not depend on the order of the members.
     Sum red = NO_SUM, green = NO_SUM, blue = NO_SUM, weight = NO_SUM;
     Sum x = NO_SUM, y = NO_SUM, z = NO_SUM, xx = NO_SUM, yy = NO_SUM, zz = NO_SUM, extent = NO_SUM;
     for (int k = 0; k < size; k++) {
@@ -120,7 +120,7 @@ void handle(int index, int number)
     vec3 mean = vec3(sum_value(x), sum_value(y), sum_value(z)) / total;
     vec3 spread = vec3(sum_value(xx), sum_value(yy), sum_value(zz)) / total - mean * mean;
     float pixel = cluster_buf.cell.y;
-    // Discs of several sizes are blurred at their rims as shifted ones are.
+    // Discs of different sizes blur the rim of the merged disc as shifted ones do.
     vec3 scale = span * vec3(1.0 / pixel, 1.0 / pixel, coc_rate(cluster_buf.lens));
     vec3 variance = max(spread, 0.0) * scale * scale;
     float own = sum_value(extent) / total * extent_scale;

@@ -1,8 +1,8 @@
-// Which sources are tried as one: each gets the first of its group.
-// CELLS: those in one cell of world space. A table by the cells' hashes holds the first source of
-// each cell; whoever finds another cell's source in its place goes on to the next.
-// NEAREST: of a source, the nearest of all, or itself where none is near.
-// PAIRS: two that are nearest to each other.
+// Groups of sources that are tried as one cluster: each source gets the number of its group's first.
+// CELLS: the sources in one cell of world space. A hash table holds the first source of each cell, with
+// linear probing.
+// NEAREST: the nearest source of each, or itself where none is near.
+// PAIRS: two sources that are nearest to each other.
 // Inputs: a_tx, b_tx (see highlights_comp); number_tx (how many); cluster_buf; level; CELLS: shift of
 // the cells in sides.
 // Outputs: CELLS: table_img (first source + 1, 0 is empty), slots_img (place in it). NEAREST:

@@ -1,8 +1,7 @@
-// Blurs the masks of merged sources: their parts see what hides them from different sides, see
+// Blurs the visibility masks of merged sources by the parallax of their occluders, see
 // lib/bokeh/occluder_blur_lib.glsl.
-// A group of threads for each source. The occluders' mean blur was found with what meets the
-// source's cone; LAYERS: it is found by samples around the source in the peeled layers, nearer ones
-// ever denser.
+// A group of threads for each source. The occluders' mean blur was found by the test of the source's
+// cone; LAYERS: it is found by samples of the peeled layers around the source, the denser the nearer.
 // Inputs: sources_tx, tiles_tx, states_tx (see bokeh_culling_comp), masks_tx; visibility_buf; count.
 // LAYERS: layers_tx.
 // Outputs: soft_img, the atlas with blurred masks; other texels are not written.
@@ -12,7 +11,7 @@
 #define SIDE 8
 #define SCALES 4
 #define TAPS 4
-// Below this many texels, interpolation is blur enough.
+// Least blur that is applied, texels: below, the interpolation of the mask suffices.
 #define LEAST_TEXELS 0.5
 
 #ifdef LAYERS
@@ -23,7 +22,7 @@ float depth_of(float value)
   return (visibility_buf.lens.y > 0.5) ? from / rate : rate / from;
 }
 
-// Blur and weight of what a thread's samples find.
+// Weighted blur and weight of the occluders that a thread's samples find.
 vec2 sample_occluders(Source source, float extent, float nearest, ivec2 lane)
 {
   vec2 found = vec2(0.0);
@@ -36,7 +35,7 @@ vec2 sample_occluders(Source source, float extent, float nearest, ivec2 lane)
     for (int k = 0; k < 4; k++) {
       float way = source.depth - values[k];
       vec2 spread = rate * way;
-      // In its shadow lies a part of the lens.
+      // The occluder hides a part of the lens.
       if (values[k] < source.limit && way > 0.0 && length(offset / spread) <= 1.0) {
         float weight = (reach.x * reach.y * size * size) / max(spread.x * spread.y, 1e-12);
         found += weight * vec2(occluder_blur(source, extent, depth_of(values[k]), visibility_buf), 1.0);

@@ -1,6 +1,6 @@
 // Appends a fragment that is brighter than the threshold to the list of its texel.
 // Inputs: capacity (fragments that there is room for), tile_texels (along a side of a tile).
-// Outputs: used_img (how many there are; more than the capacity are counted, not kept), heads_img
+// Outputs: used_img (number of fragments; beyond the capacity they are counted, not kept), heads_img
 // (number of a texel's last fragment, from 1), light_img (light above the threshold, window depth),
 // nodes_img (texel and opacity, number of the fragment before it in the texel's list, instance from
 // 1), tiles_img (1 where any is in a tile).

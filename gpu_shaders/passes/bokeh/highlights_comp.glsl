@@ -1,22 +1,23 @@
-// Highlights of the pixels of a raster. First they are counted for each pixel; then, once it is known
-// where each pixel's list begins (prefix_sums_comp), EMIT writes them.
-// The light that a pixel shows is one highlight, or several where it lies so far apart in depth that
-// its circles of confusion differ.
-// A group of threads for each tile with light.
+// Highlights of the pixels of a raster. First they are counted for each pixel; after prefix sums
+// (prefix_sums_comp) have given each pixel's place in the list, EMIT writes them.
+// The fragments of a pixel make one highlight, or several where their depths, and with them their
+// circles of confusion, differ.
+// A group of threads for each tile that has fragments.
 // Inputs: listed_tx (tiles: x, y); heads_tx, order_tx, light_tx (see highlights_order_comp); view_buf
 // (of the raster); tiles (how many), subpixels (along a side of a pixel); with EMIT starts_tx and
 // totals_tx (prefix sums of what was counted), first (highlights listed before) and lens_view (xy:
 // place on the lens that it was seen from, m; z: region of the lens that it stands for).
-// Outputs: starts_img (highlights of each pixel, tile by tile) and sharp_img (pixels with light too
-// sharp to be splatted); EMIT fills a_img (x, y and depth in camera space, m; side of the square it
-// stands for, px) and b_img (energy: radiance times pixels; region of the lens).
+// Outputs: starts_img (highlights of each pixel, tile by tile) and sharp_img (pixels with fragments
+// whose circle of confusion is too small to be splatted); EMIT fills a_img (x, y and depth in camera
+// space, m; side of the square it stands for, px) and b_img (energy: radiance times pixels; region of
+// the lens).
 // Source: methods 9 (J20 section 4.1).
 #include "lib/bokeh/fragment_list_lib.glsl"
 #include "lib/lens_lib.glsl"
 
-// Circles of confusion that differ by more are not averaged, px.
+// Largest difference of circles of confusion that are averaged, px.
 #define COC_TOLERANCE 1.0
-// Highlights of a pixel; the last is of all that is left.
+// Most highlights of a pixel; the last one has all the light that is left.
 #define MOST 8u
 
 float largest(vec3 color)
@@ -34,8 +35,8 @@ uint next_of(uint number)
   return texelFetch(order_tx, list_texel(number - 1u), 0).x;
 }
 
-// Least circle of confusion of a pixel's light from `from` on, and the largest; the largest is the
-// less where there is none.
+// Least circle of confusion, from `from` on, of a pixel's fragments, and the largest; the largest is
+// below the least where there are no fragments.
 vec2 coc_range(ivec2 pixel, float from, out bool sharp)
 {
   vec2 range = vec2(1e30, -1e30);
@@ -76,7 +77,7 @@ Highlight gather(ivec2 pixel, float from, float to)
       vec4 light = texelFetch(light_tx, list_texel(number - 1u), 0);
       float coc = coc_radius_px(light.a, view_buf.lens);
       if (coc >= from && coc < to) {
-        // Nothing of what is too sharp.
+        // Fragments that are too sharp to be splatted are left out.
         float weight = largest(light.rgb);
         found.energy += light.rgb;
         found.weight += weight;
@@ -93,7 +94,7 @@ Highlight gather(ivec2 pixel, float from, float to)
 void emit(Highlight found, uint index)
 {
   if (found.weight <= 0.0) {
-    // Counted, but for rounding not found again.
+    // Counted, but by rounding not found again.
     found = Highlight(vec3(0.0), 1.0, 0.5 * view_buf.film.xy, 1.0 / view_buf.lens.x, 1.0);
   }
   vec2 clip = found.place / found.weight / view_buf.film.xy * 2.0 - 1.0;
@@ -106,7 +107,7 @@ void emit(Highlight found, uint index)
   else {
     xy = (clip + view_buf.projection[2].xy) / scale * depth;
   }
-  // Where it is, not where it appears from that place.
+  // Its true place, not where it appears from the view's place on the lens.
   xy += lens_view.xy * (view_buf.lens.x - depth) / view_buf.lens.x;
   float area = 1.0 / float(subpixels * subpixels);
   ivec2 place = list_texel(index);

@@ -1,14 +1,14 @@
-// Puts the fragments of each texel in order, from front to back, and leaves out those that nothing
-// of the lens sees: right behind an opaque surface or an opaque highlight. All others stay, whatever
-// is in front: what hides them from which part of the lens is found later.
-// A thread for each fragment; that of a texel's last one does the texel.
+// Sorts the fragments of each texel from front to back and drops those hidden from the whole lens:
+// right behind an opaque surface or an opaque highlight. All others stay, whatever is in front: their
+// visibility from each part of the lens is found later.
+// A thread for each fragment; the thread of a texel's last fragment sorts the texel.
 // Inputs: nodes_tx, heads_img, light_img (see highlights_append); scene_tx (window depth of the
 // nearest opaque surface); areas_tx and hits_tx (of each instance: area in the raster, 0 where it is
 // not known, and number of its texels there); view_buf (of the raster), highlight_buf; number (of fragments); layers
 // (that are kept of a texel). WORLD: the world at infinity, nothing in front. CHROMATIC: chromatic_buf,
 // field_tx (field table) and lens_view (xy: place on the lens that the raster was seen from, m).
 // Outputs: heads_img (first of a texel, with IN_ORDER), order_img (next of each); light_img: light that
-// is splatted, 0 of what is too sharp, and depth along the axis, m.
+// is splatted (0 where the circle of confusion is too small) and depth along the axis, m.
 // Source: methods 9 (J20 section 4.1).
 #include "lib/depth_lib.glsl"
 #include "lib/bokeh/fragment_list_lib.glsl"
@@ -18,9 +18,9 @@
 #include "lib/chromatic_lib.glsl"
 #endif
 
-// Circles of confusion that differ by less than this see the same surfaces in front, px.
+// Difference of circles of confusion, px, below which a surface in front hides from the whole lens.
 #define SAME_VIEW 1.0
-// Of a depth buffer: steps by which two shaders may differ in the depth of one surface.
+// Depth buffer values of one surface in two shaders may differ by this much.
 #define DEPTH_STEPS 2e-7
 
 float depth_of(float window_depth)
@@ -48,8 +48,8 @@ struct Fragment {
   bool opaque;
 };
 
-// The nearest fragment behind another one that something of the lens may see. Of two at one depth,
-// the brighter.
+// The nearest fragment behind `front` that is not hidden from the whole lens. Of two at one depth, the
+// brighter.
 Fragment next_behind(uint first, Fragment front, float scene)
 {
   Fragment best = Fragment(0u, vec4(0.0, 0.0, 0.0, 2.0), false);
@@ -71,7 +71,7 @@ Fragment next_behind(uint first, Fragment front, float scene)
 #endif
 
 #ifndef WORLD
-// What the light of an instance's texels is to be multiplied by, so that they have its area.
+// Factor of the light of an instance's texels: its area in the raster over its number of texels.
 float area_per_hit(uint instance)
 {
   if (instance == 0u) {
@@ -84,7 +84,8 @@ float area_per_hit(uint instance)
 #endif
 
 #ifdef CHROMATIC
-// Radius of the circle of confusion that stands for all wavelengths, where a texel's light comes from.
+// Radius of the circle of confusion that represents all wavelengths, px, at the place in the field from
+// which a texel's light comes.
 float typical_coc(ivec2 texel, float depth)
 {
   vec2 clip = (vec2(texel) + 0.5) / view_buf.film.xy * 2.0 - 1.0;
@@ -97,7 +98,7 @@ float typical_coc(ivec2 texel, float depth)
 }
 #endif
 
-// The same light as the splats need it.
+// The light of a fragment that is splatted, and its depth.
 vec4 splatted(vec4 light, ivec2 texel)
 {
 #ifdef WORLD

@@ -4,7 +4,7 @@
 // pixel_size.
 // Outputs: premultiplied scene-linear colour. Source: methods 10.
 
-// Of white, and at most.
+// Brightness of the dimmed picture: factor, and maximum.
 #define DIMMED 0.25
 
 void main()
@@ -12,7 +12,7 @@ void main()
   ivec2 texel = (ivec2(gl_FragCoord.xy) - origin) / pixel_size;
   vec4 picture = texelFetch(picture_tx, texel, 0);
   vec4 marks = texelFetch(marks_tx, texel, 0);
-  // However bright discs are, marks are seen on them.
+  // Clamped, so that marks can be seen on bright discs.
   float peak = max(picture.r, max(picture.g, picture.b));
   picture.rgb *= DIMMED / max(peak, 1.0);
   out_color = marks + picture * (1.0 - marks.a);

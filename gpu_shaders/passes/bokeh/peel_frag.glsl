@@ -1,19 +1,19 @@
-// What a pinhole on the lens sees, beyond the nearest surface.
-// OCCLUDERS: one layer of all surfaces, the nearest behind the layer before, as their opacity.
-// HIGHLIGHTS: all that is brighter than the threshold, in lists for each texel, so that no surface in
-// front makes it miss any, and the depth of what is opaque.
+// Depth peeling from one place on the lens.
+// OCCLUDERS: one layer of all surfaces, the nearest behind the previous layer, as their opacity.
+// HIGHLIGHTS: all fragments above the highlight threshold, in lists for each texel, whatever is in
+// front of them, and the depth of opaque surfaces.
 // Otherwise: the depth of the nearest opaque surface.
 // Inputs: varyings of surface_vert; view_buf; OCCLUDERS: front_tx (depth of the layer before);
 // highlights: highlight_buf, areas_tx (of instances whose texels are counted; else 0) and what
 // highlights_append needs; what the generated surface_closure()
 // reads.
-// Outputs: opacity (a); or lists of fragments: light above the threshold that would reach the eye
-// through nothing else, and hits_img (texels of each instance, whatever hides them).
+// Outputs: opacity (a); or lists of fragments (light above the threshold, not attenuated by surfaces in
+// front) and hits_img (texels of each instance, hidden ones too).
 // Source: Everitt, Interactive order-independent transparency, 2001; Yang et al., Real-time
 // concurrent linked list construction on the GPU, EGSR 2010; methods 9.
 #include "lib/bokeh/highlight_lib.glsl"
 
-// Less is seen through.
+// Least opacity of a surface that counts as an occluder.
 #define OPAQUE_FROM 0.999
 
 #ifndef HIGHLIGHTS
@@ -55,7 +55,7 @@ void main()
 #ifdef TRANSPARENT
   opacity = 1.0 - closure_through(closure);
 #ifndef GLOW_APART
-  // What the lens samples split: the light of those that chance lets stand.
+  // As lens samples split it: the light of a surface that the random opacity keeps.
   float there = max(opacity, 1e-6);
   light = highlight_light(closure.radiance / there, closure.unsplit / there, split.x, split.y);
   light *= opacity;

@@ -1,8 +1,8 @@
-// A highlight's disc, as far as the lens sees it; the blend state adds it to the others.
+// The disc of a highlight, masked by its visibility from the lens; the blend state adds discs up.
 // Inputs: v_place, v_density, v_blur, v_tile, v_source, v_region (see splat_vert); splat_buf;
-// opening_tx (layers of rising blur); masks_tx (atlas of what each place on the lens sees). IN_SPLAT: sources without a mask cast
-// a ray a pixel through layers_tx and opacity_tx; sources_a_tx, states_tx, visibility_buf. CHROMATIC:
-// v_area, v_dot (1: hardly a disc).
+// opening_tx (layers of rising blur); masks_tx (atlas of visibility masks over the lens). IN_SPLAT: a
+// ray a pixel is cast through layers_tx and opacity_tx for sources without a mask; sources_a_tx,
+// states_tx, visibility_buf. CHROMATIC: v_area, v_dot (1: the disc is about a pixel wide).
 // Outputs: scene-linear light.
 // Source: methods 11, 13.
 #include "lib/bokeh/opening_lib.glsl"
@@ -11,14 +11,14 @@
 #ifdef IN_SPLAT
 #include "lib/bokeh/occluder_blur_lib.glsl"
 
-// Parts along the square that a merged source stands for, a ray each.
+// Parts along a side of the square that a merged source stands for, a ray each.
 #define PARTS 3
-// Sources that are smaller, px, cast one ray.
+// Sources of a smaller extent, px, cast one ray.
 #define LEAST_EXTENT 1.01
 
-// The parts of a merged source see what hides them shifted, and their discs are shifted, too: a ray
-// from each, to the place on the lens that its own disc has here. The mean over them is the blur of
-// lib/bokeh/occluder_blur_lib.glsl.
+// Visibility of a merged source, averaged over its parts. Occluders have a parallax across the source,
+// and the parts' discs are shifted, too: a ray from each part, to the place on the lens that its own
+// disc has at this pixel. The mean is the blur of lib/bokeh/occluder_blur_lib.glsl.
 float seen_from_parts(Source source, float extent, float nearest, vec2 lens)
 {
   vec2 reach = source_reach(visibility_buf);
@@ -43,7 +43,7 @@ float seen_from_parts(Source source, float extent, float nearest, vec2 lens)
 }
 #endif
 
-// Share of the light that reaches a place on the lens, in units of half the opening.
+// Share of the source's light that reaches a place on the lens; `lens` in units of half the opening.
 float seen_from(vec2 lens)
 {
   if (v_tile.w == SOURCE_MASKED) {
@@ -60,7 +60,7 @@ float seen_from(vec2 lens)
   return 1.0;
 }
 
-// Weight of the region that the source stands for: hats over a grid of regions, which add up to 1.
+// Weight of the lens region that the source was seen from: tents over a grid of regions, which sum to 1.
 float region_weight(vec2 lens)
 {
   if (v_region < 0.5) {
@@ -75,7 +75,8 @@ float region_weight(vec2 lens)
 }
 
 #if defined(PROFILE) || defined(RIMS)
-// Density of one layer of blur, with the lens' profile and what the rims leave made up for.
+// Light density of one layer of blur; `left`: share that the rims let pass, by which it is divided so
+// that the disc keeps its energy.
 vec3 layer_density(float layer, vec3 left)
 {
   vec3 density = opening_layer(opening_tx, v_place, layer);
@@ -92,10 +93,10 @@ vec3 layer_density(float layer, vec3 left)
 }
 #endif
 
-// Density per unit of area, and the place on the lens that the light has come through.
+// Light density per unit of area, and the place on the lens that the light has come through.
 vec3 disc_density(out vec2 lens)
 {
-  // Beyond the rim, what is blurred belongs to the rim.
+  // Light that is blurred beyond the rim has come through the rim.
   lens = v_place / max(length(v_place), 1.0);
 #ifdef CHROMATIC
   if (v_dot > 0.5) {
@@ -106,7 +107,7 @@ vec3 disc_density(out vec2 lens)
 #ifdef TILES
   vec2 away = azimuth_of(v_chief);
   vec3 light = tile_light(sharp_tx, soft_tx, v_place, v_blur, v_tile_at);
-  // The even disc that the pattern is blended with.
+  // The even disc that the lens' pattern is blended with (Lens Profile below 1).
   float edge = clamp(0.5 + (1.0 - length(v_place)) / max(v_blur, 1e-6), 0.0, 1.0);
   light.x = mix(edge / 3.14159265, light.x, splat_buf.rows.w);
   light.yz = mix(lens * v_upright, light.yz, splat_buf.rows.w);

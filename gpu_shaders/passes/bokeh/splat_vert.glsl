@@ -1,7 +1,7 @@
 // A square for each highlight, as large as its disc in the picture.
-// Inputs: pos (corner, 0 or 1); sources_a_tx, sources_b_tx (see highlights_comp); tiles_tx (what hides
-// them, see visibility_lib); view_buf (of the frame), splat_buf. CHROMATIC: chromatic_buf, field_tx
-// (field table).
+// Inputs: pos (corner, 0 or 1); sources_a_tx, sources_b_tx (see highlights_comp); tiles_tx (masks of
+// the sources, see visibility_lib); view_buf (of the frame), splat_buf. CHROMATIC: chromatic_buf,
+// field_tx (field table).
 // Outputs: place on the opening in units of its radius before the anamorphic ratio (v_place), energy
 // density (v_density), blur of the disc in the same units (v_blur); see bokeh_look_lib for the rest; tile, number and region of the source.
 // Source: methods 1, 8, 13.
@@ -12,10 +12,10 @@
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
 
-// Pixels on either side of a dot's centre whose light is added up.
+// Pixels on either side of a dot's centre over which its light is summed.
 #define TENT_PIXELS 6
 
-// Whether the colours of a highlight part as far as the band's level is meant for.
+// Whether the colours of a highlight spread as far as the band's level is made for (see BandLevel).
 bool is_of_level(vec2 place)
 {
   vec2 strengths = abs(field_strengths(field_tx, place, chromatic_buf) - vec2(1.0, 0.0));
@@ -23,8 +23,8 @@ bool is_of_level(vec2 place)
   return spread >= splat_buf.spread.x && spread < splat_buf.spread.y;
 }
 
-// What the pixels along each axis get of tents of these half widths, px: nearly the half widths
-// themselves, but the pixels of a bright surface in focus all have the same error.
+// Sums over the pixels along each axis of tents of these half widths, px: nearly the half widths, but
+// the difference is the same for all pixels of a bright surface in focus and would show.
 vec2 tent_sum(vec2 center, vec2 tent)
 {
   if (max(tent.x, tent.y) > float(TENT_PIXELS - 1)) {
@@ -38,10 +38,10 @@ vec2 tent_sum(vec2 center, vec2 tent)
   return sum;
 }
 
-// Of the field's width, for differences.
+// Step of finite differences, as a share of the field's width.
 #define FIELD_STEP (1.0 / 256.0)
 
-// 1 / focus distance (1/m) and scale of the middle of the band, at a place of the field.
+// 1 / focus distance (1/m) and lateral scale of the band's mean wavelength at a place of the field.
 vec2 band_at(vec2 place)
 {
   vec2 strengths = field_strengths(field_tx, place, chromatic_buf);
@@ -49,8 +49,8 @@ vec2 band_at(vec2 place)
               lateral_scale(splat_buf.dispersion.y, strengths.y, chromatic_buf));
 }
 
-// How much larger a lamp at a place of the field appears from places on the lens: from the centre
-// (x), and what is added to that for a place (yz, times the place in units of half the opening).
+// Magnification of a lamp's area at a place of the field, seen from the lens' centre (x), and its
+// change for other places on the lens (yz, times the place in units of half the opening).
 // With focus f and scale m, the place p appears at m p + v (f - 1 / depth) from v, so that areas
 // grow by det(m + p grad(m) + v grad(f)), which is linear in v.
 vec3 appearing_area(vec2 place, vec2 band, float depth)
@@ -67,7 +67,7 @@ vec3 appearing_area(vec2 place, vec2 band, float depth)
   return vec3(band.y * (band.y + dot(place, scale)), slope / vec2(splat_buf.opening.x, 1.0));
 }
 
-// By how much the rims of a disc lie apart within the band, px.
+// How far the rims of the band's wavelengths lie apart, px.
 float band_width(vec2 xy, float depth, vec2 place)
 {
   vec2 strengths = field_strengths(field_tx, place, chromatic_buf);
@@ -75,7 +75,7 @@ float band_width(vec2 xy, float depth, vec2 place)
   float lower = chromatic_focus(band.x - 0.5 * band.z, strengths.x, chromatic_buf);
   float upper = chromatic_focus(band.x + 0.5 * band.z, strengths.x, chromatic_buf);
   float axial = coc_radius_at(depth, upper, view_buf.lens) - coc_radius_at(depth, lower, view_buf.lens);
-  // Away from the axis; over a rim's turn, half of its square is across the rim.
+  // Lateral shift is radial; averaged around the rim, half of its square is across the rim.
   vec2 lateral = xy * (band.w * strengths.y) * 0.5 * view_buf.film.xy *
                  vec2(view_buf.projection[0][0], view_buf.projection[1][1]);
   lateral /= (view_buf.lens.y > 0.5) ? 1.0 : depth;
@@ -127,7 +127,7 @@ void main()
   v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (pattern.y * pattern.z));
   if (splat_buf.field.w > 0.5) {
     vec2 layers = opening_layers(float(textureSize(opening_tx, 0).z), v_blur);
-    // Three tables a layer of the opening: for the blur of the one before, its own and the next.
+    // Three tables a layer of the opening: for the blur of the previous layer, its own and the next.
     float table = 3.0 * layers.x + 1.0;
     v_left_lower = mix(tile_left(left_tx, table, v_chief, v_tile_at),
                        tile_left(left_tx, table + 1.0, v_chief, v_tile_at),
@@ -136,7 +136,7 @@ void main()
                        tile_left(left_tx, table + 3.0, v_chief, v_tile_at),
                        layers.y);
   }
-  // The widest blur of the tiles, or the pattern with its own.
+  // Reach of the tiles at their widest blur, or of the pattern with its own.
   vec2 reach = 1.0 + vec2(min(2.0 * v_blur + 0.07, 0.5)) + 0.5 / pattern.yz;
   v_place = (pos * 2.0 - 1.0) * reach;
   vec2 away = azimuth_of(v_chief);
@@ -144,7 +144,7 @@ void main()
   vec2 offset = (local.x * vec2(away.y, -away.x) + local.y * away) / vec2(ratio, 1.0);
 #else
   v_blur = blur / radius;
-  // The disc, the wider layer of its blur, and half a pixel.
+  // Reach: the disc, the wider layer of its blur, and half a pixel.
   vec2 reach = radius * vec2(splat_buf.opening.z / ratio, splat_buf.opening.z) + 1.42 * blur + 0.5;
   vec2 offset = (pos * 2.0 - 1.0) * reach;
   v_place = offset / ((coc < 0.0) ? -radius : radius) * vec2(ratio, 1.0);
@@ -179,7 +179,7 @@ void main()
   }
 #endif
   if (v_tile.w == SOURCE_DROP) {
-    // No area.
+    // No disc: a triangle without area.
     offset = vec2(0.0);
   }
   gl_Position = vec4((center + offset) / view_buf.film.xy * 2.0 - 1.0, 0.0, 1.0);

@@ -1,4 +1,4 @@
-// What the nodes of a world give in each direction, as an equirectangular image.
+// Evaluates the nodes of a world in each direction, as an equirectangular image.
 // Inputs: what the generated surface_closure() reads: material_buf, image_0_tx, ...; it calls
 // environment_sample for the world's images.
 // Outputs: scene-linear colour.

@@ -1,4 +1,4 @@
-// The mean of an equirectangular image over GGX lobes and a cosine lobe: octahedral maps in a row,
+// Prefilters an equirectangular image over GGX lobes and a cosine lobe: octahedral maps in a row,
 // rougher to the right, the cosine lobe last, each with a gutter that repeats its other side.
 // Inputs: level_0_tx .. level_5_tx, the image and its halvings (equirectangular, scene linear);
 // small_tx, one small enough to be summed up.
@@ -55,7 +55,7 @@ float radical_inverse(uint i)
   return float(bits >> 8u) * (1.0 / 16777216.0);
 }
 
-// The image over the cosine lobe, texel by texel.
+// Mean of the image over the cosine lobe, summed over all texels.
 vec3 diffuse_mean(vec3 normal)
 {
   ivec2 size = textureSize(small_tx, 0);

@@ -1,12 +1,11 @@
-// Shades a surface for one lens sample; transparency is decided by chance, so that the average over
-// the samples is exact whatever the order of the surfaces. A surface that adds light to what it lets
-// through is drawn twice: its opacity by chance without its light (GLOW_APART), then its light onto
-// what was left (GLOW), wherever nothing is in front of it.
-// Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads; with
-// HIGHLIGHTS, where the light that is splatted is left out, highlight_buf, and with CHROMATIC, so that
-// its share is the same at all wavelengths, chromatic_buf and field_tx.
+// Shades a surface for one lens sample, with stochastic transparency: the average over the samples is
+// exact whatever the order of the surfaces. A transparent surface that emits is drawn twice: its random
+// opacity without its light (GLOW_APART), then its light on top (GLOW), wherever nothing is in front.
+// Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads. HIGHLIGHTS:
+// highlight_buf; the light that is splatted as bokeh is left out; with CHROMATIC also chromatic_buf and
+// field_tx, so that the splatted share is the same at all wavelengths.
 // Outputs: premultiplied scene-linear colour; with MATTES also Cryptomatte ids of object (x) and
-// material (y), and the share of sharpness (w).
+// material (y), and the focus matte (w).
 // Source: methods 1; stochastic transparency after Enderton et al., I3D 2010.
 
 #ifdef MATTES
@@ -28,7 +27,7 @@ vec3 without_highlights(Closure closure)
   if (max(light.r, max(light.g, light.b)) <= highlight_buf.split.x) {
     return closure.radiance;
   }
-  // Where the point is, not where the wavelength moves it to.
+  // The point's true place, not where the wavelength displaces it to.
   vec3 eye = (view_buf.view * vec4(world_position, 1.0)).xyz;
   vec2 place = field_place(eye, chromatic_buf);
   float coc = chromatic_coc_px(field_tx, place, -eye.z, view_buf.lens, chromatic_buf);
@@ -75,7 +74,7 @@ void main()
     if (hash_unit(seed) < through) {
       discard;
     }
-    // What is left of the surface stands for the rest, too.
+    // A sample that keeps the surface represents its whole light.
     float scale = 1.0 / max(1.0 - through, 1e-6);
     closure.radiance *= scale;
     closure.unsplit *= scale;

@@ -1,6 +1,6 @@
-// Closures that meet light: what a surface reflects of lights (without shadows) and of the world.
-// Included into shaders that draw surfaces. Without SHADES only what a surface lets through counts,
-// and no light is read.
+// Lighting of closures: reflection of lights (without shadows) and of the world.
+// Included into shaders that draw surfaces. Without SHADES only the transmittance is computed, and no
+// light is read.
 // Inputs: world_position, world_normal where the mesh has normals; view_buf, lens_sample;
 // lights_tx (light table); environment_buf, environment_tx (image), environment_levels_tx
 // (prefiltered), ggx_tx (albedo table).
@@ -13,10 +13,10 @@
 #include "lib/surface/light_lib.glsl"
 #include "lib/surface/texture_lib.glsl"
 
-// Mirrors are drawn this rough under lights, so that their highlights have a finite size.
+// Least roughness under lights, so that the highlights of mirrors have a finite size.
 #define MIN_ALPHA 2e-4
 
-// Below this roughness a lobe is round enough for one look-up along its axis.
+// Below this roughness one prefiltered look-up along the lobe's axis is enough.
 #define SPLIT_ROUGHNESS 0.15
 #define FACETS 6
 #define FACET_OVERLAP 1.0
@@ -34,13 +34,13 @@ struct Lobe {
   vec3 weight;
   vec3 f0;
   float eta;
-  bool repeats;  // light scattered more than once between the facets is added
+  bool repeats;  // multiple scattering between the facets is added
 };
 
-// Light that a surface sends to the eye.
+// Light that a surface reflects towards the eye.
 struct Reflected {
   vec3 light;
-  vec3 unsplit;  // of it, light of lamps that is never splatted
+  vec3 unsplit;  // part of it that is never splatted (of lamps without highlights)
 };
 
 Shading surface_shading()
@@ -126,7 +126,7 @@ vec3 lobe_repeat(Lobe lobe, vec3 albedo)
                         vec3(1.0);
 }
 
-// What a lobe reflects of white surroundings.
+// Directional albedo of a lobe.
 vec3 lobe_albedo(Lobe lobe, vec3 albedo)
 {
   return (lobe.f0 * albedo.x + albedo.y) * lobe_repeat(lobe, albedo);
@@ -139,9 +139,9 @@ vec3 lobes_reflect(Lobe a, vec3 repeat_a, Lobe b, vec3 repeat_b, float cosine)
          b.weight * repeat_b * mix(b.f0, vec3(1.0), lobe_rise(b, cosine));
 }
 
-// The world reflected by two lobes: a few facets stand for all, each with the world averaged over
-// its share of the lobe. All pixels of a lens sample take the same facets, so that there is no
-// noise; other samples take others.
+// The world reflected by two lobes, by a few sampled facets, each with the world averaged over its
+// share of the lobe. All pixels of a lens sample use the same facets, so that there is no noise between
+// pixels; other samples use others.
 vec3 environment_reflection(Shading s, float roughness, Lobe a, vec3 repeat_a, Lobe b, vec3 repeat_b)
 {
   float alpha = roughness * roughness;
@@ -198,11 +198,11 @@ Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
       continue;
     }
     Illumination incoming = light_illuminate(light, s.position);
-    // Half vectors of the light's disk fill half its angle, more across the plane of incidence.
+    // Half vectors of the light's disk subtend half its angle, more across the plane of incidence.
     float cos_d = dot(s.view, normalize(incoming.towards + s.view));
     float reach = sqrt(incoming.sin2) / (1.0 + sqrt(1.0 - incoming.sin2)) *
                   inversesqrt(max(cos_d, 0.05));
-    // A lobe narrower than the light sees the part of it that a mirror would show, a wide one all.
+    // A lobe narrower than the light reflects the part that a mirror would show, a wide one all of it.
     float narrow = reach * reach / (reach * reach + alpha * alpha);
     vec3 shown = light_representative(light, incoming, s.position, mirrored);
     float cos_light = mix(horizon_cosine(dot(s.normal, incoming.towards), incoming.sin2),
@@ -232,7 +232,7 @@ Closure reflecting(Reflected reflected)
 Closure closure_diffuse(vec3 color)
 {
   Reflected reflected = diffuse_light(surface_shading());
-  // A surface takes no light away, as in Cycles; negative lamps do.
+  // Negative colours reflect nothing, as in Cycles; negative lamps do take light away.
   vec3 c = max(number_or_zero(color), vec3(0.0));
   return reflecting(Reflected(c * reflected.light, c * reflected.unsplit));
 }
@@ -266,7 +266,7 @@ Closure closure_principled(vec3 base_color,
   float metal = clamp(number_or_zero(metallic), 0.0, 1.0);
   float r = clamp(number_or_zero(roughness), 0.0, 1.0);
   vec3 tint = max(number_or_zero(specular_tint), vec3(0.0));
-  // Beyond, all is reflected already.
+  // At most 1: then all light is reflected.
   float eta = clamp(number_or_zero(ior), 1e-5, 1e5);
   float f0 = f0_from_ior(eta);
   specular_level = number_or_zero(specular_level);
@@ -281,7 +281,7 @@ Closure closure_principled(vec3 base_color,
   Lobe dielectric = Lobe(vec3(1.0 - metal), clamp(f0 * tint, 0.0, 1.0), eta, true);
   Reflected reflected = glossy_light(s, r, metal_lobe, dielectric);
   if (metal < 1.0) {
-    // The diffuse layer gets what the coat of the dielectric does not reflect.
+    // The diffuse layer gets the light that the dielectric layer does not reflect.
     vec3 taken = lobe_albedo(dielectric, albedo);
     float left = (1.0 - metal) * clamp(1.0 - max(taken.r, max(taken.g, taken.b)), 0.0, 1.0);
     Reflected diffuse = diffuse_light(s);

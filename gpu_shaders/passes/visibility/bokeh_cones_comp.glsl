@@ -1,7 +1,7 @@
-// Which clusters of triangles meet the cone from a source to the lens. Counts them for each
+// Finds the clusters of triangles that meet the cone from a source to the lens. Counts them for each
 // undecided source and lists as many pairs as there is room for, in any order. FILL writes pairs
-// where prefix sums place them. EDGES only finds whether anything outside the raster of the layers
-// meets the cones of those that nothing inside it lies before.
+// where prefix sums place them. EDGES only finds whether a surface outside the layers' raster meets the
+// cone of a source that no surface inside it is in front of.
 // Inputs: sources_tx; part_boxes_tx, parts_tx, shapes_tx, boxes_tx, corners_tx (see
 // engine/drawing/occluders.py); instances_tx; visibility_buf; count; parts (boxes of their tree). Without EDGES:
 // segment (first row of keys); culls (0: sources that are decided are tested, too); window (places that are
@@ -50,7 +50,7 @@ bool next_leaf(sampler2D boxes, LensView view, int end, inout int box, out vec4 
   return false;
 }
 
-// A part of the scene as a source sees it.
+// A part of the scene (one surface of one instance), seen from a source.
 struct Part {
   int row;        // of the instance table
   int shape;      // of level of detail 0
@@ -68,9 +68,9 @@ Part part_of(LensView view, int number)
   return Part(int(record.x), int(record.y), int(record.z), record.w, own);
 }
 
-// From which w on a part is drawn at a level of detail: where its triangles are about as large as a
-// few texels of the source's mask, near the lens ever coarser. They grow by two from level to level.
-// A cluster that lies in the ranges of two levels is drawn at both, so that no gap is left.
+// The w from which on a part is drawn at a level of detail: where its triangles are about as large as a
+// few texels of the source's mask; coarser towards the lens. Their area doubles from level to level. A
+// cluster that lies in the ranges of two levels is drawn at both, so that no gap is left.
 float least_w(Source source, Part part, int level)
 {
   if (level == 0) {

@@ -1,6 +1,6 @@
-// Which instances of a group meet the cone from a source to the lens, by the box of their mesh, after
-// bokeh_cones_comp. Counts them for each source; with FILL, writes pairs where prefix sums place
-// them: surfaces that let light through multiply, always in the same order. EDGES as there.
+// Finds the instances of a group of transparent surfaces that meet the cone from a source to the lens,
+// by the bounding box of their mesh, after bokeh_cones_comp. Counts them for each source; FILL writes
+// pairs where prefix sums place them, so that transmittances multiply in a fixed order. EDGES as there.
 // Inputs: sources_tx; instances_tx; visibility_buf; count; extent (x, y: first and last row of the
 // group's instances; z: first row of keys; w: place in the table of counts); box_low, box_high (corners
 // of the mesh); culls (0: sources that are decided are tested, too); FILL: states_tx, keys_tx,

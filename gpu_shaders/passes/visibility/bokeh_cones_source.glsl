@@ -16,7 +16,7 @@ struct ConeSource {
 };
 
 #ifdef FILL
-// How many pairs prefix sums have before those of a key; of one behind the last, more than there are.
+// Prefix sum: number of pairs before those of a key; for a key behind the last, more than there are.
 uint pairs_before(ivec2 key)
 {
   if (key.x == SOURCE_COLUMNS) {
@@ -42,7 +42,7 @@ ConeSource source_of_thread(int index, int segment)
   if (own.tested) {
     own.record = texelFetch(states_tx, own.texel, 0);
     own.place = pairs_before(own.key);
-    // A source none of whose pairs are in the window is not searched for once more in each window.
+    // A source without pairs in this window need not be tested again.
     bool within = own.place < uint(window.x + window.y) &&
                   pairs_before(own.key + ivec2(1, 0)) > uint(window.x);
     own.tested = within && (state_is_open(own.record.w) || culls == 0);

@@ -1,21 +1,21 @@
-// Sorts out sources that need no mask: their disc is outside the frame, nothing of the lens sees
-// them, or nothing stands before them.
+// Culls sources that need no visibility mask: their disc is outside the frame, they are hidden from the
+// whole lens, or no surface is in front of them.
 // Inputs: sources_tx (x, y, depth, extent); visibility_buf; count. LAYERS: layers_tx, bounds_tx (see
 // bokeh_culling_bounds_comp); cell; again (1: only sources that are still undecided). Without
-// LAYERS, only the frame is asked for.
-// Outputs: states_img: depth buffer value that nothing before the source falls below (x); sum (y) and
-// weights (z) of the blur that its parts see occluders with (see bokeh_cones_comp); state (w).
+// LAYERS, only the frame is tested.
+// Outputs: states_img: least depth buffer value of any surface in front of the source (x); weighted sum
+// (y) and weights (z) of the blur of its occluders (see occluder_blur_lib); state (w).
 // Source: methods 10 (J20 section 4.3.2).
 #include "lib/bokeh/source_lib.glsl"
 #ifdef LAYERS
 #include "lib/bokeh/bounds_lib.glsl"
 #endif
 
-// The bounds hardly shrink after the third time.
+// Iterations that narrow the depth bounds; they hardly shrink after the third.
 #define ITERATIONS 4
-// Of the depth from texel to texel, in texels that a line moves meanwhile: less is no gap.
+// Least step of depth between texels that counts as a gap, in texels that a line moves over that step.
 #define GAP 0.25
-// Up to so many texels along a side are looked at one by one.
+// Largest side of a rectangle, texels, that is tested texel by texel.
 #define WALK 24
 
 // Whether the disc meets the frame.
@@ -26,7 +26,7 @@ bool in_frame(Source source, float extent)
   vec4 axis = visibility_buf.projection * vec4(0.0, 0.0, -1.0, 1.0);
   vec2 away = source.place - (axis.xy / axis.w * 0.5 + 0.5) * visibility_buf.raster.xy;
   vec2 moved = abs(away) * (visibility_buf.colors.z / visibility_buf.raster.z);
-  // For the blur of the splat: by the extent of the source and the pixel filter.
+  // Margin for the blur of the disc by the extent of the source and the pixel filter.
   vec2 reach = radius + moved + 1.5 * extent + 4.0;
   return all(greaterThan(center + reach, vec2(0.0))) &&
          all(lessThan(center - reach, visibility_buf.frame.zw));
@@ -61,7 +61,7 @@ bool free_of_texels(Source source, ivec2 low, ivec2 high)
       vec2 offset = abs(vec2(x, y) + 0.5 - source.place);
       vec2 reach = rate * (source.depth - depth);
       if (all(lessThanEqual(offset - 0.5, reach))) {
-        // Inside of a surface its middle decides; at its edge any part of the texel.
+        // Inside a surface the texel's middle decides; at its edge any part of the texel.
         if (all(lessThanEqual(offset, reach)) || !joined(ivec2(x, y), depth, most)) {
           return false;
         }
@@ -97,10 +97,10 @@ float state_of(Source source, inout float nearest)
   if (bounds.x >= source.limit ||
       (max(extent.x, extent.y) <= WALK && free_of_texels(source, low, high)))
   {
-    // The cone may leave the raster nearer to the lens than anything that is seen in it.
+    // Near the lens, in front of all surfaces of the layers, the cone may leave the raster.
     return all_inside ? STATE_VISIBLE : STATE_EDGE;
   }
-  // A surface without a gap that a line to the lens could slip through hides everything.
+  // An opaque surface without a gap that a line to the lens could pass hides the source.
   if (inside && bounds.y < source.limit && bounds.z * max(rate.x, rate.y) < GAP) {
     return STATE_HIDDEN;
   }

@@ -1,4 +1,4 @@
-// Marks the sources that need a mask, by size, and counts what became of all.
+// Marks the sources that need a mask, by size, and counts the sources by state.
 // Inputs: sources_tx; states_tx; visibility_buf; count; rows (of a segment of keys); kinds (segments
 // of masks; more than SIZES: those that are decided have masks, too, behind the others).
 // Outputs: keys_img: 1 where the source has a mask of the segment's size; counts_img: sources by

@@ -20,11 +20,11 @@ void main()
     return;
   }
   int side = int(tile.z);
-  // What is read of a mask: by a spline as wide as three texels, on the lens.
+  // Texels of a mask that are ever read: inside the lens, widened by the spline of three texels.
   float reach = 0.5 * tile.z + 2.13;
   int number = side * side;
-  // Scattered over the mask, so that most are found out soon: an odd step that has no factor of the
-  // number of texels.
+  // Texels are tested in scattered order, so that most masks are decided early: an odd step that is
+  // coprime to the number of texels.
   int stride = int(0.618 * float(number)) / 6 * 6 + 1;
   bool whole = true, empty = true;
   int at = number / 2 + side / 2;

@@ -1,9 +1,10 @@
-// Says for every source what becomes of it, and gives the masks their places in the atlas.
+// Writes the kind of every source (dropped, unmasked, masked, ...) and the places of masks in the atlas.
 // Inputs: sources_tx; states_tx; keys_tx, totals_tx (prefix sums); visibility_buf, layout_buf; count;
 // rows (of a segment of keys); kind (of sources that need a mask); kinds (segments of masks; see
 // bokeh_culling_keys_comp).
-// Outputs: tiles_img: place (xy) and side (z) of the mask, kind (w); in a splat: x: depth buffer value
-// that nothing before the source falls below. masked_img: sources with a mask, in order of size.
+// Outputs: tiles_img: place (xy) and side (z) of the mask, kind (w); for sources that the splat casts
+// rays for: x: least depth buffer value of any surface in front of the source. masked_img: sources with
+// a mask, in order of size.
 // Source: methods 10, 11.
 #include "lib/bokeh/source_lib.glsl"
 

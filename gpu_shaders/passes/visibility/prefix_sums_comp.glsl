@@ -1,5 +1,5 @@
-// Prefix sums over a table of numbers, in place: how much comes before each in its row; with TOTALS,
-// one group, how much comes before each row.
+// Exclusive prefix sums over a table of numbers, in place: the sum before each number in its row;
+// TOTALS (one group): the sum before each row.
 // Inputs, outputs: keys_img; totals_img (rows in rows of SOURCE_COLUMNS); rows.
 // Source: Hillis and Steele, Data parallel algorithms, CACM 29(12), 1986.
 

@@ -1,4 +1,4 @@
-// Opaque triangles leave no light.
+// Opaque triangles clear the mask.
 // Inputs: v_tile (x, y, side of the mask, texels).
 // Outputs: share of the light that passes.
 // Source: methods 11.

@@ -10,7 +10,7 @@ void main()
 {
   int number = gl_InstanceID * PAIRS_A_DRAW + int(corner) / CLUSTER_CORNERS;
   if (number >= count) {
-    // No area.
+    // Nothing: a triangle without area.
     v_tile = vec3(0.0);
     gl_ClipDistance[0] = -1.0;
     gl_ClipDistance[1] = -1.0;

@@ -1,4 +1,4 @@
-// What a surface lets through; the blend state multiplies it with what is there.
+// Transmittance of a surface; the blend state multiplies the mask by it.
 // Inputs: varyings of visibility_surface_vert; what the generated surface_closure() reads.
 // Outputs: share of the light that passes.
 // Source: methods 11.

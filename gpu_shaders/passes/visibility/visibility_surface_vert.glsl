@@ -1,7 +1,7 @@
-// Projects an instance whose surface lets light through from a source onto the lens.
+// Projects an instance of a transparent surface from a source onto the lens.
 // Inputs: mesh attributes; pairs_tx (source, row of the instance table), instance_base (first pair);
 // sources_tx, tiles_tx, instances_tx; visibility_buf, layout_buf.
-// Outputs: what surface_vert gives to the surface, and v_tile (x, y, side of the mask, texels).
+// Outputs: the varyings of surface_vert, and v_tile (x, y, side of the mask, texels).
 // Source: methods 11.
 #include "lib/surface/instance_lib.glsl"
 #include "lib/tile_lib.glsl"

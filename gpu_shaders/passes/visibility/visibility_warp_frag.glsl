@@ -1,4 +1,4 @@
-// Whether a source is seen from a place on the lens, by a ray through the peeled layers.
+// Visibility of a source from a place on the lens, by a ray through the peeled layers.
 // Inputs: v_lens, v_source (see visibility_warp_vert); sources_tx, states_tx, layers_tx, opacity_tx;
 // visibility_buf.
 // Outputs: share of the light that passes.
