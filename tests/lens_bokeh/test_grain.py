@@ -45,6 +45,21 @@ def test_dust_darkens_spots_only():
     assert np.mean(values < 0.99 * clean) < 8 * 0.05**2 * 1.1
 
 
+@pytest.mark.parametrize("radius", [1e-3, 0.1, 1.0])
+def test_each_spot_takes_its_share_wherever_points_lie(radius):
+    grain = Grain(dust=60, dust_radius=radius, dust_depth=0.9, seed=3)
+    points = np.concatenate([texel_centres(40), np.random.default_rng(4).normal(size=(40, 9, 2))], 1)
+    expected = np.ones(points.shape[:-1])
+    for square, turn, size in np.random.default_rng(3).random((60, 3)):
+        angle = 2.0 * np.pi * turn
+        middle = np.sqrt(square) * np.array([np.cos(angle), np.sin(angle)])
+        distance = np.linalg.norm(points - middle, axis=-1) / (radius * (1.0 + 2.0 * size) / 3.0)
+        expected *= 1.0 - 0.9 * np.maximum(1.0 - distance**2, 0.0) ** 2
+    found = transmission(grain, points)
+    # All but the mean over the opening.
+    np.testing.assert_allclose(found / found[0, 0] * expected[0, 0], expected, rtol=1e-12)
+
+
 def test_values_out_of_range_are_refused():
     for wrong in (dict(strength=-0.1), dict(cell=0.0), dict(dust=-1), dict(dust_depth=2.0)):
         with pytest.raises(InputError, match=next(iter(wrong))):

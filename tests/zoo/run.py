@@ -38,7 +38,7 @@ class Worker:
     log : Path
         Where it writes what Blender says.
     threads : int
-        Of software OpenGL.
+        Of software OpenGL, and of numpy's products of matrices.
     """
 
     def __init__(self, log, threads):
@@ -90,7 +90,9 @@ class Worker:
             process.stdout.close()
 
     def _start(self):
-        environment = dict(os.environ, LP_NUM_THREADS=str(self._threads))
+        # Threads of numpy, too: on a busy machine they wait for one another, and waiting counts.
+        threads = str(self._threads)
+        environment = dict(os.environ, LP_NUM_THREADS=threads, OPENBLAS_NUM_THREADS=threads)
         environment["PYTHONPATH"] = str(REPOSITORY)
         self._process = subprocess.Popen(
             [sys.executable, "-X", "faulthandler", "-m", "tests.zoo.worker"],

@@ -91,15 +91,30 @@ def _raw(grain, points):
         # An exponential stays positive where a sum would not, at any strength.
         factor = np.exp(grain.strength * noise)
     if grain.dust > 0:
-        places = generator.random((grain.dust, 3))
-        radius = np.sqrt(places[:, 0])
-        angle = 2.0 * np.pi * places[:, 1]
-        size = grain.dust_radius * (1.0 + 2.0 * places[:, 2]) / 3.0
-        for r, a, s in zip(radius, angle, size, strict=True):
-            distance = np.hypot(points[..., 0] - r * np.cos(a), points[..., 1] - r * np.sin(a)) / s
-            spot = np.clip(1.0 - distance**2, 0.0, None) ** 2
-            factor = factor * (1.0 - grain.dust_depth * spot)
+        factor = factor * _passed_dust(grain, generator, points.reshape(-1, 2)).reshape(factor.shape)
     return factor
+
+
+def _passed_dust(grain, generator, points):
+    """Light that the spots leave at points, shape (N, 2)."""
+    places = generator.random((grain.dust, 3))
+    radius = np.sqrt(places[:, 0])
+    angle = 2.0 * np.pi * places[:, 1]
+    size = grain.dust_radius * (1.0 + 2.0 * places[:, 2]) / 3.0
+    # A spot is small: of all points only those of its own height are looked at.
+    order = np.argsort(points[:, 1], kind="stable")
+    x, y = points[order].T
+    passed = np.ones(len(points))
+    for r, a, s in zip(radius, angle, size, strict=True):
+        middle = (r * np.cos(a), r * np.sin(a))
+        rows = slice(*np.searchsorted(y, (middle[1] - s, middle[1] + s)))
+        near = np.flatnonzero(np.abs(x[rows] - middle[0]) < s) + rows.start
+        distance = np.hypot(x[near] - middle[0], y[near] - middle[1]) / s
+        spot = np.clip(1.0 - distance**2, 0.0, None) ** 2
+        passed[near] *= 1.0 - grain.dust_depth * spot
+    result = np.empty(len(points))
+    result[order] = passed
+    return result
 
 
 def _mean_over_disc(grain):
