@@ -1,1 +1,1 @@
-"""What a frame needs, as values: the snapshot, and its extraction from Blender."""
+"""Extraction of a snapshot from Blender's evaluated scene: the only reader of Blender's data."""

@@ -21,7 +21,7 @@ from .unsupported import read_unsupported
 
 @dataclass(frozen=True, eq=False)
 class _KnownMesh:
-    """A mesh that was read, which attributes were asked for, and what it was made from."""
+    """A mesh that was read, the attributes asked for, and the data-blocks that it was made from."""
 
     reading: MeshReading
     keys: frozenset[str]
@@ -31,13 +31,13 @@ class _KnownMesh:
 class SceneExtractor:
     """Extracts snapshots, keeping the parts that did not change between two of them.
 
-    An extractor belongs to one depsgraph. Between two extractions it must be told of every update
-    of that depsgraph by `note_updates`; one that is used once needs no telling.
+    An extractor belongs to one depsgraph. Between two extractions `note_updates` must be called
+    for every update of that depsgraph.
 
-    What an update names is read again, and what comes out equal, bit by bit, keeps its identity:
-    an update that changes nothing in the picture gives the very same `SceneContent`. A mesh is
-    taken from the cache only if Blender still gives the number of that evaluated state and no
-    update named one of the data-blocks it was made from; pointers are never compared.
+    Data-blocks that an update names are read again, and what is equal bit by bit keeps its
+    identity: an update that changes nothing in the picture gives the identical `SceneContent`. A
+    mesh is taken from the cache only if Blender gives the same session number for its evaluated
+    state and no update named a data-block that it was made from; pointers are never compared.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class SceneExtractor:
         self._space = space
         self._materials = MaterialReader(largest_image, in_main_thread)
         self._known = {}
-        # Read before, but the source may have changed: compared with what is read next.
+        # Meshes read before whose source may have changed: compared with what is read next.
         self._doubtful = []
         self._content = None
         self._passes = None
@@ -115,12 +115,12 @@ class SceneExtractor:
         )
         if "Vector" in passes and frame_set is not None:
             snapshot = add_motion(snapshot, self._sources, depsgraph, frame_set, view)
-            # What is known describes an evaluation that is gone.
+            # The caches describe an evaluation that is gone.
             self._known, self._doubtful, self._content, self._stale = {}, [], None, True
         return snapshot
 
     def extract_content(self, depsgraph, passes=("Combined",)):
-        """Return what stands in front of the camera; the same object if nothing changed.
+        """Return the content of the scene; the identical object if nothing changed.
 
         Parameters
         ----------
@@ -256,7 +256,7 @@ def _sort_rows(row_looks, looks):
 
 
 def _take_equal(earlier, mesh):
-    """Return an equal mesh read before, which no other one may then take, or the new one."""
+    """Return an equal mesh read before (and take it from `earlier`), or the new one."""
     for i, candidate in enumerate(earlier):
         if same_content(candidate.snapshot, mesh):
             return earlier.pop(i).snapshot

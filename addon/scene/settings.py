@@ -97,7 +97,7 @@ def read_sampling(scene):
 
 
 def read_preview_sampling(scene):
-    """Return how a viewport is sampled: as the final render, with its own numbers."""
+    """Return how a viewport is sampled: as the final render, with the viewport's numbers."""
     settings = scene.aplanat
     return replace(
         read_sampling(scene),

@@ -1,16 +1,16 @@
-"""What a scene asks for and Aplanat does not draw, where no object or material would tell.
+"""Warnings about settings of a whole scene that Aplanat does not support.
 
-Settings of the scene, the view layer, the world and the camera that Cycles or EEVEE obey, and what
-is missing from the file. Objects, lights, materials and images tell for themselves where they are
-read. What no version of Aplanat draws in any scene (shadows, light that bounces) is told in the
-documentation instead: a warning that is always there warns of nothing.
+Settings of the scene, the view layer, the world and the camera that Cycles or EEVEE obey, and
+libraries, fonts and caches that are missing. Warnings about objects, lights, materials and images
+are made where these are read. Features that are missing in every scene (shadows, bounced light) are
+in the documentation instead: a warning that is always there would be ignored.
 """
 
 import os
 
 import bpy
 
-# Names are listed up to here; of more, the number is told.
+# Most names in a warning; beyond, their number is given.
 _LISTED = 3
 
 # Blender's switches of passes that Aplanat offers, or that are not passes.
@@ -22,12 +22,12 @@ _OFFERED = {
     "use_pass_normal",
     "use_pass_cryptomatte_object",
     "use_pass_cryptomatte_material",
-    # Chooses how Cycles counts.
+    # A choice of how Cycles accumulates Cryptomattes, not a pass.
     "use_pass_cryptomatte_accurate",
-    # Blender itself makes it, with the grease pencil.
+    # Made by Blender itself, for grease pencil.
     "use_pass_grease_pencil",
 }
-# Of Cycles, passes whose switches are not called so.
+# Passes of Cycles whose switches do not have the prefix of the others.
 _PASSES_OF_CYCLES = {
     "pass_debug_sample_count": "Sample Count",
     "pass_render_time": "Render Time",

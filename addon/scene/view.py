@@ -1,4 +1,4 @@
-"""A 3D view's camera and raster: what a viewport shows, as a final render would plan it."""
+"""Reads a 3D view: the camera and film of a viewport, as a final render would have them."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from .settings import filter_size
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """What one region of a 3D view shows.
+    """Camera and film of one region of a 3D view.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class View:
 
 
 def read_view(depsgraph, space, region, region_3d, pixel_size):
-    """Read what a 3D view looks at.
+    """Read the camera and film of a 3D view.
 
     In camera view the camera's lens takes the picture; any other view is a pinhole's.
 

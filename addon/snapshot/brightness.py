@@ -1,19 +1,19 @@
-"""How bright surfaces may be at most, and whether they mirror: from their node graphs alone.
+"""Upper bounds of the radiance of surfaces, and which are mirrors: from their node graphs alone.
 
-Highlights are searched only on surfaces that may exceed the threshold, and from several places on
-the lens only on those that look different from each.
+Highlights are searched only on surfaces whose bound exceeds the highlight threshold, and from
+several places on the lens only on surfaces whose reflections depend on the place.
 """
 
 import numpy as np
 
 from .surface_graph import Constant
 
-# Of a white surface at most: tables of what lobes reflect are not exact.
+# Largest reflectance of a white surface: the tables of GGX lobes are not exact.
 _REFLECTANCE = 1.1
 # Blend modes whose result is never above both colours and their product.
 _BOUNDED_BLENDS = frozenset({"MIX", "DARKEN", "LIGHTEN", "MULTIPLY", "HUE", "COLOR", "VALUE"})
 _SORTING_KINDS = frozenset({"luminance", "separate", "combine"})
-# What a glossy surface brighter than white gains by light that it scatters again, at most.
+# Largest gain of a glossy surface with a colour above 1 by multiple scattering.
 _REPEATED = 2.0
 
 
@@ -27,9 +27,9 @@ def brightest(content):
     Returns
     -------
     list of tuple of float
-        For each group, one bound for each slot of its mesh that has triangles: of the largest
-        channel, without the light of lamps that never gives highlights; inf where the graph tells
-        nothing.
+        For each group, one bound for each slot of its mesh that has triangles: radiance of the
+        largest channel, without lamps whose *Highlights* is *Never*; inf where the graph gives no
+        bound.
     """
     known = {}
     reflected = _brightest_reflection(content)
@@ -43,7 +43,7 @@ def brightest(content):
 
 
 def mirrors(graph):
-    """Whether all light of a surface is reflected, and looks different from another place.
+    """Whether a surface only reflects, and its reflections depend on the place on the lens.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def mirrors(graph):
     Returns
     -------
     bool
-        False for lamps: what they emit outshines what they mirror.
+        False for surfaces that also emit: their emission outshines their reflections.
     """
     return not emits(graph) and any(
         node.kind == "glossy" or (node.kind == "principled" and not _is_matt(node))
@@ -61,7 +61,7 @@ def mirrors(graph):
 
 
 def emits(graph):
-    """Whether a surface may have light of its own.
+    """Whether a surface may emit light.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def _is_zero(source):
 
 
 def _brightest_reflection(content):
-    """Return how bright a white surface may be by the light that falls on it."""
+    """Return the largest radiance that a white surface may reflect of lights and world."""
     if content.world.image or any(light.highlights for light in content.lights):
         return np.inf
     return _REFLECTANCE * max(map(abs, content.world.color))
@@ -152,7 +152,7 @@ def _graph_bound(graph, mesh, images, reflected):
 
 
 def _value_bound(node, of):
-    """Bound what a node computes from numbers and colours; inf where nothing is known."""
+    """Bound the value that a node computes from numbers and colours; inf where it has no bound."""
     if node.setting("clamp") and node.kind == "math" or node.setting("clamp_result"):
         return 1.0
     if node.kind in {"mix_color", "mix_value"}:

@@ -23,7 +23,7 @@ class Change(Flag):
     SAMPLING = auto()
     PASSES = auto()
     CONTENT = GEOMETRY | TRANSFORMS | MATERIALS | IMAGES | LIGHTS | WORLD | GROUPS | REPORT
-    # Samples that were drawn before no longer belong to the picture.
+    # Lens samples that were drawn before no longer belong to the picture: sampling restarts.
     PICTURE = CONTENT & ~REPORT | CAMERA | FILM | SAMPLING | PASSES
     ALL = CONTENT | CAMERA | FILM | SAMPLING | PASSES
 
@@ -36,7 +36,7 @@ def compare_content(old, new):
     Parameters
     ----------
     old, new : SceneContent or None
-        Nothing in common with None.
+        None has nothing in common with any.
 
     Returns
     -------

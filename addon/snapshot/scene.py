@@ -19,7 +19,7 @@ from ..sampling.chromatic import ChromaticAberration
 from ..sampling.thin_lens import ThinLens
 from .surface_graph import REC709_LUMINANCE, SurfaceGraph
 
-# Part of an f-number that a photographer calls the same.
+# Relative difference of f-numbers below which they count as the same.
 _SAME_F_NUMBER = 0.005
 
 _uids = itertools.count(1)
@@ -51,9 +51,8 @@ class MeshSnapshot:
     motion : tuple of two ndarray of shape (V, 3) or None
         Positions in the previous and the next frame, where the mesh deforms.
     rest : ndarray of shape (V, 3) or None
-        Positions before anything deforms the mesh, the same in every frame, as far as Blender tells
-        them; None where they are not known or nothing deforms it. Which levels of detail a mesh has
-        follows from them.
+        Positions before any deformation, the same in every frame, where Blender knows them; None
+        where it does not or nothing deforms the mesh. The levels of detail are made from them.
     """
 
     uid: int
@@ -192,7 +191,7 @@ class InstanceGroup:
     first, count : int
         Rows of the instance table.
     holdout : bool
-        Draws a hole into the picture.
+        A holdout: transparent in the picture, and hides what is behind it.
     """
 
     mesh: int
@@ -219,7 +218,7 @@ class Light:
     radius : float
         Soft size, in m; for a sun the sine of its disk's half angle.
     soft_falloff : bool
-        A disk that always faces what it lights, instead of a sphere.
+        A disk that always faces the shaded point, instead of a sphere.
     diffuse_factor, specular_factor : float
     cone : tuple of 2 float
         Spot: cosine of the half angle, and one over the width of its edge in cosines. Area: tangent
@@ -249,7 +248,7 @@ class Light:
 
 @dataclass(frozen=True)
 class World:
-    """What surrounds the scene: a constant colour, or an equirectangular image times a colour.
+    """The world background: a constant colour, or an equirectangular image times a colour.
 
     Parameters
     ----------
@@ -260,12 +259,12 @@ class World:
     rotation : tuple of 3 tuples of 3 float
         Rows of the matrix that turns a world direction into the image's.
     amplification : float
-        How much brighter white is taken to be in an image that holds nothing brighter.
+        *Amplify Whites*: white of the image becomes 1 + this; see `sampling.highlights.amplify`.
     luminance : tuple of 3 float
-        Weights that tell how white a texel is.
+        Weights of the channels in the luminance of a texel.
     graph : SurfaceGraph or None
-        Nodes that make the image from one or more: it is the image that they give, and `image` is
-        one of theirs. None: the image as it is.
+        Nodes that compute the background from one or several images, of which `image` is one.
+        None: the image is used as it is.
     """
 
     color: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -298,11 +297,11 @@ class LensSettings:
 
     @property
     def shapes_bokeh(self):
-        """Whether its discs can be traced; a thin lens shapes those of others."""
+        """Whether bokeh discs can be traced through it; else they are those of a thin lens."""
         return self.prescription.configuration(self.label).of_revolution
 
     def limits(self, f_number):
-        """Whether an f-number asks for a wider opening than is in force."""
+        """Whether `f_number` asks for a wider opening than the lens has (`self.f_number`)."""
         return f_number < self.f_number * (1.0 - _SAME_F_NUMBER)
 
 
@@ -317,8 +316,8 @@ class BokehSettings:
     gain : float
         Multiplies the highlights; 1 keeps the picture's energy.
     model : {'AUTO', 'POINT', 'CLUSTERED'}
-        A highlight for every pixel, as long as there are not very many; for every pixel in any
-        case; or similar ones merged.
+        AUTO: a source for every pixel of a highlight, merged only where there are very many;
+        POINT: a source for every pixel; CLUSTERED: similar highlights are merged.
     cluster_levels : int
         How often neighbours are merged at most; each level halves the resolution.
     similarity : float
@@ -326,20 +325,20 @@ class BokehSettings:
     global_merge : bool
         Similar clusters are merged wherever they lie.
     visibility : {'AUTO', 'RASTER', 'WARP', 'SPLAT'}
-        How what hides a highlight from parts of the lens is found: by drawing the scene from it,
-        by casting rays through the peeled layers, or by doing so pixel by pixel.
+        How occlusion of a highlight over the lens is found: RASTER draws the scene from the
+        highlight, WARP casts rays through depth-peeled layers, SPLAT does so for each pixel of the
+        disc.
     layers : int
         Surfaces behind one another that are searched for highlights.
     overscan : float
         How far outside the frame highlights are searched at most, as a share of its longer side.
     lens_views : int
-        Places on the lens that mirroring surfaces are looked at from; more than one keeps apart
-        what they show to different parts of the lens. What looks the same from anywhere is looked
-        at once.
+        Number of places on the lens from which mirroring surfaces are searched for highlights, as
+        their reflections depend on the place. All other surfaces are searched from one.
     world : bool
         Highlights of the world's image are found, too.
     appearance : Appearance
-        Masks over the opening.
+        Shape of the discs: iris, grain, dust, diffraction, rings, rims.
     distortion : float
         K of the division model, in units of the distance from the picture's middle to its corner;
         negative is a barrel.
@@ -348,8 +347,8 @@ class BokehSettings:
     profile_strength : float
         0: even discs; 1: the intensity of the traced lens.
     debug_view : {'NONE', 'SOURCES', 'CLUSTERS', 'VISIBILITY'}
-        What the picture shows marks of instead: sources before and after merging, and what became
-        of them.
+        Which marks the picture shows: sources before merging, after merging, or their fates
+        (culled, masked, ...).
     """
 
     threshold: float = 1.0
@@ -388,11 +387,11 @@ class Camera:
     real_lens : LensSettings or None
         None: the camera names no lens that can be used.
     bokeh : BokehSettings or None
-        None: highlights are drawn as everything else.
+        None: highlights are sampled like all other light.
     report : tuple of str
-        What the camera asks for and does not get, one line each.
+        Warnings: settings of the camera that cannot be met, one line each.
     chromatic : ChromaticAberration or None
-        None: all wavelengths are seen alike.
+        None: no chromatic aberration.
     field_radius : float or None
         Distance of the outermost corner of the camera's own picture from the optical axis: as a
         tangent, for a parallel projection in m. None: that of `projection`.
@@ -446,12 +445,13 @@ class Sampling:
     lens_samples : int
     seed : int
     target_error : float or None
-        What the adaptive method aims at, as 1 - SSIM: it then draws samples until the picture is
-        that good, and chooses what is below itself. None leaves it as it is.
+        Noise threshold of the adaptive method, as 1 - SSIM: samples are drawn until the error is
+        below it, and `subsamples`, `reuse_grid` and `level_bias` are chosen from it. None: a fixed
+        number of samples, and those settings as they are.
     least_samples, most_samples : int
         Bounds of the lens samples with a target error.
     time_limit : float or None
-        Seconds of drawing after which the picture is left as it is, whatever the method.
+        Seconds of drawing after which sampling stops, whatever the method.
     subsamples : int
         Places on the lens that each lens sample stands for besides its own, on the average.
     reuse_grid : int
@@ -465,7 +465,7 @@ class Sampling:
     progressive : bool
         The picture may be looked at before all samples are drawn.
     reference_bokeh : bool
-        The reference method, too, draws highlights apart, instead of sampling them as the rest.
+        The reference method, too, splats highlights as bokeh, instead of sampling them.
     """
 
     method: str = "REFERENCE"
@@ -486,9 +486,9 @@ class Sampling:
 
 @dataclass(frozen=True, eq=False)
 class SceneContent:
-    """What stands in front of the camera.
+    """What is in front of the camera: meshes, instances, materials, images, lights and world.
 
-    The same object means nothing changed: moving the camera keeps it.
+    An unchanged scene keeps the very same object, also while the camera moves.
 
     Parameters
     ----------
@@ -499,7 +499,7 @@ class SceneContent:
     lights : tuple of Light
     world : World
     report : tuple of str
-        What cannot be drawn and what is drawn instead, one line each.
+        Warnings: what cannot be drawn and what is drawn instead, one line each.
     """
 
     meshes: dict[int, MeshSnapshot]

@@ -40,7 +40,7 @@ class ShaderNode:
     image : int
         `ImageSnapshot.uid` of the node's image, 0 without one.
     table : tuple of tuples of 4 float
-        Values at evenly spaced places from 0 to 1: of a ramp or of curves.
+        Values of a colour ramp or of curves at evenly spaced places from 0 to 1.
     """
 
     kind: str
@@ -69,7 +69,7 @@ class SurfaceGraph:
     surface : Link or None
         The closure; None is a surface that emits and reflects nothing.
     luminance : tuple of 3 float
-        Weights with which a colour becomes a value: of the file's working space.
+        Luminance weights of the file's working space, with which a colour becomes a value.
     """
 
     nodes: tuple[ShaderNode, ...] = ()

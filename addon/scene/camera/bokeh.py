@@ -1,4 +1,4 @@
-"""The bokeh of a Blender camera to `BokehSettings`."""
+"""Reads the bokeh settings of a Blender camera into `BokehSettings`."""
 
 import math
 import threading
@@ -18,26 +18,27 @@ from ...sampling.spectrum import rgb_weights, spectrum_wavelengths
 from ...snapshot.scene import BokehSettings
 from ..images.images import ImageReader
 
-# Below this number an iris has no corners, as in Cycles.
+# Least number of blades; with fewer the iris is round, as in Cycles.
 _FEWEST_BLADES = 3
-# Rims of the softest cat's eye; one makes it hard.
+# Members of the rim of the softest cat's eye; a single member makes a hard edge.
 _MOST_RIMS = 8
-# Of the ringing: enough that neighbouring wavelengths' rings overlap.
+# Wavelengths of the diffraction ringing: enough that the rings of neighbouring ones overlap.
 _RINGING_WAVELENGTHS = 9
-# Chief rays that the distortion of a lens is fitted to, and where a picture ends for the fit, as a
-# tangent: some lenses see nothing farther out.
+# Number of chief rays that the distortion of a lens is fitted to, and largest tangent of the field
+# angle for the fit: some lenses let no light through farther out.
 _FIELDS = 9
 _WIDEST_FIELD = 2.0
-# Of the division model: twice the frame for a barrel, and twice its pixels for a pincushion.
+# Bounds of K of the division model: a barrel shows at most twice the frame, a pincushion needs at
+# most twice the pixels.
 _STRONGEST = (-0.5, 0.25)
-# Along a side of an iris' picture, in texels: finer than the largest disc's table.
+# Largest side of an iris image, in texels: finer than the table of the largest disc.
 _LARGEST_IRIS = 1024
 
 _iris_lock = threading.Lock()
 
 
 def read_bokeh(camera, real_lens, corner):
-    """Return how a camera's data wants highlights drawn, and what it asks for and does not get.
+    """Return a camera's bokeh settings, and warnings about those that cannot be met.
 
     Parameters
     ----------
@@ -157,7 +158,7 @@ def _read_appearance(camera, real_lens, corner):
         onion=onion,
         rims=rims,
         diffraction=ringing,
-        # Where it is no ratio, the camera has no lens and says so.
+        # An invalid ratio: the camera then has no lens, and a warning tells so.
         anamorphic_ratio=dof.aperture_ratio if 0.0 < dof.aperture_ratio < math.inf else 1.0,
         # A traced lens has its own spherical aberration.
         edge=settings.hardness if real_lens is None else 0.0,
@@ -190,7 +191,7 @@ def _read_iris(settings, dof):
 
 
 def _picture_iris(image, rotation):
-    # The readers are shared by viewports, panels and the thread that renders.
+    # The image readers are shared by viewports, panels and the render thread.
     with _iris_lock:
         reader = _image_reader(image.session_uid)
         reader.begin()
@@ -202,7 +203,7 @@ def _picture_iris(image, rotation):
 
 @lru_cache(maxsize=16)
 def _image_reader(_session_uid):
-    """Return an image's own reader, which knows whether the image changed."""
+    """Return the reader of one image, which notices when the image changes."""
     return ImageReader()
 
 
@@ -233,7 +234,7 @@ def _reduced(picture):
     if step == 1:
         return picture
     height, width = (-(-length // step) * step for length in picture.shape)
-    # What is added is closed, as everything outside of the picture is.
+    # The margin that is added is opaque, as everything outside of the picture is.
     padded = np.zeros((height, width))
     padded[: picture.shape[0], : picture.shape[1]] = picture
     return padded.reshape(height // step, step, width // step, step).mean(axis=(1, 3))

@@ -1,4 +1,4 @@
-"""Blender's camera to a `Camera`."""
+"""Reads Blender's camera into a `Camera`: projection, thin lens, real lens, aberrations."""
 
 import math
 
@@ -62,7 +62,7 @@ def read_camera(depsgraph, camera, film, view=None):
 
 
 def read_optics(depsgraph, camera, world=None):
-    """Return what a camera's lens does, for the final render and the viewport alike.
+    """Read a camera's lens settings, for the final render and the viewport alike.
 
     Parameters
     ----------
@@ -75,8 +75,8 @@ def read_optics(depsgraph, camera, world=None):
     Returns
     -------
     dict
-        Of `Camera`: ``lens``, ``real_lens``, ``chromatic``, ``bokeh``, and in ``report`` what the
-        camera asks for and does not get, as lines that name it.
+        Arguments of `Camera`: ``lens``, ``real_lens``, ``chromatic``, ``bokeh``, and ``report``,
+        warnings about settings that cannot be met, as lines that name the camera.
     """
     data = camera.data
     real_lens, of_lens = read_real_lens(data)
@@ -116,7 +116,7 @@ def camera_place(camera):
     Raises
     ------
     CameraError
-        If it is scaled to nothing along an axis, so that it looks nowhere.
+        If it is scaled to zero along an axis and has no direction.
     """
     place = camera.matrix_world.normalized()
     if abs(place.determinant()) < 1e-6:
@@ -157,7 +157,7 @@ def read_lens(depsgraph, camera, real_lens=None, world=None):
     lens : ThinLens or None
         None without depth of field, and where focus or iris cannot form a picture.
     problems : tuple of str
-        What is not as the camera asks, without its name.
+        Warnings about settings that cannot be met, without the camera's name.
     """
     data = camera.data
     dof = data.dof
@@ -201,8 +201,8 @@ def focus_distance(depsgraph, camera, world=None):
     camera : bpy.types.Object
         Evaluated.
     world : mathutils.Matrix or None
-        Where the camera stands, where that is not its own place: an eye of a stereoscopic render
-        focuses on an object by its own distance from it, as in Cycles.
+        Camera to world, for an eye of a stereoscopic render: it focuses on a focus object by its
+        own distance from it, as in Cycles. None: the camera's own place.
 
     Returns
     -------
@@ -227,7 +227,7 @@ def _focus_depth(depsgraph, camera, world):
 
 
 def sensor_diagonal(camera, scene):
-    """Return the diagonal of what the picture takes of the sensor, in mm.
+    """Return the diagonal of the part of the sensor that the picture uses, in mm.
 
     Parameters
     ----------

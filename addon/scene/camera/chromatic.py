@@ -1,4 +1,4 @@
-"""The chromatic aberration of a Blender camera to a `ChromaticAberration`."""
+"""Reads the chromatic aberration of a Blender camera into a `ChromaticAberration`."""
 
 from functools import lru_cache
 
@@ -16,13 +16,13 @@ from .drawn_curves import EQUALIZER, EQUALIZER_RANGE_NM, MAP_CURVES, SAMPLES, cu
 # `k_l` at strength 1, 1/um: over the 400 nm from violet to red the corners of the picture differ by
 # 2 % in size, about as much as those of a simple lens. A thin lens itself has no lateral colour.
 LATERAL_UNIT = 0.05
-# A spectrum narrower than this has no colours to part, nm.
+# Least width of the spectrum, nm: a narrower one has no dispersion to show.
 _NARROWEST_RANGE_NM = 1.0
 _ATOM_STEPS = {"axial": ("axial_first", "axial_then"), "lateral": ("lateral_first", "lateral_then")}
 
 
 def read_chromatic(camera, real_lens, focus=None):
-    """Return the chromatic aberration of a camera's data, and what it asks for and does not get.
+    """Return the chromatic aberration of a camera, and warnings about what cannot be met.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def read_chromatic(camera, real_lens, focus=None):
     Returns
     -------
     chromatic : ChromaticAberration or None
-        None where it is switched off; the very same object as long as nothing changes.
+        None where it is switched off; the identical object as long as nothing changes.
     problems : tuple of str
         One sentence each, without the camera's name.
     """
@@ -83,7 +83,7 @@ def read_field_map(settings, which):
     Returns
     -------
     FieldMap
-        The very same object as long as it is the same map.
+        The identical object as long as the map does not change.
     """
     atoms = [getattr(settings, name) for name in _ATOM_STEPS[which]]
     curves = [LINEAR_CURVE, LINEAR_CURVE]

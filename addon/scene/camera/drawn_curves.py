@@ -13,7 +13,7 @@ import numpy as np
 from ...sampling.field_maps import CURVE_POINTS
 
 EQUALIZER = "Equalizer"
-# Wavelengths at the ends of its curve, whatever part of them is drawn.
+# Wavelengths, nm, at the ends of the equalizer's curve, whatever range the settings use.
 EQUALIZER_RANGE_NM = (380.0, 780.0)
 # Two atoms for each of the two field maps.
 MAP_CURVES = {
@@ -22,11 +22,11 @@ MAP_CURVES = {
     ("lateral", 0): "Lateral First",
     ("lateral", 1): "Lateral Then",
 }
-# Marks the node group; its name may be changed by Blender, which keeps names apart.
+# Custom property that marks the node group; Blender may change its name to keep names unique.
 _MARK = "aplanat_curves"
 CURVE_NAMES = (*MAP_CURVES.values(), EQUALIZER)
 
-# Evenly spaced over the curve's width, both ends included.
+# Number of values of a curve, evenly spaced over its width, both ends included.
 SAMPLES = CURVE_POINTS
 _MOST_KEPT = 128
 
@@ -99,7 +99,7 @@ def curve_values(group, name):
     Returns
     -------
     tuple of float or None
-        `SAMPLES` of them, at places from 0 to 1; the very same one as long as the points stay. None
+        `SAMPLES` values at places from 0 to 1; the identical tuple as long as the points stay. None
         if there is no such curve.
     """
     mapping = find_mapping(group, name)

@@ -41,7 +41,7 @@ def user_folder():
 
 
 def read_real_lens(camera):
-    """Return the lens of a camera's data, and what it asks for and does not get.
+    """Return the real lens of a camera, and warnings about settings that cannot be met.
 
     Parameters
     ----------

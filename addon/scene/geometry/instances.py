@@ -27,9 +27,9 @@ class MeshSource:
     Parameters
     ----------
     key : object
-        Names this state of the mesh for the life of the process: Blender numbers each evaluated
-        mesh afresh, so an edited mesh, another frame or a state after undo has another key, also
-        where it occupies the same memory. Meshes without number have a key of their own each time.
+        Identifies this evaluated state of the mesh within the process: Blender numbers each
+        evaluated mesh afresh, so an edited mesh, another frame or a state after undo has another
+        key, even at the same address. A mesh without a number gets a new key each time.
     mesh : bpy.types.Mesh
     wrapped_by : bpy.types.Object or None
         The object whose evaluated mesh is a wrapper that may lack elements: in edit mode, and where
@@ -37,7 +37,7 @@ class MeshSource:
     owner : str
         Name of the first object that shows it.
     base : bpy.types.Mesh or None
-        What that object's modifiers and shape keys begin with, in the same evaluated scene.
+        The mesh that the object's modifiers and shape keys start from, in the same evaluated scene.
     """
 
     key: object
@@ -61,7 +61,7 @@ class MeshSource:
 
 @dataclass(frozen=True)
 class Look:
-    """What tells instances apart that cannot be drawn together.
+    """Key of instances that can be drawn together: mesh, materials, holdout.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class InstanceList:
     world : ndarray of shape (I, 4, 4)
         float32.
     places : list of tuple
-        What an instance is called in every frame; only if asked for.
+        Identity of each instance across frames, see `place`; only if asked for.
     lights : list of Light
     report : tuple of str
     """
@@ -129,7 +129,7 @@ def read_instances(depsgraph, space=None, with_places=False):
 
     Notes
     -----
-    What has a transform that is not finite is left out, as in Cycles.
+    Instances whose transform is not finite are left out, as in Cycles.
     """
     reader = _Reader(depsgraph, space)
     out = reader.out
@@ -160,7 +160,7 @@ def read_instances(depsgraph, space=None, with_places=False):
 
 
 def place(instance):
-    """Return what identifies an instance in every frame.
+    """Return the identity of an instance across frames.
 
     Parameters
     ----------
@@ -191,20 +191,20 @@ class _Reader:
         self._counts = {}
 
     def read(self, instance):
-        """Return look and name of an instance that is drawn, else None."""
+        """Return the `Look` and the object's name of an instance that is drawn, else None."""
         obj = instance.object
         data = obj.data
         if data is None:
             return None
         parent = instance.parent if instance.is_instance else obj
         if obj.type == "LIGHT":
-            # It lights what the camera sees wherever it hides itself.
+            # A light illuminates the scene even where the camera does not see it.
             if instance.show_self and self._is_in_view(obj):
                 self._read_light(obj, parent, instance.matrix_world)
             return None
         number = data.session_uid or ("unnumbered", data.as_pointer())
         shown = (instance.show_self, instance.show_particles)
-        # Copies of one thing in one place of the scene are alike; there may be very many.
+        # Copies of one object under one instancer are alike; there may be very many.
         key = (obj.original.session_uid, parent.original.session_uid, number, shown)
         if key not in self._kinds:
             self._kinds[key] = self._read_kind(obj, parent, number, *shown)
@@ -214,7 +214,7 @@ class _Reader:
         return drawn
 
     def _read_kind(self, obj, parent, number, show_self, show_particles):
-        """Return look and name, or None, and the notes of an instance."""
+        """Return the `Look` and name of an instance, or None, and its warnings."""
         holdout, indirect_only, parent_visible = self._flags_of_place(parent)
         visible = obj.visible_camera and parent_visible
         if not visible or (indirect_only and not holdout) or not self._is_in_view(obj):
@@ -311,7 +311,7 @@ class _Reader:
         return number
 
     def note(self, name, what):
-        """Take note, for the report, of what is not drawn of an object as it is set."""
+        """Add a warning about a property of an object that is not drawn as it is set."""
         self._counts[name, what] = self._counts.get((name, what), 0) + 1
 
     def report(self):

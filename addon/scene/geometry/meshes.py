@@ -1,4 +1,4 @@
-"""Evaluated Blender meshes to `MeshSnapshot`."""
+"""Reads evaluated Blender meshes into `MeshSnapshot`."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import numpy as np
 from ...snapshot.scene import MeshSnapshot, next_uid
 from .vertex_split import VertexSplit, split_all, split_vertices
 
-# Which member of an attribute's elements holds the value, and how many numbers that is.
+# By the attribute's type: member of its elements that holds the value, and number of components.
 _VALUE_MEMBERS = {
     "FLOAT": ("value", 1),
     "INT": ("value", 1),
@@ -31,7 +31,7 @@ class MeshReading:
     ----------
     snapshot : MeshSnapshot
     split : VertexSplit or None
-        How its vertices came about; `read_moved_positions` needs it.
+        How corners were split into vertices; `read_moved_positions` needs it.
     notes : tuple of str
         Lines for the report.
     """
@@ -52,7 +52,7 @@ def read_mesh(mesh, keys, owner, base=None):
     owner : str
         Name of an object that shows the mesh, for messages.
     base : bpy.types.Mesh or None
-        What the mesh was made from by modifiers and shape keys, if that is known.
+        The mesh that modifiers and shape keys made this one from, if that is known.
 
     Returns
     -------
@@ -192,11 +192,11 @@ def _read_positions(mesh):
 
 
 def _read_rest(mesh, base, positions, corner_vertices):
-    """Return where the vertices of a mesh are before anything deforms it, or None.
+    """Return the rest positions of a mesh, before any deformation, or None.
 
-    That is where they are in the mesh that it was made from, if it has the same faces. Otherwise
-    Blender may have carried the coordinates through the modifiers, as it does for renders, for
-    generated texture coordinates; else it answers with the positions themselves.
+    They are those of the mesh that it was made from, if that has the same faces. Otherwise
+    Blender may have carried undeformed coordinates through the modifiers for generated texture
+    coordinates, as it does for renders; where not, it returns the deformed positions.
     """
     if base is not None and _has_faces(base, len(positions), corner_vertices):
         rest = np.empty_like(positions)
@@ -220,7 +220,7 @@ def _has_faces(mesh, vertex_count, corner_vertices):
 
 
 def _chosen_triangles(slots, triangles, chosen):
-    """Return slots and triangles with those triangles only that are chosen."""
+    """Return the material slots and triangles that are left by a selection of triangles."""
     kept, first = [], 0
     for slot, start, count in slots:
         left = int(chosen[start : start + count].sum())
@@ -288,9 +288,9 @@ def _read_attribute(mesh, attribute, kind):
 
 
 def _without_infinite(mesh, values, domain, corner_vertices):
-    """Return values of corners that are 0 all over a face where one of its own is not finite.
+    """Return corner values with 0 all over a face where a corner's value is not finite.
 
-    Each component by itself: what lies between such a corner and another one is not finite either,
+    Each component by itself: interpolation from such a corner is not finite anywhere in the face,
     and Cycles draws it as 0.
     """
     if domain == "POINT":

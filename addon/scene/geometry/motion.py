@@ -1,7 +1,7 @@
-"""Where things are in the neighbouring frames, for the Vector pass.
+"""Motion vectors: transforms and positions in the neighbouring frames, for the Vector pass.
 
-As in Cycles, motion is measured from the frame before and to the frame after. A mesh whose topology
-changes on the way, or an instance that is not there in the other frame, does not move.
+As in Cycles, motion is measured from the previous frame and to the next. A mesh whose topology
+changes between them, or an instance that is missing in the other frame, does not move.
 """
 
 from dataclasses import dataclass, replace
@@ -16,12 +16,12 @@ from .meshes import read_moved_positions
 
 @dataclass(frozen=True, eq=False)
 class RowSources:
-    """What the rows of an instance table were read from.
+    """Sources of the rows of an instance table: instances, meshes and their readings.
 
     Parameters
     ----------
     places : list of tuple
-        What identifies the instance of a row in every frame.
+        Identity of a row's instance across frames.
     meshes : list of int
         `MeshSnapshot.uid`.
     readings : dict of int to MeshReading
@@ -45,7 +45,7 @@ def add_motion(snapshot, sources, depsgraph, frame_set, view=None):
         Of the current frame.
     sources : RowSources
     depsgraph : bpy.types.Depsgraph
-        Evaluated three times; what was read from it before is not valid afterwards.
+        Evaluated three times; data read from it before is invalid afterwards.
     frame_set : callable
         ``frame_set(frame, subframe)``, such as a render engine's.
     view : engine.views.View or None
@@ -57,7 +57,7 @@ def add_motion(snapshot, sources, depsgraph, frame_set, view=None):
 
     Notes
     -----
-    What has a coordinate or transform in a neighbouring frame that is not finite stands still.
+    Objects with coordinates or transforms that are not finite in a neighbouring frame do not move.
     """
     scene = depsgraph.scene
     camera, frame, subframe = scene.camera, scene.frame_current, scene.frame_subframe

@@ -1,4 +1,4 @@
-"""Where the corners of a mesh can share a vertex.
+"""Splitting the vertices of a mesh where its corners' attributes differ.
 
 A graphics device knows one value of each attribute a vertex; Blender stores some attributes (UVs,
 split normals, colours) a face corner. A vertex is split only where its corners' values differ,

@@ -1,4 +1,4 @@
-"""Pixels of any colour space to scene linear, with Blender's OpenColorIO configuration."""
+"""Conversion of pixels to scene linear, with Blender's OpenColorIO configuration."""
 
 import importlib
 import os
@@ -10,7 +10,7 @@ import numpy as np
 from ...snapshot.surface_graph import REC709_LUMINANCE
 
 SRGB = "sRGB"
-# Spaces whose numbers are used as they are, and the scene-linear one that Blender starts with.
+# Spaces that are used without conversion (data), and Blender's default scene-linear space.
 DATA_SPACES = frozenset({"Non-Color", "Raw"})
 REC709 = "Linear Rec.709"
 # A role of Blender's configuration: CIE XYZ with the white of D65.

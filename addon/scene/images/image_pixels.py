@@ -110,7 +110,7 @@ def with_four_channels(pixels):
 
 
 def encode(pixels, image, as_stored):
-    """Bring pixels into the form in which they are interpolated.
+    """Convert pixels to the encoding in which they are interpolated.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def encode(pixels, image, as_stored):
     associated : bool
         Colour is multiplied by alpha, and some pixel's alpha is not 1.
     notes : list of str
-        What is not as the image asks, without its name.
+        Warnings about settings of the image that cannot be met, without its name.
     """
     notes = []
     mode, space = image.alpha_mode, image.colorspace_settings.name
@@ -211,9 +211,9 @@ def encode_srgb(pixels):
 
 
 def without_infinite(pixels):
-    """Clear the pixels that have a channel which is not finite, or beyond all bounds.
+    """Clear the pixels with a channel that is not finite or exceeds the largest radiance.
 
-    All channels are cleared, as in Cycles, so that no hue appears that was not there.
+    All channels are cleared, as in Cycles, so that no false colour appears.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Blender's images to `ImageSnapshot`, each read once for as long as it does not change."""
+"""Reads Blender's images into `ImageSnapshot`, each once as long as it does not change."""
 
 import os
 import threading
@@ -50,12 +50,12 @@ class ImageReader:
     largest : int or None
         Texels along a side that the device can hold; larger images are averaged down.
     is_told : bool
-        `note_change` is called when an image is painted on. Otherwise one that is not saved is read
-        and compared in every round, as nothing else tells.
+        `note_change` is called when an image is painted on. If False, an unsaved image is read and
+        compared in every round, because nothing reports its changes.
     in_main_thread : callable or None
-        Has the main thread carry out a function and returns what that returns; for a reader that is
-        used in another thread. Only there the frame of a movie can be chosen, which is one for all
-        who read the image.
+        Runs a function in the main thread and returns its result; for a reader that is used in
+        another thread. Only the main thread can choose the frame of a movie, which all readers of
+        the image share.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class ImageReader:
         self._repaints = {}
 
     def begin(self):
-        """Start a new round; what the last one did not use is forgotten."""
+        """Start a new round; images that the last round did not use are forgotten."""
         self._entries = {k: v for k, v in self._entries.items() if k in self._seen}
         self._seen = {}
         self.images = {}
@@ -178,7 +178,7 @@ class ImageReader:
 
 
 def _read_frame(image, frame):
-    """Read a frame of a movie; nobody else in the main thread chooses another one meanwhile."""
+    """Read a frame of a movie, in the main thread, so that nothing else changes the frame."""
     # The only way to choose the frame; it needs the thread that may draw.
     image.gl_load(frame=frame)
     return read_pixels(image)

@@ -23,7 +23,7 @@ def _note_normal(reader, node, groups, *identifiers):
             reader.note(f"'{identifier}' of node '{node.bl_label}' is not read")
 
 
-# What the Principled BSDF has beyond what is drawn, and the value that leaves it out.
+# Inputs of the Principled BSDF that are not drawn, and the value at which they have no effect.
 _PRINCIPLED_LEFT_OUT = {
     "Transmission Weight": 0.0,
     "Subsurface Weight": 0.0,
@@ -66,7 +66,7 @@ def _principled(reader, node, groups):
     return reader.add("principled", inputs)
 
 
-# Surfaces without a closure of their own that are drawn as diffuse ones.
+# Shader nodes that are drawn as a diffuse surface, with a warning.
 _AS_DIFFUSE = {
     "BSDF_TRANSLUCENT": "Color",
     "SUBSURFACE_SCATTERING": "Color",

@@ -1,11 +1,11 @@
-"""Walking Blender's node trees: reroutes, muted nodes and groups seen through.
+"""Walking Blender's node trees: reroutes, muted nodes and groups are followed through.
 
 A place in a tree is a socket and the group nodes that enclose it, outermost first.
 """
 
 
 def source_of(socket, groups):
-    """Follow an input back to what feeds it.
+    """Follow an input back to the socket that feeds it.
 
     Parameters
     ----------
@@ -17,7 +17,7 @@ def source_of(socket, groups):
     Returns
     -------
     socket : bpy.types.NodeSocket
-        An output of a node that computes something, or the unlinked input whose value counts.
+        An output of a node that computes something, or the unlinked input whose value is used.
     groups : tuple of bpy.types.Node
     """
     while True:

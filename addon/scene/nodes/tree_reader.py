@@ -1,6 +1,6 @@
 """Walks one of Blender's node trees and makes the nodes of a `SurfaceGraph`.
 
-How a kind of node is read is told by a table of readers (`material_nodes`, `value_nodes`). A reader
+A table has a reader for each kind of node (`material_nodes`, `value_nodes`). A reader
 takes a `TreeReader`, a node and the groups around it. It adds a `ShaderNode` and returns its index,
 or returns a constant or link for each output, or None where it cannot read the node.
 """
@@ -55,7 +55,7 @@ class TreeReader:
     Parameters
     ----------
     owner : str
-        Whose tree it is, for messages: ``"material 'Floor'"``.
+        The data-block of the tree, for messages: ``"material 'Floor'"``.
     images : ImageReader
     readers : dict of str to callable
         See `reader_registry`.
@@ -103,7 +103,7 @@ class TreeReader:
         return converted(result, source, socket)
 
     def constant(self, socket):
-        """Return a socket's own value; 0 in place of what is not a number."""
+        """Return a socket's own value; 0 in place of NaN."""
         numbers = np.abs(numbers_of(socket))
         if not (numbers <= LARGEST_RADIANCE).all():
             fault = "is not a number; 0 is used"
@@ -142,7 +142,7 @@ class TreeReader:
         return result
 
     def has_room(self, rows):
-        """Whether a table of so many rows fits into the material's constants; then it is taken."""
+        """Reserve rows of a table in the material's constants; False if they do not fit."""
         if self._table_rows + rows > MAX_TABLE_ROWS:
             return False
         self._table_rows += rows
@@ -185,7 +185,7 @@ def numbers_of(socket):
 
 
 def constant(socket):
-    """Return a socket's own value; 0 in place of what is not a number, as Cycles draws it."""
+    """Return a socket's own value; 0 in place of NaN, as Cycles draws it."""
     return Constant(tuple(0.0 if math.isnan(v) else v for v in numbers_of(socket)))
 
 
@@ -195,14 +195,14 @@ def constant_number(socket):
 
 
 def converted(value, source, socket):
-    """Return what an input has of a constant that another kind of socket gives.
+    """Convert a constant between socket types, as Blender does.
 
     Parameters
     ----------
     value : Constant or Link
         A link is converted where it is read.
     source, socket : bpy.types.NodeSocket
-        Where it comes from and the input that it feeds.
+        The socket that the value comes from, and the input that it feeds.
 
     Returns
     -------
@@ -226,7 +226,7 @@ def _as_number(values, socket):
 
 
 def is_constant(value, *numbers):
-    """Whether an input is one of these numbers for certain."""
+    """Whether an input is unlinked and has one of these values."""
     return isinstance(value, Constant) and any(
         all(v == number for v in value.value) for number in numbers
     )

@@ -52,7 +52,7 @@ def _map_range(reader, node, groups):
     for name in names:
         socket = name.replace(" ", "_") + "_FLOAT3" if is_vector else name
         inputs.append((name, reader.value(node, socket, groups)))
-    # Smooth steps end by themselves.
+    # Smooth steps are clamped by themselves.
     clamps = node.clamp and node.interpolation_type in {"LINEAR", "STEPPED"}
     settings = (
         ("vector", _flag(is_vector)),

@@ -1,4 +1,4 @@
-"""Blender's lights to `Light`, in the units of Cycles.
+"""Reads Blender's lights into `Light`, in the units of Cycles.
 
 A sun's strength is the irradiance of a surface that faces it. A point or spot light of power P has
 the intensity P / 4 pi, an area light the radiance P / (pi area).
@@ -12,11 +12,11 @@ from ...snapshot.scene import Light
 from ..nodes.node_tree import source_of
 from ..nodes.tree_reader import constant, constant_number, numbers_of
 
-# A row each of the light table: textures of this height exist on every device.
+# Most lights, a row each of the light table: every device has textures of this height.
 MAX_LIGHTS = 8192
-# In single precision, in which the device computes.
+# Largest value in single precision, in which the device computes.
 _LARGEST_NUMBER = float(np.finfo(np.float32).max)
-# Of a spot whose edge is sharp, in cosines: far below a pixel.
+# Width of the edge of a spot without blend, in cosines: far below a pixel.
 _SHARPEST_EDGE = 1e-6
 
 
@@ -32,9 +32,9 @@ def read_light(light, matrix):
     Returns
     -------
     Light or None
-        None for one that gives no light.
+        None for a light without power.
     notes : list of str
-        What is not drawn as it is set.
+        Warnings about settings that are not drawn.
     """
     notes = []
     # Without Cycles' add-on a light has no settings of Cycles.

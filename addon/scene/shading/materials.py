@@ -1,4 +1,4 @@
-"""Blender's materials to `MaterialSnapshot`."""
+"""Reads Blender's materials into `MaterialSnapshot`."""
 
 from ...snapshot.cryptomatte import cryptomatte_id
 from ...snapshot.scene import MaterialSnapshot, next_uid
@@ -33,7 +33,7 @@ class MaterialReader:
         Those read since `begin`.
     images : dict of int to ImageSnapshot
     report : list of str
-        What is not drawn, and what is drawn instead, one line each.
+        Warnings: what is not drawn, and what is drawn instead, one line each.
     """
 
     def __init__(self, largest_image=None, in_main_thread=None):
@@ -42,7 +42,7 @@ class MaterialReader:
         self.begin()
 
     def begin(self):
-        """Start a new round; what the last one did not use is forgotten."""
+        """Start a new round; materials that the last round did not use are forgotten."""
         used = self.materials.keys() if self._known else ()
         self._known = {k: m for k, m in self._known.items() if m.uid in used}
         self.image_reader.begin()
@@ -100,7 +100,7 @@ class MaterialReader:
         reader = TreeReader(f"material '{material.name}'", self.image_reader, _READERS)
         graph = reader.surface(output)
         if graph.surface is None and reader.linked(output, "Volume", ()):
-            # The hull of a fog or smoke is not to be seen itself.
+            # The mesh around a volume (fog, smoke) has no surface of its own.
             graph = _INVISIBLE_GRAPH
         for socket, what in (("Volume", "volume"), ("Displacement", "displacement")):
             if reader.linked(output, socket, ()):

@@ -1,4 +1,4 @@
-"""Blender's world to `World`: one Background with a colour or an equirectangular image."""
+"""Reads Blender's world into `World`: one Background with a colour or an equirectangular image."""
 
 import numpy as np
 
@@ -69,7 +69,7 @@ class _WorldReader:
         if not all(abs(c) <= LARGEST_RADIANCE for c in light):
             self.note("its light is stronger than a picture can hold; it is left out")
             light = tuple(c if abs(c) <= LARGEST_RADIANCE else 0.0 for c in light)
-        # White is the image's, however strongly it shines.
+        # Amplify Whites refers to the image's white, whatever the strength of the Background.
         amplification = amplification if image else 0.0
         luminance = color_spaces.luminance_weights()
         return World(light, image, rotation, amplification, luminance, graph)
@@ -115,7 +115,7 @@ class _WorldReader:
         return constant(socket).value, 0, nothing.rotation, None
 
     def _computed(self, node, groups):
-        """Return what nodes make of images; None without an image that can be read."""
+        """Return the world that nodes compute from images; None without a readable image."""
         readers = {
             **{kind: material_nodes.READERS[kind] for kind in ("RGB", "VALUE")},
             **value_nodes.READERS,
