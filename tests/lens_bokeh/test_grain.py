@@ -48,7 +48,8 @@ def test_dust_darkens_spots_only():
 @pytest.mark.parametrize("radius", [1e-3, 0.1, 1.0])
 def test_each_spot_takes_its_share_wherever_points_lie(radius):
     grain = Grain(dust=60, dust_radius=radius, dust_depth=0.9, seed=3)
-    points = np.concatenate([texel_centres(40), np.random.default_rng(4).normal(size=(40, 9, 2))], 1)
+    elsewhere = np.random.default_rng(4).normal(size=(40, 9, 2))
+    points = np.concatenate([texel_centres(40), elsewhere], axis=1)
     expected = np.ones(points.shape[:-1])
     for square, turn, size in np.random.default_rng(3).random((60, 3)):
         angle = 2.0 * np.pi * turn

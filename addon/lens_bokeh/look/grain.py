@@ -91,7 +91,8 @@ def _raw(grain, points):
         # An exponential stays positive where a sum would not, at any strength.
         factor = np.exp(grain.strength * noise)
     if grain.dust > 0:
-        factor = factor * _passed_dust(grain, generator, points.reshape(-1, 2)).reshape(factor.shape)
+        passed = _passed_dust(grain, generator, points.reshape(-1, 2))
+        factor = factor * passed.reshape(factor.shape)
     return factor
 
 
