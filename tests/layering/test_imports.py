@@ -42,6 +42,7 @@ ROOMS = {
         *("lens_bokeh.look", "lens_bokeh.tables", "lens_io"),
     ),
     "snapshot": ("optics", "sampling", "lens_bokeh.look"),
+    "layers": ("files",),
     "levels.making": ("snapshot",),
     "levels": ("files", "snapshot", "levels.making"),
     # The graphics device, and passes on it.
@@ -124,7 +125,7 @@ PURE_ROOMS = tuple(
     f"{name}."
     for name in (
         *("files", "optics", "sampling", "lens_bokeh", "lens_io", "plots", "snapshot", "levels"),
-        *("device", "passes", "cli.words", "cli.lens"),
+        *("layers", "device", "passes", "cli.words", "cli.lens"),
         *(f"engine.{name}" for name in ("planning", "drawing", "visibility", "bokeh", "frame")),
     )
 )
