@@ -1,8 +1,9 @@
-"""A compiled shader that knows what it was declared with and what its compiler kept of it.
+"""A compiled shader with its declared resources and those that the compiler has kept.
 
-A driver may leave out what a variant does not read, and Blender then refuses to set it: as an error
-for numbers and blocks, silently for textures; which of them depends on driver and backend. Here,
-what was declared but left out is passed over, and what was never declared is an error everywhere.
+A driver may optimise away resources that a variant does not read, and Blender then refuses to set
+them: with an error for numbers and blocks, silently for textures, depending on driver and backend.
+Here, setting a resource that was declared but optimised away does nothing, and setting one that was
+never declared is an error everywhere.
 """
 
 from ..errors import ShaderResourceError
@@ -38,9 +39,9 @@ class Shader:
             constant[1]: _has(program.uniform_from_name, constant[1])
             for constant in info.push_constants
         }
-        # What has to be set before each drawing. A block or texture that the program left out does
-        # no harm when it is bound, so all that are declared are asked for: a drawing must never
-        # read what another pass has left bound.
+        # Resources that have to be set before each drawing. Binding a block or texture that was
+        # optimised away does no harm, so all declared ones are required: a drawing must never read
+        # what another pass has left bound.
         self._needed = frozenset(
             name
             for name, kind in self._declared.items()
@@ -53,7 +54,7 @@ class Shader:
         return name in self._declared
 
     def bind(self):
-        """Make it the current shader; everything that it reads has to be set afterwards."""
+        """Make it the current shader; all its resources have to be set afterwards."""
         self._given.clear()
         self.program.bind()
 
@@ -135,7 +136,7 @@ class Shader:
         batch.draw_instanced(self.program, instance_count=count)
 
     def check_given(self):
-        """Raise an error if something that the shader reads was not set since it was bound."""
+        """Raise an error if a resource that the shader reads was not set since it was bound."""
         # Names are only given if they are declared; a count would let what was left out stand for
         # what is missing.
         if not self._needed <= self._given:

@@ -1,9 +1,8 @@
-"""A census of the graphics objects that are alive, for leak tests and diagnosis.
+"""A census of the live graphics objects, for leak tests and diagnosis.
 
-Blender's GPU types take neither weak references nor subclasses. So while a census is taken, it
-holds a reference to every object made through `addon.device`, and calls those dead that nobody else
-refers to: it then drops them, and the device frees them. Without a census in progress, nothing is
-recorded.
+Blender's GPU types support neither weak references nor subclasses. So while a census is taken, it
+holds a reference to every object made through `addon.device`, and drops those that nothing else
+refers to, which the device then frees. Without a census in progress, nothing is recorded.
 """
 
 from contextlib import contextmanager
@@ -37,7 +36,7 @@ class Census:
         self._entries = []
 
     def record(self, kind, holder, size):
-        """Take an object in.
+        """Add an object to the census.
 
         Parameters
         ----------
@@ -50,7 +49,7 @@ class Census:
         self._entries.append((kind, size, holder))
 
     def alive(self):
-        """Return how many objects are alive, and how many bytes they hold.
+        """Return the number and the bytes of the objects that are alive.
 
         Returns
         -------
@@ -89,7 +88,7 @@ def taken():
 
 
 def record(kind, thing, size=0):
-    """Tell the censuses in progress of a new object, and return it.
+    """Add a new object to the censuses in progress, and return it.
 
     Textures and frame buffers are kept for the thread that draws; see `keeping`.
 

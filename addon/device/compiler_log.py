@@ -1,4 +1,4 @@
-"""What the driver's compiler says about a shader, with the files that its lines came from.
+"""Messages of the driver's shader compiler, mapped back to files and lines of the sources.
 
 Blender hands the compiler's messages to the console of the process, not to Python. A shader that
 was refused is therefore compiled once more with the console caught.
@@ -40,7 +40,7 @@ def caught_console():
 
 
 def locate_messages(console, stages):
-    """Find a compiler's messages in what it wrote and say which files they are about.
+    """Find a compiler's messages in its output, and map their lines to shader files.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ def _has_backend():
         return False
 
 
-# Two orders of magnitude above what the slowest software driver took.
+# Time limit of the probe: a hundred times what the slowest software driver took.
 _PROBE_SECONDS = 20.0
 
 
@@ -82,7 +82,7 @@ def _initialise_and_exit():
     import gpu
 
     try:
-        # Neither a crash report nor the driver's complaints are news for anybody.
+        # The child's crash report and the driver's messages must not reach the user.
         signal.signal(signal.SIGSEGV, signal.SIG_DFL)
         null = os.open(os.devnull, os.O_WRONLY)
         os.dup2(null, 1)

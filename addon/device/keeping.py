@@ -1,4 +1,4 @@
-"""Textures and frame buffers, kept until the thread that draws lets them go.
+"""Keeps textures and frame buffers alive until the drawing thread can free them.
 
 Python drops an object wherever its last reference goes, and collects cycles in whichever thread
 happens to allocate. A texture that is freed in a thread without a graphics context leaves its
@@ -16,13 +16,13 @@ _owner = None
 
 
 def own():
-    """Make this thread the one that draws, and drops what is not needed any more."""
+    """Make this thread the one that draws, and that frees what is not needed any more."""
     global _owner
     _owner = threading.get_ident()
 
 
 def keep(thing):
-    """Hold an object until `let_go` finds that nobody else does.
+    """Hold an object until `let_go` finds that nothing else refers to it.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def keep(thing):
 
 
 def let_go():
-    """Drop what nobody else refers to; in another thread than the one that draws, do nothing."""
+    """Free what nothing else refers to; does nothing in a thread other than the drawing one."""
     if threading.get_ident() != _owner:
         return
     # Frame buffers hold textures: repeat until nothing more goes.
@@ -67,8 +67,8 @@ def is_orphan(holder):
     return sys.getrefcount(holder[0]) <= _ALONE
 
 
-# What `sys.getrefcount` answers for an object that only a holder holds: the interpreter decides how
-# many references the question itself makes.
+# `sys.getrefcount` of an object that only a holder refers to: how many references the call itself
+# makes depends on the interpreter.
 _ALONE = sys.maxsize
 _ALONE = next(sys.getrefcount(holder[0]) for holder in [[object()]])
 

@@ -1,4 +1,4 @@
-"""From the device back to numpy."""
+"""Read-back: from the device to numpy arrays."""
 
 import numpy as np
 
@@ -31,7 +31,7 @@ def read_color(framebuffer, width, height, channels=4, slot=0):
 
 
 def wait(framebuffer):
-    """Return when everything that was drawn into a frame buffer is there.
+    """Wait until the device has finished drawing into a frame buffer.
 
     Reading a pixel is the only way to wait that Blender offers.
     """

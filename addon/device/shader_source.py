@@ -13,7 +13,7 @@ from ..errors import ShaderCompileError
 
 SHADER_ROOT = Path(__file__).resolve().parents[2] / "gpu_shaders"
 
-# Of each text that was put together, where its lines came from; as many as there are shaders.
+# For each joined text, the sources of its lines; as many texts as there are shaders.
 _places = {}
 
 _INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
@@ -69,7 +69,7 @@ def _join(_root, parts):
 
 
 def locate(text, number):
-    """Say where a line of a text made by `load` or `join` came from.
+    """Return the source of a line of a text made by `load` or `join`.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Every variant of every shader, as the passes declare them, so that all can be compiled and tried.
+"""Registry of all shader variants, so that a test can compile and bind every one.
 
 A function that makes a `ShaderInfo` for a choice of features is marked with `variants`, which names
-the values that its arguments may have. Nothing here is used to render.
+the values that its arguments may have. The registry is not used to render.
 """
 
 from itertools import product
@@ -17,7 +17,7 @@ def variants(allowed=None, **choices):
     allowed : callable, optional
         Takes the arguments and tells whether they are ever asked for together.
     **choices : iterables
-        By argument. One that only numbers something needs a value or two.
+        Values by argument. An argument that is only a count or an index needs a value or two.
     """
 
     def mark(make):

@@ -20,7 +20,7 @@ atexit.register(_cache.clear)
 
 @dataclass(frozen=True)
 class ShaderInfo:
-    """What a shader is made of; equal infos share one compiled shader.
+    """Sources and declarations of a shader; equal infos share one compiled shader.
 
     Parameters
     ----------

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def preserved():
-    """Give back Blender's own state after a `with` block that draws between its drawings."""
+    """Restore Blender's own GPU state after a `with` block."""
     import gpu
 
     blend = gpu.state.blend_get()
@@ -22,7 +22,7 @@ def preserved():
 
 @contextmanager
 def confined(x, y, width, height):
-    """Draw into a rectangle of the bound frame buffer, in pixels, for a `with` block."""
+    """Set the viewport to a rectangle of the bound frame buffer, in pixels, for a `with` block."""
     import gpu
 
     viewport = gpu.state.viewport_get()
@@ -35,9 +35,9 @@ def confined(x, y, width, height):
 
 @contextmanager
 def scissored(x, y, width, height):
-    """Leave everything outside a rectangle of the bound frame buffer as it is, for a `with` block.
+    """Set the scissor rectangle of the bound frame buffer for a `with` block.
 
-    Unlike `confined`, where a point lands does not depend on the rectangle, to the last bit.
+    Unlike with `confined`, rasterisation does not depend on the rectangle, to the last bit.
     """
     import gpu
 
@@ -51,7 +51,7 @@ def scissored(x, y, width, height):
 
 @contextmanager
 def clipped(distances):
-    """Cut off what the first clip distances of the vertex shader are negative for, in a block."""
+    """Enable the first clip distances of the vertex shader for a `with` block."""
     import gpu
 
     gpu.state.clip_distances_set(distances)
@@ -82,7 +82,7 @@ def overwrite():
 
 
 def behind():
-    """Fill what the depth buffer has left empty; depth is kept."""
+    """Draw where the depth buffer is empty; depth is kept."""
     import gpu
 
     opaque()
@@ -90,7 +90,7 @@ def behind():
 
 
 def glow():
-    """Sum of all four channels wherever nothing is in front; depth is kept."""
+    """Add all four channels where the depth test passes; depth is kept."""
     import gpu
 
     behind()
@@ -98,7 +98,7 @@ def glow():
 
 
 def additive():
-    """Sum of all four channels; no depth."""
+    """Add all four channels; no depth."""
     import gpu
 
     overwrite()
@@ -107,7 +107,7 @@ def additive():
 
 
 def multiply():
-    """Product of the colour that is there and the new one; no depth."""
+    """Multiply the colour in the target by the new one; no depth."""
     import gpu
 
     overwrite()
@@ -115,7 +115,7 @@ def multiply():
 
 
 def over():
-    """Lay premultiplied colour over what is there; no depth."""
+    """Alpha-blend premultiplied colour over the target; no depth."""
     import gpu
 
     overwrite()

@@ -1,4 +1,4 @@
-"""Where Aplanat keeps what it can make again."""
+"""The folder of cached files: what can be made again."""
 
 import os
 import sys

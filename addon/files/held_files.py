@@ -1,8 +1,8 @@
-"""Files that wait in a folder of their own until it is known that they are wanted.
+"""Files that are held back in a temporary folder until they are published or dropped.
 
-What other software writes in place, in several steps, is written there instead: its output folder
-is told to be a stand-in for the real one. The files are then published, each whole or not at all,
-or forgotten with the folder.
+Software that writes its files in place, in several steps, is given a stand-in for its output folder
+and writes there. The files are then published, each whole or not at all, or removed with the
+folder.
 """
 
 import shutil
@@ -39,7 +39,7 @@ class HeldFiles:
         forget_folder(self._folder)
 
     def room(self, name):
-        """Return the folder of one writer, which is made if need be.
+        """Return the folder of one writer; made at first use.
 
         Parameters
         ----------
@@ -96,7 +96,7 @@ class HeldFiles:
 
 
 def publish(held, real):
-    """Give a held file its place, with the permissions of the user's umask.
+    """Move a held file to its destination, with the permissions of the user's umask.
 
     Parameters
     ----------

@@ -17,7 +17,8 @@ from pathlib import Path
 
 from ..errors import OutputError, UnfinishedFileError
 
-# Characters of a file's name that its temporary name has: 255 bytes are allowed, four a character.
+# Characters of a file's name that its temporary name keeps: file systems allow 255 bytes, and a
+# character takes up to four.
 _LONGEST_STEM = 50
 
 # What a signal removes: files, and folders with all that is in them.
@@ -85,7 +86,7 @@ def _begin(destination):
 
 
 def _kind(place):
-    """Return what stands at a place, if it is no file that may be replaced."""
+    """Return the kind of what exists at a path, if it is no file that may be replaced."""
     try:
         mode = os.lstat(place).st_mode
     except (FileNotFoundError, NotADirectoryError):
@@ -107,7 +108,7 @@ def _reason(folder, error):
     except OSError as deeper:
         return deeper.strerror or str(deeper)
     if isinstance(error, FileNotFoundError):
-        # What systems say of folders that are made up by them, such as /proc.
+        # Error numbers of virtual file systems, such as /proc.
         return f"no file can be made in '{folder}'; choose another folder"
     return error.strerror or str(error)
 
@@ -141,7 +142,7 @@ class _NamelessFile:
         try:
             self._link(final)
         except FileExistsError:
-            # No picture's ending: nobody takes it for one.
+            # Not the ending of a picture: no program takes it for one.
             name = f".{_shortened(final)}.{os.getpid()}.part"
             with contextlib.suppress(FileNotFoundError):
                 os.unlink(name, dir_fd=self._folder)

@@ -1,1 +1,1 @@
-"""Sample sequences and the thin lens: pure numpy, no Blender."""
+"""Sample sequences, pixel filter, thin lens and spectrum: pure numpy, no Blender."""

@@ -21,7 +21,7 @@ from .field_maps import STANDARD, FieldMap
 
 RGB_WAVELENGTHS_NM = (650.0, 510.0, 475.0)
 SPECTRAL_RANGE_NM = (380.0, 780.0)
-# What the colour-matching functions cover; a range is kept inside.
+# Range of the colour-matching functions, nm; the settings' range is clamped to it.
 WIDEST_RANGE_NM = (360.0, 830.0)
 # No focus plane is farther away than this many focus distances: as good as infinitely far.
 FARTHEST_FOCUS = 1.0e6
@@ -49,7 +49,7 @@ class Dispersion:
     focal_ratio: tuple[float, ...]
 
     def __post_init__(self):
-        """Refuse what is no curve of focal lengths."""
+        """Check that the curve of focal lengths is valid."""
         places, ratios = np.array(self.wavelengths_nm), np.array(self.focal_ratio)
         if len(places) < 2 or len(places) != len(ratios) or not np.all(np.diff(places) > 0.0):
             raise InputError("a dispersion needs two or more rising wavelengths, each with a ratio")
@@ -183,7 +183,7 @@ class ChromaticAberration:
     primaries: str = "ITU-R BT.709"
 
     def __post_init__(self):
-        """Refuse what cannot form a picture."""
+        """Check that the parameters can form a picture."""
         if self.mode not in {"RGB", "SPECTRAL"}:
             raise InputError(f"chromatic mode '{self.mode}' is not known; use RGB or SPECTRAL")
         if not (np.isfinite(self.axial) and np.isfinite(self.lateral)):
@@ -206,7 +206,7 @@ class ChromaticAberration:
         return max(RGB_WAVELENGTHS_NM) if self.mode == "RGB" else self.wavelength_range[1]
 
     def focal_errors(self, wavelengths_nm):
-        """Return by which share focal lengths on the axis differ from `F_hat`.
+        """Return the relative differences of focal lengths on the axis from `F_hat`.
 
         Parameters
         ----------
@@ -221,7 +221,7 @@ class ChromaticAberration:
         return self.axial * (ratio - 1.0)
 
     def lateral_strengths(self, wavelengths_nm):
-        """Return by which share objects are larger where the lateral map is 1.
+        """Return the relative magnification of objects where the lateral map is 1.
 
         Parameters
         ----------
@@ -284,7 +284,7 @@ class ChromaticAberration:
         return lateral_scale(wavelengths_nm, self.reference_nm, self.lateral, field_value)
 
     def problems(self, focus=None):
-        """Tell what the strengths ask for and cannot be given.
+        """Return warnings about strengths that cannot be met everywhere in the picture.
 
         Parameters
         ----------
@@ -347,7 +347,7 @@ def chromatic_focus(focus, focal_length, focal_length_at):
 
 
 def beyond_infinity(focus, focal_length, focal_length_at):
-    """Tell where equation (4.5) has no positive solution, and `chromatic_focus` is clamped.
+    """Return where equation (4.5) has no positive solution, and `chromatic_focus` is clamped.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ class SpectralEqualizer:
     weights: tuple[float, ...] = (1.0, 1.0)
 
     def __post_init__(self):
-        """Refuse what is no curve of weights."""
+        """Check that the curve of weights is valid."""
         places, weights = np.array(self.wavelengths_nm), np.array(self.weights)
         if len(places) < 2 or len(places) != len(weights):
             raise InputError(

@@ -17,11 +17,11 @@ from ..errors import InputError
 # Beyond a hundredth of the field from its pole, 1 / t is not touched. More would turn the picture
 # inside out at strengths that are used, and 32 bit floats keep five digits of what is left.
 LIMIT = 100.0
-# Of a drawn curve: as many straight pieces as Blender's own curve tables have.
+# Number of values of a drawn curve: as many straight pieces as Blender's own curve tables have.
 CURVE_POINTS = 257
 LINEAR_CURVE = (0.0, 1.0)
 
-# What an artist reads, in the order of the menu. The last but one is ours: cos(theta) is not
+# Atoms and their labels, in the order of the menu. The last but one is ours: cos(theta) is not
 # continuous on the axis, t cos(theta) is.
 ATOMS = {
     "IDENTITY": "t",
@@ -57,7 +57,7 @@ class FieldMap:
     curve_g: tuple[float, ...] = LINEAR_CURVE
 
     def __post_init__(self):
-        """Refuse what is not a map."""
+        """Check that the atoms and curves are valid."""
         for name in (self.f, self.g):
             if name not in ATOMS:
                 raise InputError(f"field map has no atom '{name}'; use one of {', '.join(ATOMS)}")
@@ -83,7 +83,7 @@ class FieldMap:
         return self._evaluate(t, theta)[0]
 
     def clamped_at(self, t, theta=0.0):
-        """Tell where a value is not the atoms' own but the limit.
+        """Return where the value is clamped to the limit.
 
         Parameters
         ----------
@@ -111,7 +111,7 @@ class FieldMap:
 
     @property
     def text(self):
-        """The map as a formula, for people."""
+        """The map as a formula, for messages and panels."""
         return composed_text(self.f, self.g)
 
     def table(self, size_t=256, size_theta=128):

@@ -1,27 +1,27 @@
-"""Which light is blurred by lens samples, and which is splatted as bokeh (methods 9 and 10).
+"""The highlight threshold: which light lens samples keep, and which is splatted (methods 9 and 10).
 
 A picture averaged over n places on the lens shows the disc of a bright point as n dots. Where they
 do not fill the disc, the light above a threshold is therefore taken out of the samples and splatted
-as a disc of its own. Nothing is lost: at every surface the radiance `I`
-with the signed circle of confusion `C` (px) is divided into
+as a disc of its own. No energy is lost: at every surface the radiance `I` with the signed circle of
+confusion `C` (px) is divided into
 
 ``base = I (1 - share(C)) + share(C) kept(I)`` and ``highlight = I - base``,
 
 ``share(C) = smoothstep(c0, 1.5 c0, |C|)``, ``c0 = max(2, sqrt(samples / (4 pi)))``.
 
-``kept(I)`` is ``I`` up to the threshold and nothing from twice the threshold on. Whatever samples
-kept of a lamp would be a bright dot in each of them, and most of the noise. A gain multiplies
-only what lies above the threshold.
+``kept(I)`` is ``I`` up to the threshold and 0 from twice the threshold on: light of a lamp that
+samples kept would be a bright dot in each of them, and most of the noise. A gain multiplies
+only the light above the threshold.
 
 The same functions for the graphics device are in ``lib/bokeh/highlight_lib.glsl``.
 """
 
 import numpy as np
 
-# Smaller discs are hardly larger than the pixel filter, px.
+# Least radius of a disc that is splatted, px: smaller ones are hardly larger than the pixel filter.
 _LEAST_COC = 2.0
-# Lens samples for each pixel of a disc that show it without dots. Subsamples do not count: they see
-# only what their sample sees, too little of a light that is smaller than a pixel.
+# Lens samples for each pixel of a disc that show it without dots. Subsamples do not count: they
+# only see what their lens sample shows, which may miss a light that is smaller than a pixel.
 _SAMPLES_A_PIXEL = 4.0
 # The share grows from 0 to 1 while the circle grows by this factor, so that nothing pops.
 _TRANSITION = 1.5
@@ -33,7 +33,7 @@ def least_coc(samples):
     Parameters
     ----------
     samples : float
-        Of the lens, over which the picture is averaged.
+        Number of lens samples.
 
     Returns
     -------
@@ -69,9 +69,9 @@ def highlight_light(radiance, threshold, gain=1.0):
     ----------
     radiance : ndarray of shape (..., 3)
     threshold : float
-        Of the largest channel; greater than 0.
+        Threshold of the largest channel; greater than 0.
     gain : float
-        Of what lies above the threshold.
+        Factor of the light above the threshold.
 
     Returns
     -------
@@ -103,23 +103,22 @@ def highlight_base(radiance, share, threshold):
 
 
 def amplify(radiance, amplification, luminance):
-    """Return what a picture may have shown before its whites were cut off.
+    """Restore the brightness of clipped whites: *Amplify Whites*.
 
     Parameters
     ----------
     radiance : ndarray of shape (..., 3)
         Scene linear, 1 where the picture is white.
     amplification : float
-        Of white; 0 changes nothing.
+        White becomes 1 + this; 0 changes nothing.
     luminance : sequence of 3 float
-        Weights of the channels.
+        Luminance weights of the channels.
 
     Returns
     -------
     ndarray of shape (..., 3)
-        ``radiance (1 + amplification L^10)`` with the luminance L, as that of white where it is
-        greater: what is brighter than white was not cut off, and grows by the same factor, so that
-        no picture, however bright, grows beyond all bounds.
+        ``radiance (1 + amplification L^10)`` with the luminance L clamped to 1: what is brighter
+        than white was not clipped, and is multiplied as white is.
 
     References
     ----------

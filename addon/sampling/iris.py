@@ -2,7 +2,7 @@
 
 Model: an opening of unit circumradius. A round one is the unit disk; one with n >= 3 blades is the
 regular polygon whose first *side* is centred on the direction `rotation`, which is how Cycles
-turns it. The anamorphic ratio then divides the horizontal axis. Both maps keep areas, so that a
+turns it. The anamorphic ratio then divides the horizontal axis. Both maps preserve areas, so that a
 uniform sequence stays uniform: no sample is rejected, and weights are equal.
 """
 

@@ -62,12 +62,12 @@ def filter_density(offset, kind, size_px):
 
 
 def filter_support(kind, size_px):
-    """Return how wide a pixel filter is, from one end to the other, in pixels."""
+    """Return the full width of a pixel filter, in pixels."""
     return size_px if kind == "BOX" else 2.0 * size_px
 
 
 def subpixel_centers(count):
-    """Return where `count` sub-pixels lie along a pixel, from its centre, in pixels."""
+    """Return the centres of `count` sub-pixels along a pixel, from its centre, in pixels."""
     return (np.arange(count) + 0.5) / count - 0.5
 
 
@@ -82,7 +82,7 @@ def movement_size(kind, size_px, subpixels):
 
 
 def subpixel_weights(offsets, kind, size_px, subpixels):
-    """Weights along one axis that make a moved grid of sub-pixels an exact filter.
+    """Return the weights of sub-pixels along one axis that make a jittered grid an exact filter.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def subpixel_weights(offsets, kind, size_px, subpixels):
 
 
 def filter_offsets(uniform, kind, size_px):
-    """Distribute uniform numbers as a pixel filter does.
+    """Importance-sample a pixel filter: map uniform numbers to offsets from the pixel's centre.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The sample sequence of a frame: where on the lens, where in the pixel.
+"""The sample sequence of a frame: places on the lens and offsets in the pixel.
 
 Lens: Halton bases (2, 7); pixel: bases (3, 5). Base 11 is kept for the wavelength (methods 2, 8).
 The sequence is shifted by one half in every dimension, which makes its first element the lens'
@@ -40,7 +40,7 @@ def lens_samples(first, count, iris, seed=0):
 
 
 def pixel_offsets(first, count, kind, size_px, seed=0, subpixels=1):
-    """Return sub-pixel positions for samples `first` to `first + count - 1`.
+    """Return offsets in the pixel (jitter) for samples `first` to `first + count - 1`.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def pixel_offsets(first, count, kind, size_px, seed=0, subpixels=1):
     size_px : float
     seed : int
     subpixels : int
-        Along each side of a pixel; they move together.
+        Sub-pixels along each side of a pixel; the grid moves as a whole.
 
     Returns
     -------

@@ -1,16 +1,17 @@
-"""Bands of wavelengths that a highlight's disc is drawn in, a disc each (methods 8, 13).
+"""Bands of wavelengths for chromatic bokeh: a highlight has a disc for each band (methods 8, 13).
 
-Lens samples take the wavelengths of `sampling.spectral_samples`, one each. A disc is drawn whole,
-so that its light is divided into few bands: each has the sum of its wavelengths' weights, their
-mean focus and scale, and the width over which these vary, by which its disc is blurred. Rims of
-neighbouring bands then join: light over place is straight from one to the next.
+Lens samples take the wavelengths of `sampling.spectral_samples`, one each. Discs are whole
+pictures, so the light of a highlight is divided into few bands: each has the sum of its
+wavelengths' weights, their mean focus and scale, and the width over which these vary, by which its
+disc is blurred. The rims of neighbouring bands then join: between them the light is interpolated
+linearly.
 
-Bands lie closest where light is dense: for a light of ``w`` a pixel, the mean of the squared error
-is least with a density that goes as ``w^(1/3)`` (Panter and Dite, Proc. IRE 39, 1951). Together
+Bands are densest where the light is: for a light of ``w`` a pixel, the mean squared error is least
+with a density of bands that goes as ``w^(1/3)`` (Panter and Dite, Proc. IRE 39, 1951). Together
 they have all the light of each channel, exactly as much as the samples.
 
-Over the field, colours part more or less, and highlights take as many bands as they need: the
-level for their own `spectral_length`.
+How far the colours spread differs over the field; each highlight takes as many bands as it needs:
+the level for its own `spectral_length`.
 """
 
 from dataclasses import dataclass
@@ -20,10 +21,10 @@ import numpy as np
 from .chromatic import RGB_WAVELENGTHS_NM
 from .spectral_samples import channel_density
 
-# Rims that lie closer are one, px: the pixel filter is wider.
+# Rims closer than this are drawn as one, px: the pixel filter is wider.
 _SAME_RIM = 0.05
-# Between rims of neighbouring bands, px; each is blurred over that much. Where there are 16 bands,
-# what all rims inside a radius add up to is within 2 % of what it should be, however far apart.
+# Distance between the rims of neighbouring bands, px; each is blurred over that much. With 16
+# bands, the summed light inside any radius is within 2 %, however far the colours spread.
 _STEP = 1.5
 
 
@@ -55,14 +56,14 @@ class SpectralBand:
 
 @dataclass(frozen=True)
 class BandLevel:
-    """Bands for highlights whose colours part by so much.
+    """Bands for highlights whose colours spread by a range of lengths.
 
     Parameters
     ----------
     bands : tuple of SpectralBand
         By rising wavelength; their weights sum to 1 in each channel.
     least, most : float
-        Way over which the light is spread, px: at least, and less than.
+        Bounds of the `spectral_length`, px: at least, and less than.
     """
 
     bands: tuple[SpectralBand, ...]
@@ -71,15 +72,17 @@ class BandLevel:
 
 
 def spectral_length(aberration, axial_px, lateral_px):
-    """Return the way over which rims of all wavelengths are spread: the way of an even light.
+    """Return the length over which the rims of all wavelengths are spread.
+
+    It is the length over which an even light would need as many bands.
 
     Parameters
     ----------
     aberration : ChromaticAberration
     axial_px : float
-        How much larger a disc gets by a relative change of the focal length of 1, px.
+        Change of a disc's radius by a relative change of the focal length of 1, px.
     lateral_px : float
-        How far a disc moves by a lateral strength of 1, px.
+        Shift of a disc by a lateral strength of 1, px.
 
     Returns
     -------
@@ -114,24 +117,24 @@ def spectral_bands(aberration, axial_px, lateral_px, count):
 
 
 def band_levels(aberration, axial_px, lateral_px, most):
-    """Return levels of ever more bands, for colours that part little or much.
+    """Return levels with ever more bands, for colours that spread little or much.
 
     Parameters
     ----------
     aberration : ChromaticAberration
     axial_px, lateral_px : float
-        See `spectral_length`: where colours part most.
+        See `spectral_length`, where colours spread most.
     most : int
         Bands of the last level.
 
     Returns
     -------
     tuple of BandLevel
-        As many as there are lengths for; the last one has no end.
+        By rising length; the last level has no upper bound.
     """
     length = spectral_length(aberration, axial_px, lateral_px)
     if aberration.mode == "RGB":
-        # As soon as they part at all.
+        # The first level with several bands begins as soon as the rims can be told apart.
         counts, ends = [1, len(RGB_WAVELENGTHS_NM)], [_SAME_RIM]
     else:
         counts = [1 << n for n in range(most.bit_length())]
@@ -145,7 +148,7 @@ def band_levels(aberration, axial_px, lateral_px, most):
 
 
 def _lines(aberration):
-    """Lines of light: weights, (M, 3), and focal error and lateral strength, (M, 2)."""
+    """Return spectral lines: weights (M, 3), and focal errors and lateral strengths (M, 2)."""
     if aberration.mode == "RGB":
         order = np.argsort(RGB_WAVELENGTHS_NM)
         wavelengths, light = np.array(RGB_WAVELENGTHS_NM)[order], np.eye(3)[order]
@@ -159,15 +162,15 @@ def _lines(aberration):
 
 
 def _dense(light, places, axial_px, lateral_px):
-    """Share of each line in the bands: the cube root of its light and of its way's square."""
+    """Return each line's share of the bands: by cube roots of its light and squared length."""
     steps = np.abs(np.diff(places, axis=0)) @ (axial_px, lateral_px)
-    # Each has half of the way to either neighbour.
+    # The length of a line: half of the distance to either neighbour.
     way = 0.5 * (np.concatenate([[0.0], steps]) + np.concatenate([steps, [0.0]]))
     return np.cbrt(light.mean(axis=1) * way**2)
 
 
 def _joined(light, places, band):
-    """Join lines of light into bands; numbers of bands may be left out."""
+    """Join spectral lines into bands; `band` has the number of each line, with gaps allowed."""
     _, band = np.unique(band, return_inverse=True)
     count = band.max() + 1
     # The channels alike, so that a band is as good for one as for another.

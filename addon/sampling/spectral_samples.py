@@ -23,9 +23,9 @@ from .spectrum import color_matching, xyz_to_rgb
 WAVELENGTH_BASE = 11
 # Samples that share their places.
 GROUP = 3
-# Share of a channel's light that comes evenly from all wavelengths: too little to be seen, but a
-# channel is never without light, be it after the first sample or under an equalizer that leaves
-# nothing of its colour.
+# Share of a channel's light that comes evenly from all wavelengths: too little to be seen, but no
+# channel is ever without light, even after the first sample or under an equalizer that removes all
+# of its colour.
 _EVEN_SHARE = 1.0e-4
 _EVEN_SHARE_RGB = 1.0e-6
 _TABLE_SIZE = 2048
@@ -33,7 +33,7 @@ _TABLE_SIZE = 2048
 
 @dataclass(frozen=True, eq=False)
 class SpectralSamples:
-    """The third dimension of a frame's samples.
+    """Wavelengths and channel weights of a frame's lens samples.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def wavelengths_for(aberration, count, seed=0, importance=True, in_proportion=Tr
         False: wavelengths of the spectral mode are drawn evenly and only weighted, for comparisons.
     in_proportion : bool
         Each channel's weights sum to the number of samples. False leaves them as they are drawn, so
-        that they do not depend on it.
+        that the weight of a sample does not depend on their number.
 
     Returns
     -------
@@ -104,7 +104,7 @@ def normalized(weights):
 
 @dataclass(frozen=True, eq=False)
 class ChannelDensity:
-    """How densely wavelengths are drawn, and what each then weighs.
+    """Probability density of wavelengths, and the channels' light by wavelength.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ class ChannelDensity:
         """
         cumulative = np.concatenate([[0.0], np.cumsum(self.density)])
         cumulative /= cumulative[-1]
-        # The last cell that begins at or before the number: never one without light.
+        # The last cell whose cumulative density begins at or before the number: never an empty one.
         cell = np.searchsorted(cumulative, uniform, side="right") - 1
         share = (uniform - cumulative[cell]) / (cumulative[cell + 1] - cumulative[cell])
         wavelengths = self.edges_nm[cell] + share * (self.edges_nm[cell + 1] - self.edges_nm[cell])
@@ -143,12 +143,12 @@ class ChannelDensity:
 
 
 def channel_density(wavelength_range, equalizer, primaries, importance=True):
-    """Return the density that gives all channels as little noise as they can have together.
+    """Return the density of wavelengths that minimises the summed noise of all channels.
 
     A channel's variance is the integral of its squared light over the density. The density that
-    makes the sum of the three least is the root of the sum of their squares. Over the whole visible
-    range, each channel then has 0.38 to 0.41 of the samples' worth; drawn evenly it were 0.19 to
-    0.25.
+    minimises the sum of the three variances is the root of the sum of their squares. Over the whole
+    visible range, a channel then has as little noise as from 0.38 to 0.41 of the samples spent on
+    it alone; drawn evenly, from 0.19 to 0.25.
 
     Parameters
     ----------

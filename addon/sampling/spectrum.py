@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import InputError
 
 LINEAR_REC709 = "ITU-R BT.709"
-# Where the wavelengths of a chromatic lens table lie: beyond these the eye sees next to nothing.
+# Range of the wavelengths of a chromatic lens table, nm: the eye is nearly blind beyond.
 SPECTRUM_RANGE_NM = (440.0, 680.0)
 SPECTRUM_COUNT = 25
 # Names of scene-linear spaces in Blender's configuration, and what colour-science calls them.

@@ -1,23 +1,23 @@
-"""The places on the lens that a lens sample stands for besides its own (methods 6).
+"""Subsamples: the places on the lens that a lens sample stands for besides its own (methods 6).
 
-The frame's whole sequence is longer than the number of samples that are drawn. Each further place
-belongs to the drawn sample nearest to it, so that all places together are as evenly spread as the
-sequence is, over whatever shape the iris has.
+The frame's whole sequence is longer than the number of lens samples that are drawn. Each of its
+further places is a subsample of the nearest drawn sample, so that all places together are as evenly
+spread as the sequence is, over whatever shape the iris has.
 
-A picture that may be looked at before it is done divides its samples into nested intervals, each as
-long as all before it: the places of an interval are spread over its own samples, so that the lens
-is covered evenly at the end of each.
+A progressive picture divides its samples into nested intervals, each as long as all before it: the
+subsamples of an interval are shared out among its own samples, so that the lens is covered evenly
+at the end of each.
 """
 
 import numpy as np
 
-# The samples of a progressive picture's first interval: with fewer, each would stand for so much of
-# the lens that what it cannot see is missed.
+# Samples of a progressive picture's first interval: with fewer, each would stand for so large a
+# part of the lens that surfaces hidden from it would be missing.
 FIRST_INTERVAL = 8
 
 
 def intervals(samples, progressive):
-    """Return the intervals of samples that share out further places.
+    """Return the intervals of samples that share out subsamples.
 
     Parameters
     ----------
@@ -36,13 +36,13 @@ def intervals(samples, progressive):
 
 
 def subsample_offsets(drawn, further, progressive=False):
-    """Give every further place to the nearest sample that is drawn.
+    """Assign every subsample to the nearest lens sample that is drawn.
 
     Parameters
     ----------
     drawn : ndarray of shape (N, 2)
     further : ndarray of shape (N S, 2)
-        As many for each interval as its samples need.
+        Places on the lens of the subsamples, interval by interval.
     progressive : bool
 
     Returns

@@ -2,7 +2,7 @@
 
 With effective aperture radius `E`, focus distance `d_f` and depth `d` along the axis, a point seen
 from the place `E v` on the lens (v in the unit disk) is displaced in the camera's xy plane by
-`-R(d) v`, `R(d) = E (d_f - d) / d_f`: nothing at the focus plane, mirrored behind it. On the image,
+`-R(d) v`, `R(d) = E (d_f - d) / d_f`: 0 at the focus plane, mirrored behind it. On the image,
 with the field of view kept while focusing as Blender does, the signed radius in pixels is
 `f_px E (d - d_f) / (d d_f)`: negative in front of the focus plane.
 """
@@ -33,7 +33,7 @@ class ThinLens:
     iris: Iris = field(default_factory=Iris)
 
     def __post_init__(self):
-        """Refuse what cannot form a picture."""
+        """Check that aperture, focus and iris can form a picture."""
         if not np.isfinite(self.focus_distance) or self.focus_distance <= 0.0:
             raise FocusError(
                 f"focus distance is {self.focus_distance:g} m; it must be greater than 0"
@@ -105,7 +105,7 @@ def coc_radius_px(depth, lens, focal_length_px):
         Along the optical axis, in m; positive.
     lens : ThinLens
     focal_length_px : float
-        Pixels that a length of 1 m at a depth of 1 m covers.
+        Focal length in pixels: what a length of 1 m at a depth of 1 m covers.
 
     Returns
     -------

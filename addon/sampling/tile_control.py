@@ -1,40 +1,40 @@
-"""Where a picture needs more lens samples, and when it has enough (methods 1, 6).
+"""The noise threshold: which tiles of a picture need more lens samples, and when it has enough.
 
 The picture of `n` samples is compared with that of about half as many, `m`, tile by tile. If the
 variance of the error falls as ``n^-p``, the variance of the difference is
 
     D = e(m) - e(n) = e(n) ((n / m)^p - 1),  so  e(n) = D / ((n / m)^p - 1):
 
-the difference tells the error that is left. Samples drawn at random have ``p = 1``. Evenly spread
-ones, whose mean is better than that of as many independent ones, have up to ``p = 1.5`` at edges;
-so the power is not assumed but found, from how the differences themselves fell from one doubling
-to the next.
+the difference gives the error that is left. Independent random samples have ``p = 1``. Low
+discrepancy samples, whose mean is better than that of as many independent ones, have up to
+``p = 1.5`` at edges; so the power is not assumed but estimated, from how the differences fell from
+one doubling to the next.
 
-A tile is done when its error is at most the number that was asked for, the picture when the mean of
-all tiles is. Of a picture whose first samples are far better than that, such as a few lamps before
-a plain wall, the mean tells nothing about the places that matter: there the mean is that of the
-tiles that were not good enough at first. (Not the worst of them: what is asked of a picture full
-of things is no more.)
+A tile is done when its error is at most the threshold, the picture when the mean of all tiles is.
+Where the mean is far below the threshold after the first samples, as with a few lamps before a
+plain wall, it says nothing about the tiles that matter: then the mean is taken over the tiles that
+were above the threshold at first. (Not their maximum: a picture that is full of detail is only held
+to a mean, too.)
 """
 
 import numpy as np
 
 # Side of a tile, px: wider than the window of the structural similarity (11 px).
 TILE = 16
-# Between random and even samples, see above; counts as much as so many observed doublings, each of
-# which tells the power to within about a half.
+# Prior of the power `p`, between random and low-discrepancy samples, and its weight in observed
+# doublings, each of which gives the power to within about a half.
 _USUAL_POWER, _USUAL_WEIGHT = 1.25, 8.0
-# Nothing falls slower than with random samples, nor faster than with even ones.
+# Bounds of the power: that of random samples, and that of low-discrepancy samples at edges.
 _LEAST_POWER, _MOST_POWER = 1.0, 1.5
-# Aims below the number: a picture is stopped when its error looks small, which is more often by
-# chance than not.
+# Factor of the threshold that is aimed at: a picture stops when its estimated error is small, which
+# selects estimates that are too small by chance.
 _AIM = 0.93
-# Of a picture that the fewest samples bring to this share of the number, only the tiles that are
-# above it then are judged.
+# Where the first estimate is at most this share of the threshold, only the tiles above the
+# threshold decide when the picture is done.
 _PLAIN_SHARE = 0.5
-# Of a comparison with half the samples; the rest is that of one with more of them.
+# Weight of the comparison with half of the samples; the rest is that of the one with more samples.
 HALF_SHARE = 0.7
-# Of what a look measures; the rest is what the one before let expect.
+# Weight of a measurement; the rest is that of the error expected from the measurement before.
 _NEW_SHARE = 0.7
 
 
@@ -69,7 +69,7 @@ class TileControl:
         self.active = np.ones(self._share.shape, bool)
         self.errors = None
         self.done = False
-        # What the mean that decides is taken over.
+        # The tiles whose mean error decides.
         self._judged = self._share
         self._changes = {}
         self._ratios = []
@@ -94,7 +94,7 @@ class TileControl:
 
     @property
     def left(self):
-        """Number of tiles whose error is above the number; None if it is not known."""
+        """Number of tiles whose error is above the threshold; None if it is not known."""
         return None if self.errors is None else int((self.errors > self.target).sum())
 
     def mean(self, values):
@@ -102,11 +102,11 @@ class TileControl:
         return float((values * self._share).sum())
 
     def rest(self, samples, before):
-        """Return variance of the error of `samples` over that of its change since `before`."""
+        """Return the variance of the error of `samples` over that of the change since `before`."""
         return 1.0 / ((samples / before) ** self.power - 1.0)
 
     def observe(self, samples, before, changes):
-        """Learn how fast the error falls.
+        """Update the estimate of the power by which the error falls.
 
         Parameters
         ----------
@@ -126,16 +126,16 @@ class TileControl:
                 self._ratios.append(float(np.log2(was / now)))
 
     def decide(self, samples, errors, following):
-        """Choose the tiles that go on.
+        """Choose the tiles for which sampling goes on.
 
         Parameters
         ----------
         samples : int
             Drawn so far for the active tiles.
         errors : ndarray of shape (rows, columns)
-            Measured; those of tiles that are not active do not count.
+            Measured errors; those of inactive tiles are ignored.
         following : int
-            Samples at which it is decided again.
+            Number of samples at the next decision.
         """
         measured = smoothed(errors)
         if self.errors is None:
@@ -161,12 +161,12 @@ class TileControl:
         self.done = True
 
     def _judge(self, tiles):
-        """Let only some tiles decide when the picture is done."""
+        """Set the tiles whose mean error decides when the picture is done."""
         share = self._share * tiles
         self._judged = share / max(share.sum(), 1e-30)
 
     def _narrow(self, factor):
-        """Stop the tiles that are good enough, as far as the picture comes to its number so."""
+        """Stop the tiles below the threshold, as far as the picture still reaches it."""
         wanted = self.active & (self.errors > self.target)
         wanted = self._enough_to_finish(factor, wanted)
         # Neighbours go on with a tile: no step of the noise shows where it ends.
@@ -180,8 +180,8 @@ class TileControl:
 
         if error_with(wanted) <= aim or error_with(self.active) > aim:
             return wanted
-        # As many more tiles, the worst first, as bring the picture to its number at the next look:
-        # a few tiles that go on for long cost more than many that go on for a little.
+        # So many more tiles, the worst first, that the picture is at the threshold at the next
+        # look: a few tiles sampled for long cost more than many sampled for a little.
         rest = np.flatnonzero(self.active & ~wanted)
         order = rest[np.argsort(-self.errors.ravel()[rest], kind="stable")]
         gained = np.cumsum((1.0 - factor) * (self.errors * self._judged).ravel()[order])
@@ -194,7 +194,7 @@ class TileControl:
 def smoothed(errors):
     """Return the mean of each tile and its neighbours, weighted 1 2 1 in rows and columns.
 
-    A tile has a dozen windows: too few to tell its own error well.
+    A tile has a dozen windows: too few to estimate its own error well.
     """
     padded = np.pad(errors, 1, mode="edge")
     rows = 0.25 * (padded[:-2] + padded[2:]) + 0.5 * padded[1:-1]
@@ -202,7 +202,7 @@ def smoothed(errors):
 
 
 def grown(tiles):
-    """Return which tiles are chosen or touch one that is."""
+    """Return the chosen tiles dilated by one tile."""
     padded = np.pad(tiles, 1)
     rows = padded[:-2] | padded[1:-1] | padded[2:]
     return rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:]
