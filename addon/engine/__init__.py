@@ -1,1 +1,1 @@
-"""Planning and rendering a frame."""
+"""Planning and drawing a frame; final render, viewport and the engine class that Blender calls."""

@@ -1,14 +1,14 @@
-"""How similar the highlights are that a frame merges (methods 9).
+"""Bounds of similarity within which a frame's highlights are clustered (methods 9).
 
-Similarity is measured against the circle of confusion at each highlight's own depth, so that it
-needs no setting by scene or resolution.
+Similarity is measured against the circle of confusion at each highlight's own depth, so that no
+setting depends on the scene or the resolution.
 """
 
 from ...passes.bokeh.clusters import Similarity
 
-# CLUSTERED: cells from half a radius of the disc to twice its diameter and more, as long as it is
-# blurred by no more than its diameter. The harm of one merge, at most, and that of as many as there
-# are highlights: what each changes adds up.
+# CLUSTERED: sides of cells from half a radius of the disc to twice its diameter and more, while the
+# merged disc is blurred by at most its diameter. Largest harm of one merge, and of all merges
+# together: their changes of the picture add up.
 _CELL = 0.3
 _EXTENT = 2.0
 _HARM = 1.5
@@ -16,32 +16,33 @@ _HARM_OF_ALL = 7500.0
 # Rounds of pairwise merging.
 _PAIRS = 3
 
-# AUTO: up to so many, each is a source of its own. Beyond, faint ones are merged, the more the
-# more there are: where so many discs overlap, none shows its edge. Cells are long, because discs of
-# all depths overlap; merges that do no harm may change while the camera turns.
+# AUTO: largest number of highlights that are not merged. Beyond, faint ones are merged, the more
+# the more there are: where so many discs overlap, no disc's edge shows. Cells are long in depth,
+# because discs of all depths overlap; such merges change while the camera turns, but without
+# visible harm.
 POINT_BUDGET = 10000
 _POINT_LEVELS = 3
 _POINT_CELL = 0.125
 _POINT_EXTENT = 0.5
 _POINT_LENGTH = 16.0
-# For each budget of highlights, and at most.
+# Harm allowed for each POINT_BUDGET of highlights, and its maximum.
 _POINT_HARM = 0.003
 _POINT_MOST_HARM = 0.03
 
 
 def similarity_of(settings, count):
-    """Return how similar merged highlights are.
+    """Return the bounds of similarity within which highlights are merged.
 
     Parameters
     ----------
     settings : BokehSettings
     count : int
-        Of the highlights.
+        Number of highlights.
 
     Returns
     -------
     Similarity or None
-        None: none are merged.
+        None: no highlights are merged.
     """
     if settings.model == "CLUSTERED":
         similar = settings.similarity

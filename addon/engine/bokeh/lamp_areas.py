@@ -1,24 +1,24 @@
-"""How large lamps are in the raster that highlights are searched in.
+"""Exact areas of small lamps in the raster of the highlight search.
 
-A raster counts texels: of an even lamp w texels wide it finds w, or one more or less, in each
-direction. What is counted of a lamp is therefore brought to the area that its triangles have in the
-raster. Only the count of what nothing hides is compared, so that a lamp that is partly hidden keeps
-the share of its light that is seen.
+A raster counts texels: a lamp w texels wide covers w of them, or one more or less, in each
+direction. The light that is found of a lamp is therefore scaled by the area of its triangles in the
+raster over its number of texels. Hidden texels are counted as well, so that a partly hidden lamp
+keeps the share of its light that is visible.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-# A lamp that is thinner than this, in texels, may be missed as a whole: what is found of those that
-# are met stands for the others.
+# A lamp thinner than this, in texels, may be missed altogether: then those that are found stand for
+# those that are missed, and are not scaled.
 _LEAST_THICKNESS = 2.0
-# Of lamps that are longer than this, in texels, the count is within 0.2 %.
+# The count of lamps longer than this, in texels, is exact to 0.2 %.
 _LONGEST = 1024.0
-# Triangles that are measured, those of the first lamps; of more lamps than have so many, the errors
-# of the counts cancel in the sum.
+# Most triangles that are measured, those of the first lamps; where there are more, there are so
+# many lamps that the errors of their counts cancel in the sum.
 _MOST_TRIANGLES = 1 << 21
-# Triangles that are measured at once, for the memory that it takes.
+# Triangles that are measured at once, to bound memory.
 _AT_ONCE = 1 << 16
 
 
@@ -29,11 +29,11 @@ class LampAreas:
     Parameters
     ----------
     rows : ndarray of shape (K,)
-        Of the instance table.
+        Rows of the instance table.
     areas : ndarray of shape (K,)
-        Sum over the triangles, whichever way they face and whatever hides them, px^2.
+        Summed area of the triangles, front and back facing, hidden or not, px^2.
     lower, upper : ndarray of shape (K, 2)
-        Of the rectangle that holds them, px.
+        Corners of their bounding rectangle, px.
     """
 
     rows: np.ndarray
@@ -42,7 +42,7 @@ class LampAreas:
     upper: np.ndarray
 
     def in_tile(self, tile, subpixels, count):
-        """Return the areas of those whose texels are counted in a tile.
+        """Return the areas of the instances whose texels are counted in a tile.
 
         Parameters
         ----------
@@ -56,8 +56,8 @@ class LampAreas:
         Returns
         -------
         ndarray of shape (count,)
-            In texels; 0 of those that are not wholly in the tile, or so thin that all their texels
-            may be missed, or so large that the count is right as it is.
+            In texels; 0 for instances that are not wholly in the tile, so thin that they may be
+            missed, or so large that the count is exact.
         """
         x, y, width, height = tile
         inside = (self.lower >= (x, y)).all(axis=1)
@@ -77,7 +77,7 @@ class LampAreas:
         tiles : list of tuple of 4 int
         subpixels : int
         areas : ndarray of shape (count,)
-            Of those that are counted; 0 of others.
+            Areas of the counted instances; 0 of others.
         """
         if len(tiles) == 1 or not areas.any():
             return False
@@ -89,7 +89,7 @@ NO_AREAS = LampAreas(np.zeros(0, int), np.zeros(0), np.zeros((0, 2)), np.zeros((
 
 
 def lamp_areas(content, surfaces, view, projection, size):
-    """Measure the instances that have any of some surfaces.
+    """Measure the areas in the raster of all instances with one of some surfaces.
 
     Parameters
     ----------
@@ -97,14 +97,14 @@ def lamp_areas(content, surfaces, view, projection, size):
     surfaces : set of (int, int)
         Group and slot; only their triangles count.
     view, projection : ndarray of shape (4, 4)
-        World to camera space, and that to clip space of the raster.
+        World to camera space, and camera space to clip space of the raster.
     size : tuple of 2 int
         Of the raster, px.
 
     Returns
     -------
     LampAreas
-        Of those that lie between the near and the far plane.
+        Instances that lie between the near and the far plane.
     """
     budget, found = _MOST_TRIANGLES, [NO_AREAS]
     to_clip = np.asarray(projection, float) @ view

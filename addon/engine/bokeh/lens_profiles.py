@@ -1,4 +1,4 @@
-"""What the renderer reads of a camera's real lens: bokeh profile and pupil, from the cache."""
+"""Bokeh profile and off-axis pupil of a camera's real lens, from the cache or traced."""
 
 from ...lens_io import profile_cache
 
@@ -6,8 +6,8 @@ from ...lens_io import profile_cache
 def lens_profile(lens):
     """Return the bokeh profile of a lens, traced if the cache does not have it.
 
-    That of one wavelength: the colors of a picture are chromatic aberration's, which discs and all
-    the rest share.
+    It is that of one wavelength: colours come from `ChromaticAberration`, which discs and lens
+    samples share.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def lens_profile(lens):
 
 
 def lens_pupil(lens):
-    """Return the off-axis pupil of a lens that stands at infinity, traced if need be.
+    """Return the off-axis pupil of a lens focused at infinity, traced if need be.
 
     Parameters
     ----------

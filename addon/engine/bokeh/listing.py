@@ -1,7 +1,7 @@
-"""The search of a frame's highlights on the device (methods 9).
+"""The search for a frame's highlights on the device (methods 9).
 
-Tile by tile and view by view: what is brighter than the threshold is drawn into lists of fragments,
-beside the depth of all that is opaque, and listed pixel by pixel.
+Tile by tile and view by view: fragments brighter than the threshold are drawn into lists, with the
+depth of opaque surfaces, and made into a list of highlights pixel by pixel.
 """
 
 from dataclasses import dataclass
@@ -17,29 +17,28 @@ from ...passes.surface import surface
 from ..planning.bokeh_search import tiles_of
 from .lamp_areas import NO_AREAS, LampAreas, lamp_areas
 
-# Fragments that there is room for at first, for each texel, and at least and at most; where there
-# are more than that in a tile, it is divided.
+# Room for fragments: first guess a texel, least and most in all; a tile with more is divided.
 _ROOM = 0.25
 _LEAST_ROOM, _MOST_ROOM = 1 << 14, 1 << 23
 
 
 @dataclass(frozen=True)
 class _Search:
-    """Surfaces that are searched for highlights in one way.
+    """A set of surfaces that are searched for highlights with the same views and resolution.
 
     Parameters
     ----------
     surfaces : frozenset of (int, int)
         Group and slot.
     world : bool
-        Instead of surfaces, the world.
+        Search the world background instead of surfaces.
     part : tuple of 4 int
-        Of the raster.
+        x, y, width, height of the part of the raster that is searched, px.
     subpixels : int
     views : list of (tuple of 2 float, int)
-        Place on the lens, m, and the region that it stands for.
+        Places on the lens, m, and the region of the lens that each represents.
     areas : LampAreas
-        Of the instances with those surfaces, as far as they are counted.
+        Areas of the instances whose texels are counted.
     """
 
     surfaces: frozenset
@@ -63,7 +62,7 @@ class HighlightSearch:
     split : GPUUniformBuf
         `HighlightParams`.
     sources : tuple of 2 GPUTexture
-        Get the list (see `passes.bokeh.highlights`), as far as they have room.
+        Get the list (see `passes.bokeh.highlights`), up to their size.
     field : tuple of (str, GPUUniformBuf or GPUTexture) or None
         `passes.surface.chromatic.resources`, with chromatic aberration.
 
@@ -72,9 +71,9 @@ class HighlightSearch:
     count : int
         Highlights found.
     sharp : int
-        Pixels with light too sharp to be splatted.
+        Pixels with light above the threshold whose circle of confusion is too small to be splatted.
     bytes : int
-        Most that it held on the device.
+        Peak memory on the device.
     """
 
     def __init__(self, plan, drawing, buffers, split, sources, field=None):
@@ -89,7 +88,7 @@ class HighlightSearch:
         self.bytes = 0
 
     def run(self, fullscreen):
-        """Search all that may shine.
+        """Search the surfaces and the world for highlights.
 
         Parameters
         ----------
@@ -131,7 +130,7 @@ class HighlightSearch:
             counts.release()
 
     def _searches(self):
-        """Return what is searched in which way: what looks the same from anywhere, and the rest."""
+        """Return the searches: surfaces seen from the lens' centre, mirrors from several places."""
         bokeh = self._plan.bokeh
         places = [tuple(place) for place in (bokeh.lens_views * self._plan.lens_extent).tolist()]
         views = list(zip(places, range(1, len(places) + 1), strict=True))
@@ -151,7 +150,7 @@ class HighlightSearch:
         return searches
 
     def _draws(self, search):
-        """Return the draws of what is searched and of what else may be in front."""
+        """Return the draws of the searched surfaces and of all others that may be in front."""
         if search.world:
             return (), ()
         drawing = self._drawing
@@ -162,7 +161,7 @@ class HighlightSearch:
         return drawing.full_detail_draws(peel.OPAQUE, others), shining
 
     def _draw(self, search, tile, view, draws, raster, held, fullscreen):
-        """Draw what a tile shows from a place on the lens into lists; returns its `ViewParams`."""
+        """Draw a tile, seen from a place on the lens, into lists; return its `ViewParams`."""
         params = uniform_buffer(self._raster_params(tile, raster, search.subpixels))
         framebuffer = raster.framebuffer(depth="scene")
         size = (tile[2] * search.subpixels, tile[3] * search.subpixels)
@@ -172,14 +171,14 @@ class HighlightSearch:
         return params
 
     def _list(self, search, tile, view, draws, raster, held, fullscreen):
-        """List what a tile shows from a place on the lens; returns the lists to go on with."""
+        """List the highlights of a tile from one place on the lens; return the lists to reuse."""
         lists, counts, _ = held
         lens, region = view
         lists.clear()
         params = self._draw(search, tile, view, draws, raster, held, fullscreen)
         number, shining = lists.read()
         if number > lists.capacity:
-            # Drawn again, nothing is counted again.
+            # Drawn again into larger lists: texels are not counted twice.
             if number <= _MOST_ROOM:
                 lists.release()
                 lists = highlights.FragmentLists(

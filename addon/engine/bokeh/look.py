@@ -1,10 +1,10 @@
-"""What the splats of a frame look like: textures and numbers for the shader (methods 12, 13).
+"""The look of a frame's bokeh discs: textures and parameters for the splat (methods 12, 13).
 
-Everything follows from the camera's settings, the focus and the f-number; depth and field are left
-to the shader. Textures are made again only when what they depend on has changed.
+They follow from the camera's settings, the focus and the f-number; the shader adds depth and field.
+Textures are made again only when their inputs have changed.
 
-All discs keep their energy. A profile and rims are made up for by tables; so is what an
-opening takes of the tiles of a real lens' pupil.
+All discs keep their energy: tables hold the light that a profile, rims, or an opening over the
+tiles of a real lens' pupil take away, and the shader divides by it.
 """
 
 import atexit
@@ -31,19 +31,19 @@ from ...optics.focus import focused
 from ...passes.bokeh.splat import MOST_RIMS, SPLAT_PARAMS
 from .lens_profiles import lens_profile, lens_pupil
 
-# Texels along a side of an opening's layers, and of the masks that they are made of.
+# Texels along a side of the opening's layers, and of the iris masks that they are made from.
 _OPENING, _MASK = 512, 1024
-# Diffraction changes with the size of the disc, that is, with the layer; discs of fewer pixels than
-# the last of these shows no ringing of their own.
+# Diffraction ringing depends on the size of the disc, and so on the layer; discs smaller than the
+# last of these radii, px, all have the same ringing.
 _RINGING_LAYERS = 4
 _RINGING_MASK = 512
 _REFERENCE_M = 587.5618e-9
-# Focus distance over that of the nearest tile: still nearer patterns only grow.
+# Focus distance over the depth of the nearest tile: nearer patterns only grow.
 _NEAREST = 4.0
-# Steps in which beams reach nearer, per doubling: the fewer, the coarser are beams in between.
+# Steps in which traced beams come nearer, per halving of the distance.
 _SHARED = 4
 _MM = 1000.0
-# Colours part by no more, px.
+# Largest spread of colours, px.
 _FARTHEST = 1e9
 
 
@@ -60,9 +60,9 @@ class BokehLook:
     blocks : tuple of GPUUniformBuf
         `SplatParams`, one for each band of wavelengths that is drawn.
     field : tuple of (str, GPUUniformBuf or GPUTexture)
-        What the bands are looked up in; empty without chromatic aberration.
+        Field table and `ChromaticParams`; empty without chromatic aberration.
     report : tuple of str
-        What is not as the camera asks, one sentence each.
+        Warnings: settings of the camera that cannot be met, one sentence each.
     """
 
     variants: tuple[str, ...]
@@ -73,7 +73,7 @@ class BokehLook:
 
 
 def describe_look(plan):
-    """Say what the splats of a frame need, without a device.
+    """Compute the textures and parameters of a frame's splats, without a device.
 
     Parameters
     ----------
@@ -86,12 +86,12 @@ def describe_look(plan):
     arrays : dict of str to ndarray
         By the names of the textures in the shader.
     params : dict of str to sequence of float
-        Of `SplatParams`, without the wavelength.
+        Members of `SplatParams`, without the wavelength.
 
     Raises
     ------
     AplanatError
-        If the real lens cannot be focused where the camera is.
+        If the real lens cannot be focused at the camera's focus distance.
     """
     bokeh = plan.bokeh
     settings = bokeh.settings
@@ -108,7 +108,7 @@ def describe_look(plan):
         "field": (1.0 / tangent, 0.0, 1.0, 0.0),
         "rims": np.zeros((MOST_RIMS, 4)),
     }
-    # A draft has the lens' pattern of the axis, which is there at once.
+    # A draft uses the on-axis pattern of the lens everywhere: its table is ready at once.
     tiled = settings.vignetting == "LENS" and not plan.orthographic and not bokeh.draft
     if lens is not None and tiled:
         _add_tiles(plan, appearance, tangent, arrays, params)
@@ -138,9 +138,9 @@ def describe_look(plan):
 
 
 def make_look(plan, field=None):
-    """Upload what the splats of a frame need.
+    """Upload the textures and parameters of a frame's splats.
 
-    Where the real lens cannot shape them, they are a thin lens'.
+    Where the real lens cannot be traced, the discs are those of a thin lens.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def _bands(plan):
 
 
 class _Lens:
-    """A real lens as a key, whose prescription may have no hash."""
+    """A real lens as a cache key; its prescription is compared by identity."""
 
     def __init__(self, settings):
         self.settings = settings
@@ -202,7 +202,7 @@ class _Lens:
 
 
 class _Arrays:
-    """Arrays as a key: known by identity, so that they are never compared."""
+    """Arrays as a cache key: compared by identity, not by value."""
 
     def __init__(self, *parts):
         self.parts = parts
@@ -227,20 +227,20 @@ def _texture(arrays):
     return texture
 
 
-# The device goes before Python does when the process ends; no texture may outlive it.
+# When the process ends, the device is gone before Python's objects: no texture may outlive it.
 atexit.register(_texture.cache_clear)
 
 
 def _appearance(appearance, iris):
-    """Return an appearance with the camera's own iris where it names none."""
+    """Return an appearance with the camera's own iris where it has no iris image."""
     if appearance.iris == BladedIris() and iris.blades >= 3:
         appearance = replace(appearance, iris=BladedIris(iris.blades, 0.0, iris.rotation))
-    # Textures are before the anamorphic ratio.
+    # Textures hold the opening without the anamorphic ratio, which the shader applies.
     return replace(appearance, anamorphic_ratio=1.0)
 
 
 def _largest_tangent(plan):
-    """Return the tangent of the corner of what highlights are searched in."""
+    """Return the tangent of the field angle at the corner of the peeled raster."""
     if plan.orthographic:
         return 1.0
     inverse = np.linalg.inv(plan.bokeh.projection)
@@ -251,7 +251,7 @@ def _largest_tangent(plan):
 def _fresnel_scale(plan):
     """Return the Fresnel number of a disc of one pixel radius over its radius.
 
-    With the places in object space, ``N = a^2 |1/d - 1/d_f| / lambda``; a the opening's radius.
+    In object space ``N = a^2 |1/d - 1/d_f| / lambda``, with the radius a of the opening.
     """
     radius = float(plan.lens_extent[1])
     per_pixel = radius**2 / (plan.coc_scale * _REFERENCE_M)
@@ -260,7 +260,7 @@ def _fresnel_scale(plan):
 
 @lru_cache(maxsize=4)
 def _opening(appearance, fresnel):
-    """Layers of the opening; `fresnel`: Fresnel number of a disc as wide as its blur."""
+    """Return the layers of the opening; `fresnel`: Fresnel number of a disc of one pixel radius."""
     ringing = appearance.diffraction
     if ringing is None or ringing.strength == 0.0:
         mask = _mask(appearance, _MASK, None)
@@ -268,7 +268,7 @@ def _opening(appearance, fresnel):
     else:
         parts = []
         for layer in range(_RINGING_LAYERS):
-            # A layer is read for discs that its blur is that part of.
+            # The radius of the discs that read this layer, from the layer's relative blur.
             mask = _mask(appearance, _RINGING_MASK, fresnel / (LEAST_BLUR * 2.0**layer))
             last = LAYERS if layer == _RINGING_LAYERS - 1 else layer + 1
             parts.append(layers_of_mask(mask, range(layer, last), _OPENING))
@@ -325,7 +325,7 @@ def _add_tiles(plan, appearance, tangent, arrays, params):
 
 @lru_cache(maxsize=2)
 def _tiles(lens, focus_distance, tangent):
-    """Tiles of a lens at a focus; w of their first and last depth; c0 over c at infinity."""
+    """Return a lens' tiles at a focus, w of the first and last depth, and c0 over c at infinity."""
     profile = lens.profile()
     distance = distance_from_h(profile, focus_distance)
     state = profile.focused(distance)
@@ -333,7 +333,7 @@ def _tiles(lens, focus_distance, tangent):
     nearest = min(float(state.ray_map.vergences[-1]), _NEAREST / (focus_distance * _MM))
     reach = nearest
     if np.isinf(focus):
-        # The same beams serve every focus; those that reach a little nearer, several in a row.
+        # Beams are traced once for all focus distances down to a step; nearer ones need new beams.
         reach = 2.0 ** (np.ceil(np.log2(nearest) * _SHARED) / _SHARED)
         reach = min(float(state.ray_map.vergences[-1]), float(reach))
     beams = _beams(lens, focus, float(state.ray_map.pupil), tangent, reach)
@@ -342,7 +342,7 @@ def _tiles(lens, focus_distance, tangent):
     linear = state.ray_map.reference[0] + (plane - state.ray_map.plane) * state.ray_map.reference[1]
     opening = profile.stop_fraction(lens.settings.f_number)
     k0, k1 = (-opening * state.ray_map.pupil_radius * linear).tolist()
-    # Far from the axis patterns change where they are as small as that field's aberrations.
+    # Off the axis, patterns change most where they are as small as the aberrations there.
     soft = beams.width_in_focus(plane - beams.sensor, -k0 / k1)
     ends = [k0 + k1 * vergence for vergence in (0.0, nearest)]
     w_range = tuple(sorted(c / (abs(c) + soft) for c in ends))

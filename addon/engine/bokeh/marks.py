@@ -1,7 +1,7 @@
-"""The debug view of a frame's bokeh: which sources there are and what became of them (method 10).
+"""The debug view of a frame's bokeh: marks of its sources and their fates (methods 10).
 
-Combined, and the picture of a viewport, then show marks on the dimmed picture; the other passes
-stay what they are.
+Combined, and the picture of a viewport, then show marks on the dimmed picture; all other passes
+are unchanged.
 """
 
 from dataclasses import replace
@@ -14,7 +14,7 @@ from ...device.uniforms import uniform_buffer
 from ...passes.bokeh import marks as bokeh_marks
 from ...passes.bokeh.marks import Marks
 
-# Colours of what may become of a source, sRGB: those that Blender gives its strips and collections.
+# Colours of the fates of a source, sRGB: those of Blender's strips and collections.
 FATE_COLORS = {
     "SHARP": (128, 128, 128),
     "OUTSIDE": (198, 115, 184),
@@ -24,19 +24,19 @@ FATE_COLORS = {
     "MASKED": (241, 163, 85),
     "IN_SPLAT": (141, 89, 218),
 }
-# More rings show nothing. Where they are many they are fainter.
+# Most rings that are drawn, and the number from which on they get fainter.
 _MOST_RINGS = 2048
 _FEW_RINGS = 256
 _RING_OPACITY = 0.5
-# Half sides of dots and half widths of lines, in heights of the picture, and at least, px.
+# Half sides of dots and half widths of lines, in heights of the picture, and their least, px.
 _DOT, _LEAST_DOT = 1.0 / 360.0, 1.0
 _LINE, _LEAST_LINE = 1.0 / 1440.0, 0.5
-# Of discs that are listed although they are sharp.
+# Least circle of confusion, px, where discs that are too sharp to be splatted are listed, too.
 _SHARPEST = 1e-6
 
 
 def mark_targets(plan):
-    """Return the targets that the debug view of a frame takes.
+    """Return the render targets of the debug view of a frame.
 
     Parameters
     ----------
@@ -45,8 +45,8 @@ def mark_targets(plan):
     Returns
     -------
     list of TargetSpec
-        ``marks``, the same where the picture shows them, and the picture; none where the view is
-        off.
+        ``marks``, the marks and the marked picture as the picture shows them; empty where the
+        debug view is off.
     """
     if not shows_marks(plan):
         return []
@@ -60,7 +60,7 @@ def shows_marks(plan):
 
 
 def with_sharp(bokeh):
-    """Return a plan of which everything above the threshold is listed, however sharp it is.
+    """Return a plan that lists all light above the threshold, however sharp.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def mark_params(plan, count):
     ----------
     plan : FramePlan
     count : int
-        Of sources with a ring.
+        Number of sources with a ring.
 
     Returns
     -------
@@ -105,15 +105,15 @@ def draw_marks(plan, target, view_buffer, listed, merged, visibility, sharp):
     ----------
     plan : FramePlan
     target : GPUFrameBuffer
-        Gets them, premultiplied.
+        Gets the marks, premultiplied.
     view_buffer : GPUUniformBuf
         `ViewParams` of the frame.
     listed, merged : tuple of (tuple of 2 GPUTexture, int)
         Sources and their number, before and after merging.
     visibility : Visibility or None
-        Of the merged ones; None where there are none.
+        Visibility of the merged sources; None where there are none.
     sharp : callable
-        Returns a list as `listed` of everything above the threshold, for what is too sharp.
+        Returns a list like `listed` of all light above the threshold, to mark what is too sharp.
     """
     kind = plan.bokeh.settings.debug_view
     values = mark_params(plan, merged[1])
@@ -140,12 +140,12 @@ def draw_marks(plan, target, view_buffer, listed, merged, visibility, sharp):
             sources, count = merged
             draw("RING", color, sources, count, -(-count // _MOST_RINGS))
             draw(shape, color, sources, count)
-    # What it reads is given back only after the device has read it.
+    # The textures that are read may be released only after the device has read them.
     readback.wait(target)
 
 
 def fates(counts, visibility):
-    """Return what became of how many sources.
+    """Count the sources by fate.
 
     Parameters
     ----------

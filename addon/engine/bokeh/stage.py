@@ -1,8 +1,7 @@
-"""Bokeh of a frame: peel, extract, splat (methods 9 to 13).
+"""The bokeh of a frame: search, merge, visibility, splat (methods 9 to 13).
 
-Done once a frame, before its first lens sample; what the samples then leave out is what was
-splatted here, light for light. A view that moves is given a draft, and the whole in steps when it
-has come to rest.
+Done once a frame, before its first lens sample; the samples then leave out exactly the light that
+was splatted here. A moving view gets a draft, and the whole bokeh in steps when it rests.
 """
 
 from contextlib import nullcontext
@@ -19,16 +18,16 @@ from .listing import HighlightSearch
 from .look import make_look
 from .marks import draw_marks, fates, with_sharp
 
-# Highlights that the list has room for at first.
+# Size of the list of highlights at first.
 _FIRST_LIST = 1 << 16
-# Sources of a draft, and how often they are merged more boldly to get there.
+# Most sources of a draft, and how often the bounds of merging are widened to get there.
 _DRAFT_SOURCES = 1 << 11
 _DRAFT_ROUNDS = 4
 
 
 @dataclass
 class HighlightCounts:
-    """What became of a frame's highlights.
+    """Numbers of a frame's highlights by their fate.
 
     Attributes
     ----------
@@ -37,11 +36,11 @@ class HighlightCounts:
     clustered : int
         Sources that are left after merging.
     culled_size : int
-        Found, but so sharp that the lens samples draw them.
+        Highlights so sharp that the lens samples draw them.
     culled_occlusion, culled_cone : int
-        Sources that nothing of the lens sees; sources that need no mask.
+        Sources hidden from the whole lens; sources without occluders, which need no mask.
     masked : int
-        Sources with a mask of their own.
+        Sources with a visibility mask.
     splatted : int
         Sources that were drawn.
     """
@@ -56,7 +55,7 @@ class HighlightCounts:
 
 
 def highlight_buffer(bokeh):
-    """Upload what divides light into highlights and the rest.
+    """Upload the highlight threshold and what else splits light between samples and splats.
 
     Parameters
     ----------
@@ -97,9 +96,9 @@ class BokehStage:
     ----------
     counts : HighlightCounts
     report : tuple of str
-        What is not as the camera asks, one sentence each; known when discs have been drawn.
+        Warnings: settings of the camera that cannot be met; known when discs have been drawn.
     fates : dict of str to int
-        What became of how many sources, by the names of `passes.bokeh.marks.FATES`.
+        Numbers of sources by fate, by the names of `passes.bokeh.marks.FATES`.
     """
 
     def __init__(self, plan, drawing, buffers, occluders, highlights_buffer, field=None):
@@ -116,13 +115,13 @@ class BokehStage:
         self._unpaired = 0
 
     def run(self, fullscreen, targets, frame_view, stage=nullcontext):
-        """Peel, extract and splat.
+        """Search, merge, test the visibility, and splat.
 
         Parameters
         ----------
         fullscreen : GPUBatch
         targets : Targets
-            Whose ``bokeh`` gets it.
+            Its target ``bokeh`` gets the discs.
         frame_view : GPUUniformBuf
             `ViewParams` of the frame, in pixels.
         stage : callable, optional
@@ -134,12 +133,12 @@ class BokehStage:
                 next(steps, None)
 
     def steps(self, fullscreen, targets, frame_view):
-        """Do the same bit by bit; the picture changes with the last step.
+        """Do what `run` does in steps; the picture changes with the last step.
 
         Yields
         ------
         None
-            After each step; closing the generator gives back what it holds.
+            After each step; closing the generator releases what it holds.
         """
         held = []
         try:
@@ -174,7 +173,7 @@ class BokehStage:
                 targets.release()
 
     def _find(self, fullscreen, held):
-        """Return the list of highlights, two textures, and how many they are."""
+        """Return the list of highlights, two textures, and their number."""
         room = _FIRST_LIST
         while True:
             specs = [TargetSpec(name, "RGBA32F") for name in "ab"]
@@ -199,14 +198,14 @@ class BokehStage:
         return (lists["a"], lists["b"]), search.count
 
     def _with_sharp(self):
-        """Return a stage that lists what is too sharp to be splatted, too."""
+        """Return a stage that also lists highlights that are too sharp to be splatted."""
         bokeh = with_sharp(self._plan.bokeh)
         plan = replace(self._plan, bokeh=bokeh)
         parts = (self._drawing, self._buffers, self._occluders)
         return BokehStage(plan, *parts, highlight_buffer(bokeh), self._field)
 
     def _merge(self, sources, count, held):
-        """Merge similar highlights, as the model asks for; returns the list and its length."""
+        """Merge similar highlights as the settings ask for; return the list and its length."""
         plan = self._plan
         similarity = similarity_of(plan.bokeh.settings, count)
         rounds = _DRAFT_ROUNDS if plan.bokeh.draft else 1
@@ -239,7 +238,7 @@ class BokehStage:
         )
 
     def _hide(self, sources, count, held):
-        """Find what hides the sources from the lens, as `Visibility`."""
+        """Find the visibility of the sources from the lens, as `Visibility`."""
         visibility = BokehVisibility(self._plan, self._occluders, self._buffers)
         found = visibility.find(sources[0], count, self._drawing, held)
         counts = found.counts
@@ -271,12 +270,12 @@ class BokehStage:
                 frame_view,
                 rays,
             )
-        # What it reads is given back only after the device has read it.
+        # Wait: the textures may be released only after the device has read them.
         readback.wait(target)
 
 
 def _bolder(similarity):
-    """Return what merges highlights that differ twice as much."""
+    """Return a `Similarity` that merges highlights that differ twice as much."""
     return replace(
         similarity,
         cell=2.0 * similarity.cell,

@@ -1,1 +1,1 @@
-"""A scene on the device, and drawing it for one lens sample after another."""
+"""The scene's buffers on the device, and drawing its surfaces for each lens sample."""

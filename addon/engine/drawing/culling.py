@@ -1,25 +1,25 @@
-"""Which instances a lens sample can see at all.
+"""Frustum culling of instances, for all lens samples of a frame at once.
 
-A sphere round each instance is tested against the planes of the frustum, widened by how far the
-opening of the lens and the pixel filter can move it: what is left out cannot touch a pixel of any
-sample, so the picture does not depend on it.
+The bounding sphere of each instance is tested against the planes of the frustum, widened by the
+largest displacement over the lens' opening and the pixel filter: a culled instance cannot touch a
+pixel of any sample, so the picture does not change.
 """
 
 import numpy as np
 
-# Drawing an unseen instance between two seen ones costs its vertices; leaving it out costs one more
-# draw call. Measured on software OpenGL, a draw call is worth about this many triangles.
+# Drawing a culled instance between two visible ones costs its vertices; leaving it out costs one
+# more draw call. Measured on software OpenGL, a draw call is worth about this many triangles.
 _TRIANGLES_PER_DRAW_CALL = 100
 
 
 class BoundingSpheres:
-    """Spheres round the instances of a scene, in world space.
+    """Bounding spheres of the instances of a scene, in world space.
 
     Parameters
     ----------
     content : SceneContent
     bounds : dict of int to ndarray of shape (2, 3)
-        Of each mesh, by uid, in object space.
+        Bounding box of each mesh, by uid, in object space.
     """
 
     def __init__(self, content, bounds):
@@ -38,14 +38,14 @@ class BoundingSpheres:
 
 
 def seen(spheres, plan, part=None):
-    """Return which instances any of a frame's samples may see.
+    """Return which instances may be visible in any of a frame's lens samples.
 
     Parameters
     ----------
     spheres : BoundingSpheres
     plan : FramePlan
     part : tuple of 4 int, optional
-        x, y, width, height of the part of the raster that is looked at, px; default: all of it.
+        x, y, width, height of the part of the raster that is drawn, px; default: all of it.
 
     Returns
     -------
@@ -90,14 +90,14 @@ def _boxes(centers, radii):
 
 
 def runs(rows, triangles):
-    """Return the runs of rows that are worth drawing together.
+    """Return runs of instance rows, each to be drawn in one call.
 
     Parameters
     ----------
     rows : ndarray of shape (R,)
-        Rising; what is to be drawn.
+        Rising; the visible rows.
     triangles : float
-        Of one instance; inf if nothing may be drawn in passing.
+        Triangles of one instance; inf if no culled row may be drawn along.
 
     Returns
     -------

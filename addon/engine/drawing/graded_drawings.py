@@ -1,8 +1,8 @@
-"""Large objects that are partly in focus: drawn at full detail there, coarser where they blur.
+"""Graded meshes of large objects that are partly in focus: coarser only where they are blurred.
 
-Their level of detail is 0, as for everything of which a part is in focus; only what is sent to the
-device for it changes. A mesh whose parts are as coarse as their own blur allows is made for one
-view and depth of field, and kept while these stay.
+The level of detail of such an instance is 0, as a part of it is in focus. A graded mesh, whose
+parts are each as coarse as their own circle of confusion allows, is made for one view and depth of
+field, and kept while these stay.
 """
 
 from dataclasses import dataclass
@@ -13,19 +13,19 @@ from ...device import context
 from ...device.geometry import MeshBuffers
 from ...levels.choosing import LEAST_ALLOWANCE, LEAST_GRADED_TRIANGLES, blurred_area
 
-# Seconds a triangle of full detail: to make a graded mesh and bring it to the device, on a core at
-# 2 to 3 GHz; to draw, by a graphics device that manages 2 triangles a nanosecond, and by software
-# OpenGL. So one that halves the triangles has paid on a graphics device after 600 lens samples, in
-# software after the first.
+# Seconds for each triangle of full detail: to make and upload a graded mesh, on a core at 2 to
+# 3 GHz; to draw one, on a graphics device that draws 2 triangles a nanosecond, and with software
+# OpenGL. So a graded mesh of half the triangles pays off on a graphics device after 600 lens
+# samples, in software after the first.
 _MAKING = 1.5e-7
 _DRAWING = 5e-10
 _DRAWING_IN_SOFTWARE = 3e-7
-# What may be given up any time, as the picture of a view that moves, is drawn at full detail until
-# the samples have cost as much as a graded mesh, but for so many at least.
+# A progressive picture (a viewport's) may be given up any time: it is drawn at full detail until
+# its samples have cost as much as making the graded mesh, but for so many samples at least.
 _LEAST_SAMPLES_BEFORE = 4
-# Triangles left, over those of full detail, where finding out would take too long.
+# Assumed share of triangles that are left, where estimating it would take too long.
 _USUAL_SHARE = 0.5
-# Of the graded meshes on the device, together, as estimated.
+# Most bytes of all graded meshes on the device, as estimated.
 _BYTES = 512 << 20
 
 
@@ -39,7 +39,7 @@ class _Candidate:
     world : ndarray of shape (4, 4)
         Object to world space.
     depth : ndarray of shape (4,)
-        Depth of a place in object space: a factor for each coordinate, and a constant.
+        Depth as a linear function of object space: a factor for each coordinate, and a constant.
     """
 
     mesh: object
@@ -48,19 +48,19 @@ class _Candidate:
 
 
 class GradedDrawings:
-    """Which instances are drawn graded in a frame, and their meshes on the device.
+    """The instances that a frame draws with graded meshes, and those meshes on the device.
 
     Parameters
     ----------
     content : SceneContent
     buffers : SceneBuffers
     made : dict
-        Kept from earlier frames, by what they depend on; changed by this object.
+        Graded meshes of earlier frames by their keys; changed by this object.
 
     Attributes
     ----------
     rows : dict of int to int
-        Rows of the instance table, and the lens sample from which on each is drawn graded.
+        By row of the instance table, the lens sample from which on it is drawn graded.
     """
 
     def __init__(self, content, buffers, made):
@@ -72,12 +72,12 @@ class GradedDrawings:
         self.rows = {}
 
     def find(self, rows, group_of, plan):
-        """Begin a frame: find the instances that would save by being graded.
+        """Begin a frame: find the instances whose graded mesh would save triangles.
 
         Parameters
         ----------
         rows : iterable of int
-            Of the instance table: what is drawn at level 0.
+            Rows of the instance table that are drawn at level 0.
         group_of : ndarray of shape (I,)
         plan : FramePlan
         """
@@ -103,17 +103,17 @@ class GradedDrawings:
                 self._keys[row] = self._key(found, levels)
 
     def triangles(self, row, counts):
-        """Return about how many triangles an instance takes, by level of detail."""
+        """Return about how many triangles an instance is drawn with, by level of detail."""
         share = self._shares.get(row)
         return counts if share is None else [int(counts[0] * share), *counts[1:]]
 
     def settle(self, drawings):
-        """Decide what is drawn graded.
+        """Decide which candidates are drawn graded.
 
         Parameters
         ----------
         drawings : callable
-            From a row and the number of lens samples to how often it is drawn for them.
+            From a row and a number of lens samples to the number of times that it is drawn.
         """
         for key in self._made.keys() - self._keys.values():
             del self._made[key]
@@ -121,7 +121,8 @@ class GradedDrawings:
         for row, found in self._candidates.items():
             count, share = len(found.mesh.triangles), self._shares[row]
             if self._pays(count, share, drawings(row, self._plan.samples)):
-                # What is there from an earlier frame changes neither what is graded nor since when.
+                # Cached meshes of earlier frames must not change which rows are graded, nor from
+                # where.
                 room -= int(self._buffers.meshes[found.mesh.uid].bytes * share)
                 if room < 0:
                     break
@@ -156,7 +157,7 @@ class GradedDrawings:
 
     @property
     def bytes(self):
-        """Bytes of the graded meshes on the device."""
+        """Bytes that the graded meshes take on the device."""
         return sum(mesh.bytes for mesh in self._made.values())
 
     def _share(self, found):
@@ -171,7 +172,7 @@ class GradedDrawings:
         return blurred_area(depth, found.world, self._plan, bias)
 
     def _key(self, found, levels):
-        """Return what a graded mesh depends on; levels that were made again are other objects."""
+        """Return the cache key of a graded mesh; levels that were made again are other objects."""
         plan = self._plan
         lens = (plan.focus_distance, plan.coc_scale, *plan.lens_extent.tolist())
         if plan.chromatic:

@@ -1,12 +1,12 @@
-"""What can hide a highlight, cut into small pieces with boxes round them.
+"""Occluders of highlights: clusters of opaque triangles in a bounding volume hierarchy.
 
 The cone of rays from a highlight to the lens is narrow: it meets few triangles of a large mesh. So
-every mesh, at every level of detail, is cut into clusters of neighbouring triangles, and boxes
-round clusters, round eight of those, and so on make a tree. The parts of the scene (one surface of
-one instance) have such a tree of their own. A cone that is tested from the top of both finds its
-clusters in a few steps, and nothing else is drawn.
+every mesh, at every level of detail, is cut into clusters of neighbouring triangles, and their
+bounding boxes, those of eight boxes each, and so on make a tree. The parts of the scene (one
+surface of one instance) have such a tree, too. A cone is tested from the top of both, finds its
+clusters in a few steps, and only these are drawn.
 
-Neighbours are what lies close on a Z-order curve.
+Neighbours are triangles that are close on a Z-order curve.
 """
 
 from dataclasses import dataclass
@@ -21,20 +21,20 @@ BRANCHES = 8
 # Clusters in a row of the texture of triangles; texels in a row of the tables.
 CLUSTERS_PER_ROW = 128
 COLUMNS = 1024
-# Texels of a part in its table.
+# Texels for each part in the table of parts.
 PART_TEXELS = 2
 
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """The triangles of one material of a mesh, cut into clusters.
+    """The triangles of one material slot of a mesh, cut into clusters.
 
     Parameters
     ----------
     corners : ndarray of shape (C, 3 CLUSTER, 3)
-        float32; what a cluster lacks is filled with points.
+        float32; the last cluster is padded with degenerate triangles.
     boxes : ndarray of shape (B, 2, 3)
-        float32; of the clusters, then of eight of them, and so on.
+        float32; bounding boxes of the clusters, then of eight of these each, and so on.
     area : float
         Mean area of a triangle.
     """
@@ -69,7 +69,7 @@ def z_order(points):
 
 
 def box_tree(boxes):
-    """Return boxes and, behind them, the boxes round eight neighbours each, up to eight or less.
+    """Return boxes and, behind them, the bounding boxes of eight each, and so on up to eight or less.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def box_tree(boxes):
 
 
 def depth_first(boxes, leaves):
-    """Lay out a tree of boxes so that one walks through it without memory.
+    """Lay out a tree of boxes depth first, so that it is walked without a stack.
 
     Parameters
     ----------
@@ -108,8 +108,8 @@ def depth_first(boxes, leaves):
     Returns
     -------
     ndarray of shape (B, 2, 4)
-        Each box before those inside it. Fourth values: how many boxes on what is not inside begins;
-        number of a leaf, otherwise -1.
+        Each box before those inside it. Fourth values: number of boxes to skip where the box is not
+        met; number of a leaf, otherwise -1.
     """
     numbers, places = [leaves], [0]
     while numbers[-1] > BRANCHES:
@@ -163,7 +163,7 @@ def cut(positions, triangles):
 
 
 class ShapeCache:
-    """Shapes of meshes, cut once, and their tables on the device."""
+    """Shapes of meshes, made once, and their tables on the device."""
 
     def __init__(self):
         self._shapes = {}
@@ -202,7 +202,7 @@ class ShapeCache:
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """One material of one mesh, as often as a group of the content has it.
+    """One material slot of one mesh, with all instances of a group of the content.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ class Part:
 
 
 class ShapeTables:
-    """The clusters of shapes on the device; they stay as long as no mesh changes.
+    """The clusters of shapes on the device; kept as long as no mesh changes.
 
     Parameters
     ----------
@@ -272,14 +272,14 @@ class Occluders:
     world : ndarray of shape (I, 4, 4)
         Object to world, of the instance table.
     cache : ShapeCache, optional
-        That keeps the clusters for the next occluders of the same shapes.
+        Keeps the clusters for the next occluders of the same shapes.
 
     Attributes
     ----------
     corners, boxes, shapes : GPUTexture
         Of `ShapeTables`.
     part_boxes : GPUTexture
-        Two texels a box, in world space, as above: the tree of the parts.
+        Two texels a box, in world space, as in `ShapeTables`: the tree of the parts.
     parts : GPUTexture
         PART_TEXELS texels a part: row of the instance table, first shape, number of levels, area of
         a triangle at full detail in world space; then the largest coordinates in object space.
@@ -355,7 +355,7 @@ def occluder_tables(parts, world):
     part_boxes, records = np.concatenate(part_boxes), np.concatenate(records)
     order = z_order(part_boxes.mean(axis=1))
     tree = box_tree(part_boxes[order])
-    # The device tests in single precision: a part must not fall out of its box by rounding.
+    # Margin: the device tests in single precision, and no part may fall out of its box.
     slack = 1e-6 * np.abs(tree).max()
     tree = tree + np.array([-slack, slack])[:, None]
     return OccluderTables(tree, records[order], shapes)

@@ -1,9 +1,9 @@
-"""Which lens samples can share one drawing of an object (methods 4).
+"""Sprites: lens samples that can share one drawing of an object (methods 4).
 
-Where an object is nearly in focus, many lens samples put it at the same place of the raster. Its
+Where an object is nearly in focus, many lens samples put it at the same place of the raster. The
 places are rounded to a grid; of the samples in one cell, the one nearest the cell's centre is the
-parent: it is drawn once, into a sprite, and copied for all of them. The movement for the pixel
-filter counts only by its fraction of a pixel: whole pixels are a shift of the copy.
+parent: the object is drawn once for it, into a sprite, and copied for the others. Of the jitter of
+the pixel filter only the fraction of a pixel counts: whole pixels are a shift of the copy.
 
 References
 ----------
@@ -14,13 +14,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# What copying a pixel of a sprite costs, in triangles drawn. A copy tests and writes depth and
-# colour; on software OpenGL some 0.07 us, where triangles of scanned meshes take 0.17 us.
+# Cost of copying a pixel of a sprite, in triangles. A copy tests and writes depth and colour: some
+# 0.07 us on software OpenGL, where a triangle of a scanned mesh takes 0.17 us.
 _COPY_COST = 0.4
-# From this radius on, blur hides a step of the raster twice as long, and there are cells enough for
-# smooth edges where the object is sharp: every parent keeps its own movement for the pixel filter.
+# From this radius of the circle of confusion on, px, cells may be twice as large: the blur hides
+# their steps, and each parent keeps its own jitter of the pixel filter, which smooths sharp edges.
 _BLUR_HIDES_PX = 1.5
-# Sprites are worth their copies only if this share of the work is saved.
+# Least share of the work that sprites must save to be used.
 _LEAST_SAVING = 0.1
 
 
@@ -31,14 +31,15 @@ class Sprite:
     Parameters
     ----------
     row : int
-        Of the instance table.
+        Row of the instance table.
     level : int
+        Level of detail.
     parent : int
         The lens sample that it is drawn for.
     members : dict of int to (int, int)
-        By lens sample: whole pixels, x and y, by which its copy lies away from the parent's.
+        By lens sample: offset of its copy from the parent's drawing, in whole pixels, x and y.
     rectangle : tuple of 4 int
-        x, y, width, height of what the parent's drawing may cover, in the raster.
+        x, y, width, height of the part of the raster that the parent's drawing may cover.
     """
 
     row: int
@@ -54,7 +55,7 @@ class Sprite:
 
 
 def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
-    """Find the lens samples that may share drawings of one object.
+    """Group the lens samples that may share drawings of one object.
 
     Parameters
     ----------
@@ -62,21 +63,21 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
     coc : float
         Signed radius of its largest circle of confusion, in pixels along the vertical.
     levels : ndarray of shape (N,)
-        int; its level for each sample of the round.
+        int; its level of detail for each sample of the round.
     triangles : sequence of int
-        By level.
+        Number of triangles by level.
     rectangle : tuple of 4 int
-        x, y, width, height of what it may cover in the raster of any sample.
+        x, y, width, height of the part of the raster that it may cover in any sample.
     plan : FramePlan
-        Its `reuse_grid` tells the cells along a pixel; half as many where there is blur.
+        Its `reuse_grid` is the number of cells along a pixel; half as many where there is blur.
     corners : ndarray of shape (8, 3), optional
-        Of its bounding box, in camera space. With chromatic aberration samples share a drawing only
-        where they agree on the places of all corners.
+        Corners of its bounding box, in camera space. With chromatic aberration samples share a
+        drawing only if all corners fall into the same cells.
 
     Returns
     -------
     list of Sprite
-        Empty where drawing every sample costs less.
+        Empty where it costs less to draw every sample.
     """
     if plan.chromatic is None:
         moves, shifts = raster_moves(coc, plan)
@@ -88,7 +89,7 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
     distance = np.square(moves * grid - cells).sum(axis=1)
     keys = np.column_stack([levels, cells.astype(np.int64)])
     if _touches_edge(rectangle, plan):
-        # A shift would bring in what lies outside the parent's raster.
+        # A shifted copy would need pixels from outside the parent's raster.
         keys = np.column_stack([keys, shifts])
     _, cell_of, sizes = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
     cell_of = cell_of.ravel()
@@ -123,7 +124,7 @@ def _touches_edge(rectangle, plan):
 
 
 def raster_moves(coc, plan):
-    """Return where lens samples put a point, relative to the pinhole's picture.
+    """Return the displacement of a point by lens samples and jitter, relative to a pinhole's.
 
     Parameters
     ----------
@@ -134,7 +135,7 @@ def raster_moves(coc, plan):
     Returns
     -------
     moves : ndarray of shape (N, 2)
-        In pixels, without whole pixels of the movement for the pixel filter.
+        In pixels, without whole pixels of the jitter.
     shifts : ndarray of shape (N, 2)
         int64; those whole pixels.
     """
@@ -145,7 +146,7 @@ def raster_moves(coc, plan):
 
 
 def corner_moves(corners, plan):
-    """Return where lens samples of any wavelength put the corners of a box.
+    """Return the displacements of a box' corners by lens samples, each at its wavelength.
 
     Parameters
     ----------
@@ -156,8 +157,7 @@ def corner_moves(corners, plan):
     Returns
     -------
     moves : ndarray of shape (N, 16)
-        From the pinhole's picture, in pixels, without whole pixels of the movement for the pixel
-        filter.
+        From the pinhole's picture, in pixels, without whole pixels of the jitter.
     shifts : ndarray of shape (N, 2)
         int64; those whole pixels.
     """

@@ -1,7 +1,7 @@
 """A scene's meshes, images, materials and instances on the device.
 
-Content is found by uid: what the previous content had already is not uploaded again, and what the
-new one lacks is released.
+Parts are identified by uid: parts that the previous content had are not uploaded again, and parts
+that the new content lacks are released.
 """
 
 from dataclasses import replace
@@ -32,17 +32,19 @@ class SceneBuffers:
     levels_version : int
         Grows when levels are added.
     shapes : ShapeCache
-        Meshes as the visibility of highlights needs them.
+        Meshes as occluders of highlights.
     expected_pairs : int
-        Of highlight and cluster of triangles; see `engine.visibility.stage`.
+        Pairs of highlight and cluster of triangles in the last frame; see
+        `engine.visibility.stage`.
     instances : GPUTexture
+        The instance table.
     lighting : tuple of (str, GPUUniformBuf or GPUTexture)
-        What lit surfaces read of the lights and the world.
+        Resources of lit surfaces: lights and world.
     environment_buffer, environment_image : GPUUniformBuf, GPUTexture or None
-        The world as the background reads it; no image where it is one colour.
+        The world for the background; no image where it is one colour.
     uploads : dict of str to int
-        How many meshes, images, materials, instance tables, light tables were uploaded and
-        environments computed so far.
+        Numbers of meshes, images, materials, instance tables and light tables that were uploaded,
+        and of environments that were prefiltered so far.
     """
 
     def __init__(self):
@@ -71,12 +73,12 @@ class SceneBuffers:
         self._content = None
 
     def update(self, content):
-        """Upload what is new in a `SceneContent` and release what it lacks."""
+        """Upload the new parts of a `SceneContent`, and release those that it lacks."""
         for _ in self.update_steps(content):
             pass
 
     def update_steps(self, content):
-        """Do what `update` does in steps; left half done, the next call completes it."""
+        """Do what `update` does in steps; if they are abandoned, the next call completes them."""
         if content is self._content:
             return
         self._content = None
@@ -151,11 +153,11 @@ class SceneBuffers:
         self.uploads["environments"] += 1
 
     def mesh_levels(self, uid):
-        """Return the buffers of a mesh at each level of detail that is here, from 0 up."""
+        """Return the buffers of a mesh at each uploaded level of detail, from 0 up."""
         return (self.meshes[uid], *self.levels.get(uid, ()))
 
     def level_meshes(self, mesh):
-        """Return the snapshots of a mesh at each level of detail that is here, from 0 up."""
+        """Return the snapshots of a mesh at each uploaded level of detail, from 0 up."""
         return (mesh, *self._level_meshes.get(mesh.uid, ()))
 
     def add_levels(self, uid, levels):
@@ -174,7 +176,7 @@ class SceneBuffers:
         self.levels_version += 1
 
     def merge_tree(self, uid):
-        """Return the `MergeTree` of a mesh whose levels are here, made at its first use."""
+        """Return the `MergeTree` of a mesh with uploaded levels, made at its first use."""
         tree = self._merge_trees.get(uid)
         if tree is None:
             tree = MergeTree(self._content.meshes[uid], self._level_meshes[uid])
@@ -182,7 +184,7 @@ class SceneBuffers:
         return tree
 
     def drop_levels(self):
-        """Give the levels of detail back; full detail is drawn until new ones come."""
+        """Release the levels of detail; full detail is drawn until new ones are added."""
         for kept in (self.levels, self._level_meshes, self._merge_trees):
             kept.clear()
         self.levels_version += 1
@@ -200,7 +202,7 @@ class SceneBuffers:
     def neighbouring_instances(self, instances):
         """Return the instance tables of the previous and the next frame.
 
-        They are uploaded when they are asked for; what has none stands still.
+        Uploaded at each call; instances without neighbouring transforms stand still.
 
         Parameters
         ----------
@@ -235,7 +237,7 @@ def instance_texels(instances, detail=None):
     ----------
     instances : InstanceTable
     detail : ndarray of shape (I, 2), optional
-        Level of detail and share of shared drawings.
+        Level of detail, and share of the lens samples that copy a shared drawing.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """Drawing the surfaces of a scene for one lens sample after another.
 
-Decides, from the plan, at which level of detail each instance is drawn for each sample, and which
-samples share a drawing.
+Chooses, from the plan, the level of detail of each instance for each lens sample, and the samples
+that share a drawing of it.
 """
 
 from contextlib import nullcontext
@@ -35,7 +35,7 @@ class DrawingCounts:
     ----------
     draw_calls, triangles, sprites_drawn, sprites_copied : int
     triangles_full_detail : int
-        What every instance for every sample would have taken.
+        Triangles of every instance at full detail, for every sample.
     """
 
     draw_calls: int = 0
@@ -45,7 +45,7 @@ class DrawingCounts:
     sprites_copied: int = 0
 
     def __add__(self, other):
-        """Return the work of both."""
+        """Return the sum of two counts."""
         return DrawingCounts(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
 
 
@@ -57,7 +57,7 @@ class SceneDrawing:
     content : SceneContent
     buffers : SceneBuffers
         Updated to it.
-    target : passes.surface.SurfaceTarget
+    target : passes.surface.surface.SurfaceTarget
     graded : dict
         Graded meshes of earlier frames; see `GradedDrawings`.
 
@@ -66,11 +66,11 @@ class SceneDrawing:
     counts : DrawingCounts
         Since the frame began.
     nearest : float
-        Least depth of anything that can be seen, m.
+        Least depth of any visible instance, m.
     levels : ndarray of shape (I,)
         Level of detail of each instance in this frame.
     full_detail : int
-        Triangles of everything at full detail, once.
+        Triangles of all instances at full detail.
     """
 
     def __init__(self, content, buffers, target, graded):
@@ -97,7 +97,7 @@ class SceneDrawing:
         ]
         self._by_level = _by_level(self._draws)
         self._glows_by_level = _by_level(self._glows)
-        # Decided by chance a sample, or added to what is behind: such surfaces share nothing.
+        # Transparent and glowing surfaces differ from sample to sample: they share no drawing.
         self._unshared = {d.group for d in self._draws if d.transparent}
         self._unshared |= {d.group for d in self._glows}
         self._shared = SharedDrawings("MATTES" in target.defines)
@@ -111,11 +111,12 @@ class SceneDrawing:
         plan : FramePlan
         wavelengths : callable, optional
             From a sample, or None for the reference wavelength, to its
-            `passes.surface.chromatic.ChromaticSample`; for a target of `surface.in_wavelengths`.
+            `passes.surface.chromatic.ChromaticSample`; for a target of
+            `passes.surface.surface.in_wavelengths`.
         highlights : GPUUniformBuf or None
             `HighlightParams`, for a target that splits light.
         part : tuple of 4 int, optional
-            x, y, width, height of the part of the raster that is needed; default: all of it.
+            x, y, width, height of the part of the raster that is drawn; default: all of it.
         """
         self._plan = plan
         self._part = part
@@ -140,7 +141,7 @@ class SceneDrawing:
                 candidates, self._corners, seen, self.levels, self._triangles_of, plan
             )
         self._graded.settle(self._shared.drawings_of)
-        # What is not drawn together with its neighbours.
+        # Rows that are drawn on their own, not with their neighbours in the table.
         self._single = sorted({*self._shared.rows, *self._graded.rows})
         self._order_rows()
 
@@ -152,7 +153,8 @@ class SceneDrawing:
         wanted = plan.level_bias is not None and plan.coc_scale != 0.0
         rows = np.flatnonzero(self._visible & (self.levels == 0.0)) if wanted else ()
         if plan.bokeh:
-            # Whose highlights are taken out of the samples exactly.
+            # Not graded where the light varies over the surface: highlights are found at full
+            # detail.
             rows = [row for row in rows if self._group_of[row] not in plan.bokeh.uneven]
         self._graded.find([int(row) for row in rows], self._group_of, plan)
 
@@ -170,7 +172,7 @@ class SceneDrawing:
         return np.minimum(chosen, deepest)
 
     def _order_rows(self):
-        """Put rows in an order in which those of one level are neighbours, where levels differ."""
+        """Sort the rows of each group by level of detail, so that equal levels are neighbours."""
         count = len(self._visible)
         drawn = self._visible.copy()
         drawn[self._single] = False
@@ -205,13 +207,13 @@ class SceneDrawing:
             self._place[order] = np.arange(count)
 
     def _list(self, draws, index):
-        """List the draw calls for a sample, without what shares drawings."""
+        """List the draw calls for a sample, without rows that share a drawing."""
         levels = level_for_sample(self._row_levels, *self._plan.in_round(index))
         ends = zip(self._starts, self._starts[1:], strict=False)
         of_group = [levels[first:end].tobytes() for first, end in ends]
         listed = []
         for draw in draws:
-            # Most samples draw a group's rows at the levels of another sample.
+            # Cached: most samples draw a group's rows at the same levels as another sample.
             key = (id(draw), of_group[draw.group])
             if key not in self._listed:
                 first, end = self._starts[draw.group : draw.group + 2]
@@ -221,7 +223,7 @@ class SceneDrawing:
 
     def _runs(self, draw, chosen):
         places = self._rows[draw.group][0]
-        # Between rows of one level only what cannot be seen may be drawn in passing.
+        # Between rows of one level only culled rows may be drawn along.
         passing = draw.triangles if chosen.all() else np.inf
         return [
             draw
@@ -231,7 +233,7 @@ class SceneDrawing:
         ]
 
     def _of_row(self, draws, row, level, index):
-        """List the draw calls of one row at a level, from those of all by group and level."""
+        """List the draw calls of one row at a level; `draws`: all draws by group and level."""
         place = int(self._place[row])
         found = draws.get((int(self._group_of[row]), int(level)), ())
         graded = self._graded.mesh(row, index) if level == 0 else None
@@ -244,7 +246,7 @@ class SceneDrawing:
         ]
 
     def _of_single(self, draws, index):
-        """List the draw calls for a sample of what is not drawn together with its neighbours."""
+        """List the draw calls for a sample of the rows that are drawn on their own."""
         copied = self._shared.rows_of(index)
         listed = []
         for row in self._single:
@@ -261,11 +263,11 @@ class SceneDrawing:
         surface.draw_sample(listed, view, self._table, lens_sample, index, **resources)
 
     def confine(self, part):
-        """Let the samples that follow draw less: a part of the part that was aimed at."""
+        """Restrict the following samples to a part of the raster, inside that of `aim`."""
         self._part = part
 
     def confined(self):
-        """Return a `with` block that draws into the part of a sample's raster that is needed."""
+        """Return a context in which only the part of `confine` is drawn."""
         if self._part is None:
             return nullcontext()
         return state.scissored(*(self._plan.subpixels * side for side in self._part))
@@ -301,7 +303,7 @@ class SceneDrawing:
         self.counts.sprites_copied = shared.copied
 
     def draw_glows(self, index, framebuffer, view):
-        """Add the light of surfaces that glow to what a lens sample shows behind them."""
+        """Add the light of glowing transparent surfaces to a lens sample."""
         listed = self._list(self._glows, index) + self._of_single(self._glows_by_level, index)
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
@@ -316,7 +318,7 @@ class SceneDrawing:
         return self._content
 
     def specs(self):
-        """Return the targets that drawing needs beside the sample's."""
+        """Return the render targets that drawing needs besides the sample's."""
         return self._shared.specs()
 
     def surfaces(self):
@@ -324,11 +326,11 @@ class SceneDrawing:
         return frozenset((draw.group, draw.slot) for draw in (*self._draws, *self._glows))
 
     def full_detail_draws(self, target, wanted=None):
-        """Return the draws, at full detail, of what can be seen, for another target.
+        """Return the draws, at full detail, of the visible instances for another target.
 
         Parameters
         ----------
-        target : passes.surface.SurfaceTarget
+        target : passes.surface.surface.SurfaceTarget
         wanted : set of (int, int) or None
             See `passes.surface.surface.build_draws`.
 
@@ -349,7 +351,7 @@ class SceneDrawing:
         ]
 
     def detail_table(self):
-        """Return an instance table that also tells levels and shared drawings.
+        """Return an instance table that also has levels of detail and shares of shared drawings.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""The sprites of a frame: drawn when the first lens sample needs one, kept until the last does."""
+"""The sprites of a frame: drawn for the first lens sample that needs one, kept until the last."""
 
 import numpy as np
 
@@ -8,26 +8,26 @@ from ...levels.choosing import coc_ends, level_for_sample
 from ...passes import sprite
 from .reuse import find_sprites
 
-# On the device, for sprites that wait for their next lens sample.
+# Most bytes on the device of sprites that wait for their next lens sample.
 _BYTES = 256 << 20
-# Colour, mattes, depth.
+# Bytes of a sprite's pixel: colour, mattes, depth.
 _TEXEL_BYTES = 36
 
 
 class SharedDrawings:
-    """Which lens samples share drawings of which objects, and the drawings.
+    """The sprites of a frame and the lens samples that share them.
 
     Parameters
     ----------
     mattes : bool
-        The mattes are kept, too.
+        Sprites also hold mattes.
 
     Attributes
     ----------
     rows : list of int
-        Of the instance table: what shares any drawing.
+        Rows of the instance table that share drawings.
     drawn, copied : int
-        Sprites, since the frame began.
+        Numbers of sprites since the frame began.
     """
 
     def __init__(self, mattes):
@@ -37,14 +37,14 @@ class SharedDrawings:
         self.forget()
 
     def forget(self):
-        """Begin a frame in which nothing is shared."""
+        """Begin a frame in which no drawing is shared."""
         self._members = {}
         self._kept = {}
         self.rows = []
         self.drawn = self.copied = 0
 
     def find(self, candidates, corners, seen, levels, triangles, plan):
-        """Find what can be shared.
+        """Find the sprites of a frame.
 
         Parameters
         ----------
@@ -55,13 +55,13 @@ class SharedDrawings:
         seen : Extents
         levels : ndarray of shape (I,)
         triangles : callable
-            From a row to its triangles by level.
+            From a row to its numbers of triangles by level.
         plan : FramePlan
         """
         self.forget()
         near, far = coc_ends(seen.nearest, seen.farthest, plan, seen.inverse_focus)
         largest = np.where(np.abs(near) > np.abs(far), near, far)
-        # With many more cells than samples, hardly any two share one.
+        # With many more cells than samples, hardly any two samples share one.
         _, count = plan.in_round(plan.samples)
         limit = np.sqrt(count) + 1.0
         budget = _BYTES
@@ -88,19 +88,19 @@ class SharedDrawings:
         return self._members.get(sample, {}).keys()
 
     def shares(self, count, plan):
-        """Return which share of the lens samples copies a drawing of each of `count` rows."""
+        """Return for each of `count` rows the share of lens samples that copy a sprite of it."""
         copied = np.zeros(count)
         for found in self._members.values():
             copied[list(found)] += 1.0
         return copied / (plan.samples - plan.first)
 
     def drawings_of(self, row, samples):
-        """Return how often a row is drawn for so many lens samples, sprites counted once each."""
+        """Return how often a row is drawn for `samples` lens samples, each sprite counted once."""
         sprites = [found[row] for found in self._members.values() if row in found]
         return samples - len(sprites) + len({id(sprite) for sprite in sprites})
 
     def specs(self):
-        """Return the targets that it needs beside the sample's."""
+        """Return the render targets that it needs besides the sample's."""
         if not self.rows:
             return ()
         names = [("scratch", "RGBA32F"), ("scratch_depth", "DEPTH_COMPONENT32F")]
@@ -108,7 +108,7 @@ class SharedDrawings:
         return tuple(TargetSpec(name, kind) for name, kind in names)
 
     def copy(self, sample, framebuffer, targets, draw_parent):
-        """Copy what a lens sample shares into its frame buffer.
+        """Copy the sprites of a lens sample into its frame buffer, drawing those that are new.
 
         Parameters
         ----------
@@ -172,7 +172,7 @@ def _kept_specs(mattes):
 
 
 def raster_rectangle(corners, plan):
-    """Return what a box may cover in the raster of any lens sample.
+    """Return the rectangle that a box may cover in the raster of any lens sample.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def raster_rectangle(corners, plan):
         places = (clip[..., :2] / clip[..., 3:] + 1.0) / 2.0 * size
     blur = np.abs(coc_ends(-eye[:, 2], -eye[:, 2], plan, focus)).max(axis=0)
     blur = blur[:, None] * narrowing
-    # Rounding of the rasteriser, and of the samples' whole pixels.
+    # Margin for rounding by the rasteriser, and of the jitter to whole pixels.
     margin = np.abs(plan.jitter).max(axis=0, initial=0.0) * size / 2.0 + 2.0
     low = np.clip(np.floor((places - blur).reshape(-1, 2).min(axis=0) - margin), 0, size)
     high = np.clip(np.ceil((places + blur).reshape(-1, 2).max(axis=0) + margin), 0, size)

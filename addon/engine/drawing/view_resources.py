@@ -1,4 +1,4 @@
-"""A frame's view and aberration as shaders take them."""
+"""Uniform blocks of a frame's view and chromatic aberration."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from ...sampling.chromatic import LEAST_SCALE
 
 
 def chromatic_resources(plan):
-    """Return what shaders know of a `ChromaticPlan`, as `passes.surface.chromatic.resources`."""
+    """Upload a `ChromaticPlan`; see `passes.surface.chromatic.resources`."""
     strengths = plan.lateral_strengths
     return chromatic.resources(
         table=plan.table,
