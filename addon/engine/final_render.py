@@ -26,7 +26,7 @@ from .planning.plan import plan_frame
 from .report import frame_report, without_count
 from .views import views_of
 
-# The picture is shown twice a second while it converges, unless that takes a tenth of the time.
+# Seconds between updates of the shown picture, and the largest share of the time that they take.
 _SHOW_SECONDS = 0.5
 _SHOW_SHARE = 0.1
 
@@ -48,7 +48,7 @@ def render_view_layer(engine, depsgraph, heard):
     engine : bpy.types.RenderEngine
     depsgraph : bpy.types.Depsgraph
     heard : RenderOutcome
-        Told what became of the render.
+        Gets the result: error, warnings, statistics, pictures.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def render_view_layer(engine, depsgraph, heard):
         `RenderCancelledError` if the user stopped the render.
     """
     if bpy.app.background:
-        # Nothing has drawn yet, and what the device holds is asked before.
+        # The extractor asks for the device's limits before anything has opened a context.
         context.ensure_context()
     extractor = SceneExtractor(
         largest_image=context.max_texture_size(), in_main_thread=partial(_in_main_thread, engine)
@@ -124,7 +124,7 @@ def _show_report(engine, heard, lines):
 
 
 def _in_main_thread(engine, work):
-    """Return what a function returns in the thread that may choose the frames of movies."""
+    """Run a function in the main thread, which may choose a movie's frame; return its result."""
     with gpu_of_render(engine.test_break, 0.0, bpy.app.background) as gpu:
         return gpu.call(work)
 
@@ -135,7 +135,7 @@ def _open_device():
 
 
 def _make_levels(engine, plan, snapshot, heard):
-    """Return the levels of detail that the frame draws, by mesh; a final picture waits for them."""
+    """Return the levels of detail that the frame draws, by mesh, waiting until they are made."""
     statistics, content = heard.statistics, snapshot.content
     wanted = meshes_with_levels(content, plan)
     with statistics.timed("levels"):
@@ -172,7 +172,7 @@ def _result(engine, snapshot, view):
     try:
         yield result
     finally:
-        # What was drawn before the user stopped the render stays to be seen.
+        # A stopped render keeps what was drawn so far.
         engine.end_result(result)
 
 
@@ -209,7 +209,7 @@ def _show_progress(engine, heard, renderer, seconds):
 def _finish(gpu, renderer, result, heard):
     pictures = {}
     with heard.statistics.timed("read_back"):
-        # Group by group: all passes of a large picture at once would need their memory twice.
+        # Group by group: reading all passes of a large picture at once would need twice the memory.
         for names in renderer.pass_groups():
             found = gpu.call(partial(renderer.read_passes, names))
             fill_layer(result.layers[0], found)

@@ -1,12 +1,12 @@
-"""Where the GPU work of a final render runs.
+"""The thread in which the GPU work of a final render runs.
 
-In the background the thread that renders owns the GPU and works there. In the user interface it
+In background mode the render thread owns the GPU context and works in it. In the user interface it
 must not own it, or Blender freezes until the render ends: there the work is cut into slices of
-some 50 ms, and Blender's main thread, which owns the windows' GPU contexts, takes one slice each
-time round its event loop (a timer) while the render thread waits.
+some 50 ms, and Blender's main thread, which owns the windows' GPU contexts, runs one slice in each
+cycle of its event loop (a timer) while the render thread waits.
 
-Work is an iterator whose steps are short; what a generator returns comes back. Above this module
-both ways look the same.
+Work is a generator whose steps are short; its return value is passed on. Callers do not see which
+thread works.
 """
 
 import queue
@@ -16,9 +16,9 @@ from concurrent.futures import Future, wait
 
 from ..errors import RenderCancelledError
 
-# How often a waiting render asks whether it was stopped.
+# Seconds between the checks of a waiting render whether it was stopped.
 _POLL_SECONDS = 0.05
-# How long the main thread may take to begin a last piece of work.
+# Seconds that the main thread may take to begin the last piece of work.
 _FAREWELL_SECONDS = 1.0
 _IDLE_SECONDS = 0.1
 
@@ -28,7 +28,7 @@ _renders_lock = threading.Lock()
 
 
 class _Slices:
-    """Steps of work that are carried out a slice at a time."""
+    """A generator that is run in slices of time."""
 
     def __init__(self, steps, seconds):
         self._steps = steps
@@ -36,7 +36,7 @@ class _Slices:
         self.result = None
 
     def advance(self):
-        """Work for one slice; return whether all is done."""
+        """Run one slice; return whether the generator has ended."""
         end = time.perf_counter() + self._seconds
         while True:
             try:
@@ -57,9 +57,9 @@ class OwnThreadGpu:
     Parameters
     ----------
     should_stop : callable
-        Returns whether the user stopped the render; asked after every piece of work.
+        Returns whether the user stopped the render; called after every slice.
     slice_seconds : float
-        How long a piece of work may take.
+        Duration of a slice.
     """
 
     def __init__(self, should_stop, slice_seconds):
@@ -67,14 +67,14 @@ class OwnThreadGpu:
         self.slice_seconds = slice_seconds
 
     def __enter__(self):
-        """Begin to render."""
+        """Begin the render."""
         return self
 
     def __exit__(self, *exception):
-        """End to render."""
+        """End the render."""
 
     def call(self, work):
-        """Return what a function returns that takes about as long as a slice.
+        """Run a function that takes about as long as a slice; return its result.
 
         Raises
         ------
@@ -86,17 +86,17 @@ class OwnThreadGpu:
         return result
 
     def run(self, steps):
-        """Carry out all steps of a generator, slice by slice.
+        """Run a generator to its end, slice by slice.
 
         Parameters
         ----------
         steps : generator
-            Of steps that are short against a slice.
+            Its steps must be short compared with a slice.
 
         Returns
         -------
         object
-            What the generator returns.
+            The generator's return value.
 
         Raises
         ------
@@ -121,22 +121,22 @@ class OwnThreadGpu:
 
 
 class MainThreadGpu(OwnThreadGpu):
-    """Has Blender's main thread do the GPU work."""
+    """Runs GPU work in Blender's main thread."""
 
     def __enter__(self):
-        """Have the main thread look for work without delay."""
+        """Make the main thread look for work in every cycle."""
         _count_renders(+1)
         return self
 
     def __exit__(self, *exception):
-        """Let the main thread look for work at leisure."""
+        """Let the main thread look for work less often."""
         _count_renders(-1)
 
     def call(self, work):
-        """Return what a function returns that takes about as long as a slice; see above."""
+        """Run a function that takes about as long as a slice; see `OwnThreadGpu.call`."""
         job = _submit(work)
         while not wait([job], _POLL_SECONDS).done:
-            # Work that has begun is waited for; it cannot be taken back.
+            # Work that has begun is waited for; it cannot be interrupted.
             if self._should_stop() and job.cancel():
                 break
         self._raise_if_stopped()
@@ -148,21 +148,21 @@ class MainThreadGpu(OwnThreadGpu):
         wait([job], _FAREWELL_SECONDS)
         if job.cancel():
             # The main thread is waiting for this render to end (Blender quits, a file opens).
-            # The device takes memory back from any thread.
+            # Memory on the device may be released in any thread.
             work()
         else:
             job.result()
 
 
 def gpu_of_render(should_stop, slice_seconds, in_background):
-    """Return what runs the GPU work of a render that was started in this thread.
+    """Return the runner of the GPU work of a render that was started in this thread.
 
     Parameters
     ----------
     should_stop : callable
         Returns whether the user stopped the render.
     slice_seconds : float
-        How long a piece of work may take.
+        Duration of a slice.
     in_background : bool
         Blender has no user interface.
 
@@ -177,7 +177,7 @@ def gpu_of_render(should_stop, slice_seconds, in_background):
 
 
 def work_off_one_job():
-    """Carry out one waiting job; Blender's main thread calls this as a timer.
+    """Run one slice of a waiting job; Blender's main thread calls this as a timer.
 
     Returns
     -------
@@ -191,7 +191,7 @@ def work_off_one_job():
     if job.set_running_or_notify_cancel():
         try:
             job.set_result(work())
-        # Whatever goes wrong belongs to the thread that waits, which raises it again.
+        # Any error is passed to the waiting render thread, which raises it again.
         except BaseException as error:
             job.set_exception(error)
     return 0.0

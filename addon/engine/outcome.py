@@ -1,4 +1,4 @@
-"""What became of a render: error, cancellation, statistics and pictures.
+"""The outcome of a render: error, cancellation, warnings, statistics and pictures.
 
 `bpy.ops.render.render` answers ``{'FINISHED'}`` whatever happened inside an engine, so whoever
 starts a render and needs to know listens for its outcome::
@@ -7,8 +7,8 @@ starts a render and needs to know listens for its outcome::
         bpy.ops.render.render()
     if heard.error: ...
 
-The engine fills `outcome.current()`, which belongs to nobody when nobody listens; pictures are
-kept only for a listener that asked for them.
+The engine fills `outcome.current()`, which is thrown away when nobody listens; pictures are kept
+only for a listener that asked for them.
 """
 
 import threading
@@ -31,16 +31,16 @@ class RenderStatistics:
     seconds : dict of str to float
         By stage: ``extract``, ``plan``, ``upload``, ``draw``, ``resolve``, ``read_back``.
     lens_samples : int
-        Of all view layers together.
+        Sum over all view layers.
     subsamples : float
-        Places that a lens sample stood for besides its own, of the view layer that had most.
+        Mean number of subsamples of a lens sample, in the view layer with most.
     decimations, replays : int
-        Meshes whose levels of detail were made, and made again for other positions.
+        Meshes whose levels of detail were made by simplification, and by collapses known before.
     subpixels : int
         Along each side of a pixel in a lens sample's raster, of the finest view layer.
     draw_calls : int
     triangles_submitted, triangles_full_detail : int
-        Over all lens samples; the second is what full detail for every sample would have taken.
+        Over all lens samples; the second as if every sample were drawn at full detail.
     sprites_drawn, sprites_copied : int
     highlights : dict of str to int
         ``found``, ``clustered``, ``culled_size``, ``culled_occlusion``, ``culled_cone``,
@@ -50,10 +50,10 @@ class RenderStatistics:
     shaders_compiled : int
         During this render; compiling is part of ``upload`` and of the first samples' ``draw``.
     texture_bytes, geometry_bytes : int
-        On the device, of the view layer that took most.
+        Memory on the device, of the view layer that took most.
     device : str
     noise : SamplingReport or None
-        Of the view layer that was left with the largest error.
+        Sampling of the view layer with the largest error.
     """
 
     seconds: dict[str, float] = field(default_factory=dict)
@@ -89,7 +89,7 @@ class RenderStatistics:
     noise: object = None
 
     def note_noise(self, report):
-        """Take note of how far the sampling of a view layer has come."""
+        """Add the sampling report of a view layer."""
         if self.noise is None or (report.error or 0.0) > (self.noise.error or 0.0):
             self.noise = report
 
@@ -152,18 +152,18 @@ class LayerPicture:
 
 @dataclass
 class RenderOutcome:
-    """What the engine tells about a render.
+    """Everything that the engine reports about a render.
 
     Attributes
     ----------
     error : Exception or None
-        Why there is no picture: an `AplanatError`, or another one if Aplanat itself failed.
+        Why there is no picture: an `AplanatError`, or another exception if Aplanat has a fault.
     cancelled : bool
     statistics : RenderStatistics
     layers : list of LayerPicture
         Empty unless the listener keeps pictures.
     report : list of str
-        What could not be drawn and what was drawn instead, each line once.
+        Warnings: what could not be drawn and what was drawn instead, each line once.
     keeps_pictures : bool
     progress : callable or None
         Called with the finished share of the view layer, 0 to 1, and a line of text.
@@ -185,7 +185,7 @@ class RenderOutcome:
         self.report.extend(line for line in dict.fromkeys(lines) if line not in self.report)
 
     def check_strict(self):
-        """Refuse to go on with warnings, if the listener is strict.
+        """Raise an error if there are warnings and the listener is strict.
 
         Raises
         ------
@@ -203,15 +203,15 @@ class _PictureNote:
     sampling: object = None
 
 
-# Of the last picture of each scene, by the scene's session number. The main thread (viewports,
-# panels) and the one that renders take turns at them.
+# Reports of the last picture of each scene, by the scene's session number. A lock guards them: the
+# main thread (viewports, panels) and the render thread use them.
 _notes = OrderedDict()
 _MOST_NOTES = 64
 _lock = threading.Lock()
 
 
 def note_highlights(scene, counts, problems=(), fates=None):
-    """Remember what became of the highlights of a scene's picture, for the panel.
+    """Store the counts and fates of the highlights of a scene's picture, for the panel.
 
     Parameters
     ----------
@@ -228,7 +228,7 @@ def note_highlights(scene, counts, problems=(), fates=None):
 
 
 def note_sampling(scene, report):
-    """Remember how far the sampling of a scene's picture has come, for the panel.
+    """Store the sampling report of a scene's picture, for the panel.
 
     Parameters
     ----------
@@ -248,22 +248,22 @@ def _note(scene, **changes):
 
 
 def last_highlights(scene):
-    """Return what `note_highlights` was told last of a scene, as a dict, or None."""
+    """Return the last highlight counts of a scene, as a dict, or None."""
     return _note_of(scene).counts
 
 
 def last_sampling(scene):
-    """Return what `note_sampling` was told last of a scene, or None."""
+    """Return the last `SamplingReport` of a scene, or None."""
     return _note_of(scene).sampling
 
 
 def last_fates(scene):
-    """Return what became of how many sources, as `note_highlights` was told last of a scene."""
+    """Return the last numbers of a scene's sources by fate."""
     return _note_of(scene).fates
 
 
 def last_problems(scene):
-    """Return which problems `note_highlights` was told last of a scene."""
+    """Return the last warnings about a scene's bokeh."""
     return _note_of(scene).problems
 
 
@@ -277,7 +277,7 @@ _listeners = []
 
 @contextmanager
 def listen(keep_pictures=False, progress=None, strict=False):
-    """Hear of the renders that run inside a `with` block.
+    """Receive the outcome of the renders that run inside a `with` block.
 
     Parameters
     ----------
@@ -297,7 +297,7 @@ def listen(keep_pictures=False, progress=None, strict=False):
         yield heard
     finally:
         with _lock:
-            # By identity: two that heard the same so far are equal.
+            # By identity: outcomes with equal contents compare equal.
             _listeners[:] = [listener for listener in _listeners if listener is not heard]
 
 

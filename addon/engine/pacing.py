@@ -1,20 +1,20 @@
-"""How many lens samples to draw at a time, so that a stretch of work takes about a given time."""
+"""Pacing: the number of lens samples to draw at a time, so that a batch takes a given time."""
 
 import time
 
 
 class Pacer:
-    """Finds the number of samples that fill a time.
+    """Adapts the number of samples of a batch to a duration.
 
     Parameters
     ----------
     seconds : float
-        How long a stretch may take; one sample is drawn even if it takes longer.
+        Duration of a batch; one sample is drawn even if it takes longer.
 
     Attributes
     ----------
     samples : int
-        To draw next.
+        Number of samples of the next batch.
     """
 
     # A first sample compiles and uploads, so a measurement may be far off in either direction.
@@ -25,14 +25,14 @@ class Pacer:
         self.samples = 1
 
     def measured(self, samples, seconds):
-        """Learn from a stretch of `samples` that took `seconds`."""
+        """Adapt to a batch of `samples` that took `seconds`."""
         if samples < 1:
             return
         fitting = int(self.seconds * samples / max(seconds, 1e-6))
         self.samples = max(1, min(fitting, self._LARGEST_GROWTH * samples))
 
     def advance(self, renderer):
-        """Draw one stretch with a `FrameRenderer` and wait for the device."""
+        """Draw one batch with a `FrameRenderer` and wait for the device."""
         start = time.perf_counter()
         before = renderer.samples_done
         renderer.advance(self.samples)

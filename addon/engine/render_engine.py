@@ -41,8 +41,8 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
             self.error_set(str(error))
             self.report({"ERROR"}, str(error))
         except Exception as error:
-            # Blender prints the traceback and goes on as if there were a picture: whoever started
-            # the render must still hear that there is none.
+            # Blender prints the traceback and goes on as if there were a picture: the listener
+            # must still get the error.
             heard.error = error
             self.error_set(f"Aplanat failed, see the console: {error}")
             # Without an error report Blender goes on to write the picture that is not there, and a
@@ -56,13 +56,13 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
             render_passes.register(self, scene, renderlayer, read_passes(renderlayer))
 
     def view_update(self, context, depsgraph):
-        """Take note of what changed in the scene of a 3D view."""
+        """Note the changes in the scene of a 3D view."""
         if self._viewport is None:
             self._viewport = Viewport()
         self._viewport.note_updates(depsgraph, context.space_data)
 
     def view_draw(self, context, depsgraph):
-        """Draw the picture of a 3D view, finer than the last time."""
+        """Draw the picture of a 3D view, with more samples than the last time."""
         unfinished = False
         try:
             unfinished = self._viewport.draw(
@@ -82,7 +82,7 @@ _register, _unregister = bpy.utils.register_classes_factory((AplanatRenderEngine
 
 
 def register():
-    """Register the engine and have the main thread look for its work."""
+    """Register the engine, and the timer by which the main thread does its GPU work."""
     _register()
     bpy.app.handlers.render_init.append(final_render.begin_report)
     if not bpy.app.background:

@@ -1,15 +1,15 @@
-"""What of a picture is not as the scene asks: the one list that every way of rendering shows.
+"""Warnings about a frame: the one list for final render, viewport and command line.
 
-A warning is a line that names the data-block, says what is wrong, and what is drawn instead. They
-are found where the scene is read (`SceneContent.report`, `Camera.report`) and while the picture is
-drawn (`FrameRenderer.report`). `frame_report` gathers them; the final render hands them to Blender
-and to the `RenderOutcome` of whoever listens (``--json``, ``--stats``, ``--strict``), the viewport
-tells the first of them.
+A warning is a line that names the data-block, says what is wrong, and what is drawn instead.
+Warnings come from reading the scene (`SceneContent.report`, `Camera.report`) and from drawing
+(`FrameRenderer.report`). `frame_report` gathers them; the final render gives them to Blender and to
+the listener's `RenderOutcome` (``--json``, ``--stats``, ``--strict``), the viewport shows the
+first.
 """
 
 import re
 
-# How many copies of an object a warning is about changes from frame to frame.
+# The number of copies in a warning, which may change from frame to frame.
 _COUNT = re.compile(r" \(\d+ copies\)$")
 
 
@@ -20,7 +20,7 @@ def frame_report(snapshot, renderer=None):
     ----------
     snapshot : SceneSnapshot
     renderer : FrameRenderer or None
-        None: nothing has been drawn yet.
+        None before anything is drawn.
 
     Returns
     -------
@@ -31,12 +31,12 @@ def frame_report(snapshot, renderer=None):
 
 
 def without_count(line):
-    """Return what a warning says whatever the frame: an animation tells it once."""
+    """Return a warning without its number of copies, so that an animation shows it once."""
     return _COUNT.sub("", line)
 
 
 def in_short(lines):
-    """Return warnings as a piece of a status line: how many, and the first; "" without any."""
+    """Summarise warnings for a status line: their number and the first; "" without any."""
     if not lines:
         return ""
     if len(lines) == 1:

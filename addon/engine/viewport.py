@@ -1,10 +1,9 @@
 """The Rendered viewport: the frame of a 3D view, refined while nothing changes.
 
-Blender tells a viewport what changed (`Viewport.note_updates`) and asks it to draw
-(`Viewport.draw`). A drawing answers within about one sample; the picture is the final render's at
-every step: same plan, same passes. While the view moves, its bokeh is a draft; the final render's
-follows, step by step, when it has come to rest. 3D views that show the same objects share their
-copies on the graphics device.
+Blender reports changes (`Viewport.note_updates`) and asks for a redraw (`Viewport.draw`). A redraw
+takes about as long as one lens sample; plan and passes are those of the final render. While the
+view moves, the bokeh is a draft; the final render's follows, step by step, when the view rests. 3D
+views that show the same objects share the buffers on the graphics device.
 """
 
 import time
@@ -29,25 +28,26 @@ from .pacing import Pacer
 from .planning.plan import plan_frame
 from .report import frame_report, in_short
 
-# Between two answers to the user; a single sample may take longer.
+# Seconds of a redraw; a single sample may take longer.
 DRAW_SECONDS = 0.02
-# A view that has not changed for so long is at rest: longer than between two movements of a hand.
+# Seconds without a change after which a view rests: longer than the pause between two movements of
+# a hand.
 REST_SECONDS = 0.2
 
 
 class _ViewedScene:
-    """What stands before the camera of one or several 3D views, also on the device.
+    """The scene content of one or several 3D views, and its buffers on the device.
 
     Parameters
     ----------
     space : bpy.types.SpaceView3D or None
-        The 3D view that shows not all objects, if it is such a one.
+        A 3D view in local view or with collections of its own; None for all others.
     """
 
     def __init__(self, space):
         self.buffers = SceneBuffers()
         self._extractor = SceneExtractor(space, device_context.max_texture_size())
-        # Closes itself when no 3D view shows the scene any more.
+        # The handle closes itself when no 3D view shows the scene any more.
         self.levels = level_store().open()
         self._wanted = set()
         self._least_triangles = None
@@ -63,7 +63,7 @@ class _ViewedScene:
         return content
 
     def want_levels(self, content, plan):
-        """Have the levels of detail made that a frame draws."""
+        """Request the levels of detail that a frame draws."""
         self._wanted.update(meshes_with_levels(content, plan))
         self._wanted &= content.meshes.keys()
         if plan.least_triangles != self._least_triangles:
@@ -84,17 +84,17 @@ class _ViewedScene:
                     self.buffers.add_levels(uid, levels)
 
     def levels_changed(self, version):
-        """Whether a picture has to begin again for the sake of levels of detail.
+        """Whether a picture has to start again because its levels of detail have changed.
 
         Parameters
         ----------
         version : int
-            `SceneBuffers.levels_version` when it began.
+            `SceneBuffers.levels_version` when it started.
 
         Returns
         -------
         bool
-            All that were missing have been made since, or what was here is out of date.
+            All missing levels have been made since, or those it used are out of date.
         """
         if self._generation != self.levels.generation:
             return True
@@ -112,7 +112,7 @@ _viewed_scenes = weakref.WeakValueDictionary()
 
 
 def _viewed_scene(depsgraph, space):
-    """Return the scene that a 3D view shows, shared with those that show the same objects."""
+    """Return the scene of a 3D view, shared among views that show the same objects."""
     key, filtering = _visibility_key(space)
     layer = depsgraph.view_layer
     key = (depsgraph.as_pointer(), depsgraph.scene.original.session_uid, layer.name, *key)
@@ -141,7 +141,7 @@ class Viewport:
     Attributes
     ----------
     text : str
-        What to tell the user: progress, or in one line why there is no picture.
+        Status line: progress, or in one line why there is no picture.
     """
 
     def __init__(self):
@@ -157,7 +157,7 @@ class Viewport:
         self._levels_version = 0
 
     def note_updates(self, depsgraph, space):
-        """Take note of what changed; cheap, nothing is read yet.
+        """Note changes; cheap, nothing is read yet.
 
         Parameters
         ----------
@@ -238,7 +238,7 @@ class Viewport:
         warnings = in_short(frame_report(snapshot, renderer))
         if warnings:
             self.text += f" | {warnings}"
-        # What is drawn without its levels of detail begins again when they are made.
+        # A picture without its levels of detail starts again when they are made.
         return not renderer.finished() or done < total
 
     def _refine(self, renderer):
@@ -274,7 +274,7 @@ class Viewport:
         return plan
 
     def release(self):
-        """Give the picture back to the device."""
+        """Release the picture's resources on the device."""
         if self._renderer is not None:
             self._renderer.release()
             self._renderer = None

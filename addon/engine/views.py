@@ -1,9 +1,9 @@
-"""The views of a stereoscopic render: which camera sees each, from where.
+"""The views of a stereoscopic render: camera, place and shift of each.
 
 Blender renders all views of a view layer in one call of the engine. With *Stereo 3D* two eyes share
-a camera, moved apart and shifted or turned as its convergence asks; with *Multi-View* each view has
-a camera of its own, found by the suffix of its name. Blender works out both for the view that is
-active (`RenderEngine.active_view_set`).
+a camera, moved apart and shifted or turned by its convergence settings; with *Multi-View* each view
+has a camera of its own, found by the suffix of its name. Blender computes both for the active view
+(`RenderEngine.active_view_set`).
 """
 
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class View:
         return self.blender.name
 
     def activate(self):
-        """Have Blender's answers be about this view."""
+        """Make this the view that Blender's functions refer to."""
         self.engine.active_view_set(self.name)
 
     def camera(self, depsgraph):
@@ -36,7 +36,7 @@ class View:
         return self.engine.camera_override or depsgraph.scene.camera
 
     def place(self, camera):
-        """Return where a camera stands for this view, object to world."""
+        """Return the transform of a camera for this view, object to world."""
         return self.engine.camera_model_matrix(camera)
 
     def shift_x(self, camera):

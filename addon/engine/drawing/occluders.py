@@ -69,7 +69,7 @@ def z_order(points):
 
 
 def box_tree(boxes):
-    """Return boxes and, behind them, the bounding boxes of eight each, and so on up to eight or less.
+    """Return boxes and, behind them, the bounding boxes of eight each, and so on to the root.
 
     Parameters
     ----------

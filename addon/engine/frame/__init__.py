@@ -1,1 +1,1 @@
-"""A frame in the making: its passes in order, its sums, its pictures."""
+"""Drawing a frame: its GPU passes in order, the sums of its samples, its pictures."""

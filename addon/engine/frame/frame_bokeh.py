@@ -1,4 +1,4 @@
-"""The bokeh of a frame as time goes on: whole at once, or a draft first that the whole replaces."""
+"""The bokeh of a frame over time: whole at once, or a draft that the whole replaces later."""
 
 import time
 from contextlib import nullcontext
@@ -8,21 +8,21 @@ import numpy as np
 
 from ..planning.bokeh_plan import draft_of
 
-# A bokeh that takes no longer needs no draft, s.
+# Seconds below which a whole bokeh needs no draft.
 _QUICK = 0.03
 
 
 class FrameBokeh:
-    """Runs the bokeh of a frame, and of the same frame with another view after that.
+    """Runs the bokeh of a frame, and of following frames with another view.
 
     Attributes
     ----------
     stage : BokehStage or None
-        Made what is shown; None without bokeh.
+        The stage that made the bokeh that is shown; None without bokeh.
     drafted : bool
-        What is shown is a draft, or none yet.
+        The bokeh that is shown is a draft, or not made yet.
     seconds : float
-        What the last whole bokeh took; infinite while none was made.
+        Duration of the last whole bokeh; infinite while none was made.
     """
 
     def __init__(self):
@@ -71,13 +71,13 @@ class FrameBokeh:
             self.drafted = False
 
     def stop(self):
-        """Give back what a whole bokeh that is half done holds on the device."""
+        """Abandon a whole bokeh that is in progress, and release what it holds on the device."""
         if self._refining is not None:
             self._refining.close()
             self._refining = None
             self.seconds = np.inf
 
     def release(self):
-        """Give back everything; how long the last one took is remembered."""
+        """Release everything on the device; `seconds` is kept."""
         self.stop()
         self.stage = self._whole = self._draft = None

@@ -1,7 +1,7 @@
 """The pictures of a frame: from the sums of its samples to the passes (methods 1).
 
-With distortion the sums are of a larger raster without it (`engine.planning.distortion`). What is
-light, or a share of it, is then sampled and filtered; ids and geometry are those of the nearest
+With distortion the sums are those of a larger undistorted raster (`engine.planning.distortion`).
+Light and mattes are resampled from it with a filter; ids and geometry are taken from the nearest
 pixel of the raster, since they must not be mixed.
 """
 
@@ -30,7 +30,7 @@ class FramePictures:
     view : GPUUniformBuf
         `ViewParams` of the frame.
     targets : Targets
-        With what `target_specs` names, and the sums.
+        With those of `target_specs`, and the sums of the samples.
     fullscreen : GPUBatch
     """
 
@@ -47,7 +47,7 @@ class FramePictures:
 
     @staticmethod
     def target_specs(plan):
-        """Return the targets that pictures are made in."""
+        """Return the render targets that pictures are made in."""
         specs = [TargetSpec("image", "RGBA32F", size=plan.size), *mark_targets(plan)]
         if plan.distortion and plan.automatic:
             specs.append(TargetSpec("mean", "RGBA32F"))
@@ -63,9 +63,9 @@ class FramePictures:
         weights : FrameWeights
             Of the samples so far.
         origin : tuple of 2 int
-            Where its lower left corner goes.
+            Lower left corner of the picture in the frame buffer, px.
         pixel_size : int
-            Side of the square that shows one pixel.
+            Side of the square of the frame buffer that shows one pixel of the picture.
         """
         targets = self._targets
         whole = (targets["sum"], weights.by_channel)
@@ -88,7 +88,7 @@ class FramePictures:
         state.overwrite()
         distortion = self._plan.distortion
         if scales is not None and distortion is not None:
-            # What is sampled between pixels must be their means already.
+            # Divided before resampling: only means can be interpolated between pixels.
             with self._targets.framebuffer("mean").bind():
                 resolve.resolve(self._fullscreen, total, weight, scales=scales)
             total, weight, scales = self._targets["mean"], 1.0, None
@@ -99,11 +99,11 @@ class FramePictures:
     def read_combined(self, weights):
         """Return the picture so far, shape (height, width, 4), bottom row first."""
         picture = self.read_defocus(weights)
-        # Added here and not on the device, so that it is the sum of the two passes to the last bit.
+        # Added in numpy, so that Combined is the sum of the two passes to the last bit.
         return picture + self.read_bokeh() if self._plan.bokeh else picture
 
     def read_shown(self, weights):
-        """Return what a viewport shows: Combined, or the debug view that takes its place."""
+        """Return the picture that a viewport shows: Combined, or the debug view instead."""
         if not shows_marks(self._plan):
             return self.read_combined(weights)
         framebuffer = self._targets.framebuffer("marked")
@@ -112,11 +112,11 @@ class FramePictures:
         return readback.read_color(framebuffer, *self._plan.size)
 
     def read_defocus(self, weights):
-        """Return what the samples show, as `read_combined`."""
+        """Return the pass Defocus, the light of the lens samples, as `read_combined`."""
         return self._read(self._targets["sum"], weights.by_channel, weights.scales)
 
     def read_bokeh(self):
-        """Return the highlights, as `read_combined`."""
+        """Return the pass Bokeh, the splatted highlights, as `read_combined`."""
         plan = self._plan
         if not plan.bokeh:
             width, height = plan.size
@@ -137,12 +137,12 @@ class FramePictures:
         return readback.read_color(framebuffer, *self._plan.size)
 
     def read_sample_count(self, counts):
-        """Return how many samples each pixel got, shape (height, width, 1).
+        """Return the pass Sample Count, shape (height, width, 1).
 
         Parameters
         ----------
         counts : ndarray of shape (rows, columns)
-            Of each tile of the raster.
+            Lens samples of each tile of the raster.
         """
         plan = self._plan
         each = counts.repeat(TILE, axis=0).repeat(TILE, axis=1)[: plan.height, : plan.width]
@@ -168,14 +168,14 @@ class FramePictures:
         return self._picked(found) if plan.distortion else found
 
     def _picked(self, raster):
-        """Return the nearest of a raster's pixels for each of the picture's."""
+        """Resample a raster to the picture by nearest pixels."""
         if self._nearest is None:
             plan = self._plan
             self._nearest = plan.distortion.nearest((plan.width, plan.height))
         return np.ascontiguousarray(raster[self._nearest])
 
     def read_data(self, names):
-        """Return the named passes of geometry.
+        """Return data passes: depth, normal, position, vector, CoC, detail.
 
         Parameters
         ----------
@@ -225,13 +225,13 @@ class FramePictures:
 
 
 def in_picture(name, values, distortion):
-    """Return a pass that is in pixels of the raster in pixels of the picture.
+    """Convert a pass from pixels of the undistorted raster to pixels of the picture.
 
     Parameters
     ----------
     name : {'Vector', 'CoC'}
     values : ndarray of shape (height, width, channels)
-        Of the raster's pixels that the picture's show.
+        Values of the raster's pixels that are nearest to the picture's.
     distortion : DistortionPlan
 
     Returns
@@ -247,7 +247,7 @@ def in_picture(name, values, distortion):
     before = distortion.pictured(places + values[..., :2]) - centres
     after = centres - distortion.pictured(places - values[..., 2:])
     moved = np.concatenate([before, after], axis=-1)
-    # What stands still does so to the last bit.
+    # No movement stays exactly 0.
     still = np.repeat(~values.reshape(*values.shape[:2], 2, 2).any(axis=-1), 2, axis=-1)
     return np.where(still, 0.0, moved).astype(np.float32)
 

@@ -1,4 +1,4 @@
-"""The ordered passes of a frame, sample by sample.
+"""The frame renderer: the GPU passes of a frame in order, lens sample by lens sample.
 
 Only the sums of the samples and the Cryptomatte tables outlive a sample, so memory does not depend
 on their number.
@@ -24,7 +24,7 @@ from .readable_frame import ReadableFrame
 from .subsampling import SubsampleBlur
 from .tile_sampling import TileSampling
 
-# Samples that may wait in the device's queue: the queue's memory, too, is bounded.
+# Most samples in the device's queue, to bound the memory of the queue.
 _SAMPLES_IN_FLIGHT = 32
 
 
@@ -53,7 +53,7 @@ class FrameRenderer(ReadableFrame):
         self.restart(plan, snapshot, drafts, leader)
 
     def restart(self, plan, snapshot, drafts=False, leader=None):
-        """Begin a frame anew, with another view or content; what still fits is kept.
+        """Begin a frame with another view or content; buffers and targets that still fit are kept.
 
         Parameters
         ----------
@@ -64,7 +64,8 @@ class FrameRenderer(ReadableFrame):
             Begin with a draft of the bokeh, unless the last whole one was quick, and leave the
             whole to `refine_bokeh`.
         leader : TileSampling or None
-            Whose tiles are drawn, with `automatic` sampling of a picture beside another.
+            With `automatic` sampling: draw the tiles that another renderer has chosen (the frame
+            with chromatic aberration, for the plain one of Fringe).
         """
         keeping.let_go()
         self._bokeh.stop()
@@ -98,7 +99,7 @@ class FrameRenderer(ReadableFrame):
         self._blur = None
         if plan.blurs:
             self._blur = SubsampleBlur(plan, self._drawing.nearest, wavelengths)
-        # A draft of the bokeh comes and goes with the time that is left: it must decide nothing.
+        # Whether a draft is shown depends on time: the noise threshold must not depend on it.
         self._measures_bokeh = bool(plan.bokeh) and not drafts
         self._bokeh.restart(plan, self._stage, drafts)
         self._prepare_targets()
@@ -114,7 +115,7 @@ class FrameRenderer(ReadableFrame):
         self._restart_plain(plan, snapshot)
 
     def _restart_plain(self, plan, snapshot):
-        """Begin the same frame without chromatic aberration, for Fringe."""
+        """Begin the same frame without chromatic aberration, which Fringe is a difference from."""
         if plan.plain is None:
             if self._plain:
                 self._plain.release()
@@ -146,17 +147,17 @@ class FrameRenderer(ReadableFrame):
 
     @property
     def highlights(self):
-        """What became of the frame's highlights, as `HighlightCounts`; None without bokeh."""
+        """Numbers of the frame's highlights by fate, as `HighlightCounts`; None without bokeh."""
         return self._bokeh.stage.counts if self._bokeh.stage else None
 
     @property
     def fates(self):
-        """As `BokehStage.fates`; empty without bokeh."""
+        """Numbers of sources by fate, see `BokehStage.fates`; empty without bokeh."""
         return self._bokeh.stage.fates if self._bokeh.stage else {}
 
     @property
     def report(self):
-        """What is not drawn as the camera asks, one sentence each; known after a sample."""
+        """Warnings about settings of the camera that cannot be met; known after a sample."""
         return self._bokeh.stage.report if self._bokeh.stage else ()
 
     @property
@@ -211,9 +212,9 @@ class FrameRenderer(ReadableFrame):
         ----------
         samples : int
         stage : callable, optional
-            For measuring: called with the name of each part of a sample's work (``bokeh``,
-            ``surfaces``, ``sum``), it returns a context manager in which that is given
-            to the device. Within ``bokeh``, also with those of `BokehStage.run`.
+            For measuring: called with the name of each stage of a sample (``bokeh``, ``surfaces``,
+            ``sum``), it returns a context manager in which the stage's work is sent to the device;
+            within ``bokeh`` also with the stages of `BokehStage.run`.
         """
         keeping.let_go()
         self._targets.forget_framebuffers()
@@ -239,14 +240,14 @@ class FrameRenderer(ReadableFrame):
         return self._stopped or self.samples_done >= self.plan.samples
 
     def stop(self):
-        """Draw no further samples; what there is becomes the picture."""
+        """Draw no further samples: the samples so far make the picture."""
         self._stopped = True
         if self._tiles:
             self._tiles.note(self.plan, self.samples_done)
             self._tiles.stop()
 
     def _look(self):
-        """See whether the picture is good enough, and where it is not."""
+        """Measure the error of the picture, and choose the tiles that go on."""
         if self._plain:
             self._plain._tiles.note(self._plain.plan, self.samples_done)
         bokeh = self._targets["bokeh"] if self._measures_bokeh else None
@@ -259,7 +260,7 @@ class FrameRenderer(ReadableFrame):
         return self._tiles.part(reach)
 
     def _begin_round(self):
-        """Plan the samples of the next round, for what is still looked at."""
+        """Plan the samples of the next round, for the active tiles."""
         self._earlier_rounds += self._drawing.counts
         self.plan = extended(self.plan)
         wavelengths = self._wavelength if self.plan.chromatic else None
@@ -271,11 +272,11 @@ class FrameRenderer(ReadableFrame):
             if spec.name not in self._targets:
                 self._targets.add(spec)
         if self.plan.chromatic:
-            # More samples have wavelengths that reach a little further.
+            # With more samples the extreme wavelengths reach a little further.
             self._field = chromatic_resources(self.plan.chromatic)
 
     def wait(self):
-        """Return when the device has drawn everything it was given."""
+        """Wait until the device has finished all work it was given."""
         readback.wait(self._targets.framebuffer("sum"))
 
     def _render_sample(self, index, stage):
@@ -300,7 +301,7 @@ class FrameRenderer(ReadableFrame):
         with framebuffer.bind():
             framebuffer.clear(color=self._background, depth=1.0)
         if self._mattes:
-            # What surrounds the scene has no id, and is as sharp as its distance makes it.
+            # The background has no id, and the focus matte of its distance.
             targets.clear("mattes", (0.0, 0.0, 0.0, self._empty_focus()))
             framebuffer = targets.framebuffer("sample", "mattes", depth="sample_depth")
         self._drawing.draw(index, framebuffer, self._view, targets)
@@ -357,7 +358,7 @@ class FrameRenderer(ReadableFrame):
         return self._buffers.geometry_bytes() + self._drawing.geometry_bytes()
 
     def release(self):
-        """Give back to the device what nobody else holds; the renderer is of no use after it."""
+        """Release the renderer's resources on the device; it cannot be used afterwards."""
         self._bokeh.release()
         self._release_targets()
         if self._plain:

@@ -1,4 +1,4 @@
-"""Reading a frame while it is drawn or when it is done: its passes, and how far it has come."""
+"""Reading a frame while it is drawn or when it is done: its passes and its progress."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from .tile_sampling import SamplingReport, weights_of
 
 
 class ReadableFrame:
-    """What `pipeline.FrameRenderer` tells of a frame.
+    """The reading half of `pipeline.FrameRenderer`: pictures and progress.
 
     A subclass has ``plan``, ``samples_done`` and, of itself, ``_pictures``, ``_targets``,
     ``_tiles``, ``_plain`` and ``_stopped``.
@@ -22,10 +22,10 @@ class ReadableFrame:
         return self.samples_done if self._stopped else self.plan.samples
 
     def is_late(self, seconds):
-        """Whether drawing for so long is as long as the time limit allows.
+        """Whether the time limit is reached after `seconds` of drawing.
 
-        The least samples of a noise threshold are drawn in any case: before them, shaders and the
-        bokeh may take longer than the limit, and the picture would be that of a pinhole.
+        The minimum samples of a noise threshold are drawn in any case: shaders and bokeh alone may
+        take longer than the limit, and the picture would be that of a pinhole.
         """
         limit, wanted = self.plan.time_limit, self.plan.automatic
         if limit is None or seconds < limit or self.sampled:
@@ -34,7 +34,7 @@ class ReadableFrame:
 
     @property
     def sampling(self):
-        """How far sampling has come, as `SamplingReport`."""
+        """Error and samples so far, as `SamplingReport`."""
         done = self.samples_done
         if self._tiles:
             return self._tiles.report(self.plan, done)

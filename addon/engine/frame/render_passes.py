@@ -1,10 +1,10 @@
-"""The passes of a picture: what they are called, what they hold, and who makes them.
+"""The table of render passes: their names, contents, and how each is made.
 
 Blender names the sockets of the compositor, the render result and the parts of a multilayer EXR
 after this table, and asks for the passes of a view layer through `register`.
 
-- **Combined** is the picture through the lens: the sum of **Defocus**, what the lens samples show,
-  and **Bokeh**, the highlights that were splatted, to the last bit.
+- **Combined** is the picture through the lens: the sum of **Defocus**, the light of the lens
+  samples, and **Bokeh**, the highlights that were splatted, to the last bit.
 - **Depth, Normal, Position, Vector, CoC** describe what a pinhole at the lens' centre sees in the
   middle of each pixel: unblurred, without pixel filter. Depth runs along the optical axis and is
   1e10 where nothing is; Position and Normal are in world space, the normal turned towards the
@@ -16,7 +16,7 @@ after this table, and asks for the passes of a view layer through `register`.
 - **Sample Count** is the number of lens samples that a pixel got.
 - **Focus Matte** and the **Cryptomattes** are seen through the lens, so that they fit the blurred
   edges of Combined. Focus Matte is the share of a pixel that sharp surfaces fill; see
-  `plan.sharp_radius`. It knows one focus, as CoC does: that of the reference wavelength.
+  `engine.planning.plan.sharp_radius`. As CoC, it uses the focus of the reference wavelength.
 - **Fringe** is Combined less the same picture without chromatic aberration; it may be negative, and
   costs a second picture.
 """

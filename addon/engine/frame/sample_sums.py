@@ -11,12 +11,12 @@ def add(batch, targets, plan, index, wavelength, blur, cryptomattes, active):
     Parameters
     ----------
     batch : GPUBatch
-        Over the pixels that the sample is drawn for.
+        Covers the pixels that the sample is drawn for.
     targets : Targets
     plan : FramePlan
     index : int
         The sample.
-    wavelength : passes.chromatic.ChromaticSample or None
+    wavelength : passes.surface.chromatic.ChromaticSample or None
         The sample's.
     blur : SubsampleBlur or None
     cryptomattes : dict of str to int
@@ -36,7 +36,7 @@ def add(batch, targets, plan, index, wavelength, blur, cryptomattes, active):
         else:
             tint = wavelength.tint if wavelength else None
             accumulate.accumulate(batch, targets["sample"], weights, tint)
-    # The mattes are those of the sample's own place, with the weight of all it stands for.
+    # Mattes have no subsamples: that of the sample's own place gets the weight of all.
     places = np.array([[1.0 + plan.subsample_counts[index]], [1.0]])
     if plan.chromatic:
         # As its alpha.

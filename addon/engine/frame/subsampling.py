@@ -12,7 +12,8 @@ from ...device.textures import texture_2d
 from ...passes import pyramid, subsample
 from ...sampling.spectral_samples import GROUP
 
-# Of the pyramid: footprints wider than 64 texels are sampled too coarsely for any mean to help.
+# Most levels of the pyramid's means: footprints wider than 64 texels are sampled too coarsely for
+# means to help.
 _MOST_LEVELS = 6
 
 
@@ -23,7 +24,7 @@ class SubsampleBlur:
     ----------
     plan : FramePlan
     nearest : float
-        Least depth of anything that can be seen, m; inf where nothing can.
+        Least depth of any visible surface, m; inf where there is none.
     wavelengths : callable, optional
         From a sample to its `passes.surface.chromatic.ChromaticSample`, with chromatic aberration.
     """
@@ -42,24 +43,24 @@ class SubsampleBlur:
         blur = max(abs(self._coc(self._nearest)), abs(self._coc(1.0)))
         places = plan.samples + int(plan.subsample_counts.sum())
         if wavelengths:
-            # Those of the samples that share their places count once.
+            # Samples that share their place on the lens count once.
             places /= GROUP
         self._cell = float(np.sqrt(np.pi * plan.lens_extent.prod() / places))
-        # As many levels as the widest footprint of a cell asks for.
+        # Levels of means for the widest footprint of a cell of the lens.
         widest = self._cell / plan.lens_extent.max() * blur
         self._top = min(max(0, int(np.ceil(np.log2(max(widest, 1.0))))), _MOST_LEVELS)
         self._levels = max(self._top, self._levels_in_reach())
 
     def _window_depth(self, depth):
         if np.isinf(depth):
-            # Nothing is in view: no depth but that of the background.
+            # No surface is visible: only the depth of the background occurs.
             return 1.0
         plan = self._plan
         clip = plan.projection @ np.array([0.0, 0.0, -depth, 1.0])
         return np.clip(clip[2] / max(clip[3], 1e-9) * 0.5 + 0.5, 0.0, 1.0)
 
     def _coc(self, window_depth, opening=None):
-        """Return the largest movement of a depth along an axis across an opening, in texels."""
+        """Return the largest movement along an axis of a depth across an opening, in texels."""
         opening = self._plan.lens_extent if opening is None else opening
         sweeps = [self._sweep]
         if self._wavelengths:
@@ -73,20 +74,20 @@ class SubsampleBlur:
 
     @property
     def reach(self):
-        """How far from a pixel a sample's colours are looked at, in texels."""
+        """Largest distance from a pixel at which the sample's colours are read, in texels."""
         moved = max(self._coc(depth, self._spread) for depth in (self._nearest, 1.0))
-        # A texel on either side, and those that a mean of the top level takes in.
+        # Plus a texel on either side, and the texels of a mean of the top level.
         return int(np.ceil(moved)) + 2 + (2 << self._top)
 
     def _levels_in_reach(self):
-        """Return how many levels hold the depths of all that a ray of a pixel may meet."""
+        """Return how many levels of depth ranges cover all texels that a pixel's ray may meet."""
         plan = self._plan
         reach = max(self._coc(depth, self._spread) for depth in (self._nearest, 1.0))
         side = min(2.0 * (reach + 1.0), max(plan.width, plan.height) * plan.subpixels)
         return int(np.ceil(np.log2(side)))
 
     def limit(self, earlier):
-        """Take no more levels than an earlier round, whose targets are used.
+        """Use no more levels than an earlier round, whose render targets are used.
 
         Parameters
         ----------
@@ -96,9 +97,9 @@ class SubsampleBlur:
         self._levels = min(self._levels, earlier._levels)
 
     def specs(self):
-        """Return the targets that it needs beside the sample's."""
+        """Return the render targets that it needs besides the sample's."""
         return (
-            # A pyramid of no level still has to be bound.
+            # At least one level: the shader's textures must be bound.
             TargetSpec("sample_means", "RGBA32F", max(self._top, 1), 0.5),
             TargetSpec("sample_ranges", "RG32F", max(self._levels, 1), 0.5),
         )

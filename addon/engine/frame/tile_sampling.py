@@ -1,7 +1,8 @@
-"""Sampling tile by tile: which parts of a frame the next lens samples are drawn for.
+"""Adaptive sampling by a noise threshold: the tiles for which lens samples are still drawn.
 
-Samples are added to the tiles that are active, so a tile's sum has the samples up to the look at
-which it stopped, and is divided by their weight. Between looks nothing is read from the device.
+Samples are added to the active tiles only. A tile's sum has the samples up to the measurement at
+which it stopped, and is divided by their weight. Between measurements nothing is read from the
+device.
 """
 
 from dataclasses import dataclass
@@ -14,22 +15,22 @@ from ...passes import picture_error
 from ...sampling.rounds import first_look, looks
 from ...sampling.tile_control import HALF_SHARE, TILE, TileControl, runs
 
-# A picture is compared with that of half its samples and one in between.
+# A picture is compared with that of half its samples, and with one in between.
 _PICTURES = ("shown_0", "shown_1", "shown_2", "shown_3")
 
 
 @dataclass(frozen=True, eq=False)
 class FrameWeights:
-    """What the sums of a frame are divided by.
+    """The weights by which the sums of a frame are divided.
 
     Parameters
     ----------
     by_channel : float or tuple of 4 float
-        Of the samples so far; of each channel, where they differ.
+        Summed weight of the samples so far; of each channel, where they differ.
     mean : float
-        Of all channels.
+        Mean over the channels.
     scales, mean_scales : GPUTexture or None
-        One over the weights of each tile, where tiles have different ones.
+        One over the weights of each tile, where tiles have different numbers of samples.
     """
 
     by_channel: float | tuple[float, float, float, float]
@@ -40,14 +41,14 @@ class FrameWeights:
 
 @dataclass(frozen=True)
 class SamplingReport:
-    """How far sampling has come.
+    """Progress of sampling: error and numbers of samples.
 
     Parameters
     ----------
     target, error : float or None
-        What is asked for and what is reached, 1 - SSIM; None where it is not asked or not known.
+        Noise threshold and estimated error, 1 - SSIM; None where there is none, or not yet.
     samples : tuple of (int, float, int)
-        Least, mean and most of any tile.
+        Least, mean and largest number of lens samples of any tile.
     tiles, above : int
         Number of tiles, and of those whose error is above the target.
     """
@@ -60,7 +61,7 @@ class SamplingReport:
 
     @property
     def text(self):
-        """The error for people; empty where none was asked for or none is known yet."""
+        """The error as words; empty without a noise threshold or before the first estimate."""
         if self.error is None:
             return ""
         return f"Error {self.error:.4f} of {self.target:.4f}"
@@ -69,7 +70,7 @@ class SamplingReport:
 def weights_of(plan, samples):
     """Return the `FrameWeights` of a plan's first samples, the same everywhere."""
     weight = plan.weight(samples)
-    # A first sample whose places all lie outside a narrow box filter weighs nothing.
+    # All sub-pixels of a first sample may lie outside a narrow box filter: weight 0.
     if isinstance(weight, tuple):
         weight = tuple(w or 1.0 for w in weight)
         return FrameWeights(weight, weight[3])
@@ -77,7 +78,7 @@ def weights_of(plan, samples):
 
 
 class TileSampling:
-    """The tiles of a frame.
+    """The tiles of a frame: their samples, their errors, and which are active.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ class TileSampling:
         With `automatic` sampling.
     fullscreen : GPUBatch
     leader : TileSampling or None
-        Whose decisions are followed, for a picture that is made beside another.
+        Follow the decisions of another renderer's tiles (for Fringe).
 
     Attributes
     ----------
@@ -129,11 +130,11 @@ class TileSampling:
         return self._control.done
 
     def stop(self):
-        """Let no further samples be drawn."""
+        """End sampling for all tiles."""
         self._control.stop()
 
     def expected(self, samples):
-        """Return about how many samples the frame will take, when so many are done."""
+        """Estimate how many samples the frame will take, after `samples` of them."""
         control = self._control
         if control.done:
             return samples
@@ -155,16 +156,16 @@ class TileSampling:
         )
 
     def specs(self):
-        """Return the targets that measuring needs."""
+        """Return the render targets that measuring needs."""
         return () if self._leader else picture_error.specs(*self._size, _PICTURES)
 
     def part(self, reach):
-        """Return the rectangle round the active tiles and what lies within `reach` px of them.
+        """Return the bounding rectangle of the active tiles, widened by `reach` px.
 
         Returns
         -------
         tuple of 4 int or None
-            x, y, width, height; None for everything.
+            x, y, width, height; None for the whole raster.
         """
         active = self._control.active
         if active.all() or not active.any():
@@ -178,7 +179,7 @@ class TileSampling:
         return x, y, width, height
 
     def note(self, plan, samples):
-        """Count the samples that were drawn since the last time for the active tiles."""
+        """Add the samples drawn since the last call to the counts of the active tiles."""
         if samples > self._noted:
             weights = plan.sample_weights(self._noted, samples).sum(axis=0)
             self._weights[self._control.active] += weights
@@ -203,7 +204,7 @@ class TileSampling:
         return 1.0 / np.where(self._weights > 0.0, self._weights, 1.0)
 
     def is_look(self, samples):
-        """Return whether the picture is looked at after so many samples."""
+        """Return whether the error is measured after this number of samples."""
         return self._leader is None and samples in self._looks
 
     def look(self, plan, samples, targets, bokeh=None):
@@ -217,12 +218,12 @@ class TileSampling:
         targets : Targets
             With the sum, and those of `specs`.
         bokeh : GPUTexture or None
-            Shown over the samples.
+            Splatted highlights, added to the mean of the samples.
 
         Returns
         -------
         bool
-            Whether other tiles are active than before.
+            Whether the set of active tiles has changed.
         """
         self.note(plan, samples)
         control = self._control
@@ -246,10 +247,10 @@ class TileSampling:
         return True
 
     def _compared_with(self, samples):
-        """Return the earlier pictures to compare with: that of half the samples, and a later."""
+        """Return the samples of the pictures to compare with: half of `samples`, and more."""
         half = min(self._pictures, key=lambda n: abs(n - samples / 2), default=None)
         later = [n for n in self._pictures if half < n < samples]
-        # Too small a step tells little.
+        # With too few samples in between, the change says little about the error.
         later = [n for n in later if samples - n >= n / 4][-1:]
         return [half, *later] if half else []
 
@@ -264,14 +265,14 @@ class TileSampling:
             picture_error.display(self._fullscreen, targets["sum"], scales, bokeh)
 
     def _measure(self, targets, samples, before):
-        """Return the error of each tile as a comparison with an earlier picture tells it."""
+        """Return the error of each tile, estimated from the change since an earlier picture."""
         control = self._control
         names = (self._pictures[samples], self._pictures[before])
         rest = control.rest(samples, before)
         picture_error.measure(self._fullscreen, targets, *names, rest)
         rows, columns = control.shape
         table = readback.read_color(targets.framebuffer("tile_errors"), columns, rows)
-        # A picture of values that are no numbers has no error to speak of.
+        # NaN in the picture counts as no error.
         errors, changes = np.nan_to_num(table[..., :2].astype(np.float64)).transpose(2, 0, 1)
         control.observe(samples, before, changes)
         return errors

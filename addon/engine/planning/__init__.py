@@ -1,1 +1,1 @@
-"""What is decided before a frame is drawn: samples, wavelengths, highlights, quality."""
+"""Planning of a frame before it is drawn: samples, wavelengths, highlights, quality."""

@@ -1,8 +1,9 @@
-"""Chromatic aberration of a frame's discs: bands of light, and how far they move and grow.
+"""Chromatic aberration of a frame's discs: bands of wavelengths, their shifts and radii.
 
-A disc of a band is where the lens samples of its wavelengths see the highlight: with the focus and
-the scale that they have at the highlight's own place in the field. The mask over the lens is the
-same for all: two points on a line to a place on the lens stay on it, whatever the focus.
+The disc of a band lies where the lens samples of its wavelengths see the highlight: with the focus
+and the lateral scale that they have at the highlight's place in the field. The visibility mask over
+the lens is the same for all bands: whether an occluder lies on the line from the highlight to a
+place on the lens does not depend on the focus.
 """
 
 from dataclasses import dataclass, replace
@@ -19,22 +20,22 @@ _DRAFT_BANDS = 4
 
 @dataclass(frozen=True, eq=False)
 class BokehColors:
-    """What chromatic aberration does to the discs of a frame.
+    """Chromatic aberration of the discs of a frame.
 
     Parameters
     ----------
     levels : tuple of BandLevel
-        Which bands a highlight is drawn in, by how far its colours part.
+        Bands in which a highlight is drawn, by its `spectral_length`.
     spreads : tuple of 2 float
-        How far they part, px: times what the axial map leaves, and times the lateral map's value
-        and the distance from the axis in the field.
+        Spread of the colours, px: axial, times one minus the axial map, and lateral, times the
+        lateral map and the distance from the axis in the field.
     focus_changes : tuple of 3 float
-        Of the inverse focus distance from the reference wavelength's, 1/m: the least and the
-        largest of any band anywhere in the picture, and what stands for all.
+        Differences of the inverse focus distance from the reference wavelength's, 1/m: the least
+        and the largest of any band anywhere in the picture, and one that represents all.
     focus_distance : float
-        That stands for all, m.
+        Focus distance that represents all wavelengths, m.
     growth : float
-        By which share of their distance from the axis discs move, at the most.
+        Largest lateral shift of a disc, as a share of its distance from the axis.
     """
 
     levels: tuple[BandLevel, ...]
@@ -49,13 +50,13 @@ class BokehColors:
         return self.levels[-1].bands
 
     def draft(self):
-        """Return the same in few bands."""
+        """Return the same with few bands, for a draft."""
         levels = [level for level in self.levels if len(level.bands) <= _DRAFT_BANDS]
         return replace(self, levels=(*levels[:-1], replace(levels[-1], most=np.inf)))
 
 
 def plan_colors(aberration, chromatic: ChromaticPlan, coc_scale, farthest):
-    """Plan in which bands a frame's discs are drawn.
+    """Plan the bands of wavelengths of a frame's discs.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ def plan_colors(aberration, chromatic: ChromaticPlan, coc_scale, farthest):
     coc_scale : float
         See `FramePlan`.
     farthest : float
-        Depth of the farthest highlight, m; counts for a parallel projection.
+        Depth of the farthest highlight, m; used for a parallel projection.
 
     Returns
     -------

@@ -1,8 +1,8 @@
-"""The part of a frame plan that concerns highlights: what is peeled, split and splatted.
+"""The plan of a frame's bokeh: where highlights are searched, how light is split and splatted.
 
-Highlights are searched from the lens' centre in a raster that reaches beyond the frame, as far as
-the blur of what lies out there reaches in. A pixel of it is a pixel of the picture, divided into
-sub-pixels so that small emitters are met.
+Highlights are searched from the lens' centre in a raster with overscan: it reaches beyond the frame
+as far as discs from there reach into it. Its pixels are those of the picture, divided into
+sub-pixels so that small emitters are not missed.
 """
 
 from dataclasses import dataclass, replace
@@ -29,18 +29,18 @@ from .bokeh_search import (
     subpixels_of_triangles,
 )
 
-# Depth that stands for infinity, in focus distances: the circle of confusion differs by 1e-6.
+# Depth that represents infinity, in focus distances: the circle of confusion differs by 1e-6.
 _INFINITY = 1e6
-# Around the frame, px, for the edges of discs that end just outside.
+# Least margin around the frame, px, for the edges of discs just outside.
 _RIM = 2
-# Of drafts: highlights behind one another, and sub-pixels that are afforded.
+# Limits of drafts: layers of highlights, and sub-pixels of the raster.
 _DRAFT_LAYERS = 2
 _DRAFT_RASTER = 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
 class BokehPlan:
-    """How the highlights of a frame are found and drawn.
+    """Parameters of the search for a frame's highlights, and of their discs.
 
     Parameters
     ----------
@@ -48,38 +48,38 @@ class BokehPlan:
     shining : frozenset of (int, int)
         Group and slot of the surfaces that may be brighter than the threshold.
     mirroring : frozenset of (int, int)
-        Those of them that look different from different places on the lens.
+        Those of them whose reflections depend on the place on the lens.
     uneven : frozenset of int
-        Groups with shining surfaces whose light differs from place to place.
+        Groups with shining surfaces whose light varies over the surface.
     least_coc : float
         Radius of the circle of confusion from which on light is splatted, px.
     width, height : int
-        Of the peeled raster in pixels of the picture.
+        Size of the peeled raster in pixels of the picture.
     margin : tuple of 2 int
-        How far it reaches beyond the frame on the left and below, px; the same on the other sides.
+        Overscan on the left and below, px; the same on the other sides.
     projection : ndarray of shape (4, 4)
         Camera space to clip space of the peeled raster.
     subpixels : int
         Along each side of a pixel of the peeled raster.
     part : tuple of 4 int
-        x, y, width and height of the part of the raster that has all that shines and does not
-        mirror, px.
+        x, y, width and height of the part of the raster that holds all shining surfaces that do
+        not mirror, px.
     world : bool
         The world's image may give highlights.
     world_share : float
         Share of its light above the threshold that is splatted.
     world_depth : float
-        That stands for infinity, m.
+        Depth that represents infinity, m.
     iris : Iris
         The lens' opening.
     real_lens : LensSettings or None
-        That shapes the discs; None: the thin lens.
+        The traced lens that shapes the discs; None: the thin lens.
     filter_width : float
-        Side of the square that blurs as the pixel filter does, px.
+        Side of the box with the variance of the pixel filter, px.
     colors : BokehColors or None
         None: one disc for all wavelengths.
     draft : bool
-        Bounded work, for a view that moves; see `draft_of`.
+        A draft with bounded work, for a moving view; see `draft_of`.
     """
 
     settings: BokehSettings
@@ -104,13 +104,13 @@ class BokehPlan:
 
     @property
     def lens_views(self):
-        """Places on the lens that mirroring highlights are looked for from.
+        """Places on the lens from which mirroring surfaces are searched.
 
         Returns
         -------
         ndarray of shape (n^2, 2)
-            In units of half the opening, row by row: the centres of n x n regions; one where
-            nothing mirrors.
+            In units of half the opening, row by row: the centres of n x n regions; one place where
+            no surface mirrors.
         """
         side = max(1, int(np.sqrt(self.settings.lens_views))) if self.mirroring else 1
         axis = (2.0 * np.arange(side) + 1.0) / side - 1.0
@@ -118,24 +118,24 @@ class BokehPlan:
 
     @property
     def mirroring_subpixels(self):
-        """As `subpixels`, of what mirrors: the views together are as many as one would be."""
+        """As `subpixels`, for mirroring surfaces: all views together have as many as one."""
         if self.draft:
             return 1
         return max(1, LEAST_SUBPIXELS // int(np.sqrt(len(self.lens_views))))
 
     @property
     def world_subpixels(self):
-        """As `subpixels`, of the world, whose image has no edges finer than its own pixels."""
+        """As `subpixels`, for the world, whose image has no detail finer than its own pixels."""
         return 1 if self.draft else LEAST_SUBPIXELS
 
     @property
     def whole(self):
-        """The peeled raster as a part of itself: x, y, width and height."""
+        """The whole peeled raster as a `part`: x, y, width and height."""
         return (0, 0, self.width, self.height)
 
     @property
     def layers(self):
-        """Number of highlights behind one another that are found, the world's not counted."""
+        """Most highlights behind one another that are found, without the world's."""
         return self.settings.layers
 
 
@@ -146,12 +146,12 @@ def plan_bokeh(snapshot, plan):
     ----------
     snapshot : SceneSnapshot
     plan : FramePlan
-        Without them.
+        Without `bokeh`.
 
     Returns
     -------
     BokehPlan or None
-        None where nothing is splatted: the settings ask for nothing, or everything is sharp.
+        None where nothing is splatted: bokeh is off, or everything is sharp.
     """
     settings, lens = snapshot.camera.bokeh, snapshot.camera.lens
     real_lens = snapshot.camera.real_lens
@@ -175,7 +175,7 @@ def plan_bokeh(snapshot, plan):
         return None
     margin = _margin(plan, settings, largest, colors)
     width, height = plan.width + 2 * margin[0], plan.height + 2 * margin[1]
-    # Of a parallel camera, all pixels show the same point at infinity: it is no highlight.
+    # With a parallel projection, all pixels show the same point at infinity: no highlight.
     world = settings.world and bool(snapshot.content.world.image)
     world = world and not snapshot.film.transparent
     world = world and not plan.orthographic
@@ -212,10 +212,10 @@ def plan_bokeh(snapshot, plan):
 
 
 def draft_of(bokeh):
-    """Return a plan of the same light with little work: few sources, few layers, coarse masks.
+    """Return a plan of a draft: few sources, few layers, coarse masks.
 
-    What is splatted, and what the lens samples keep, is divided as before, so that the same
-    samples go with either.
+    Light is split between splats and lens samples in the same way, so that the same samples fit
+    to both.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ def draft_of(bokeh):
 
 
 def _shining(content, threshold):
-    """Return which surfaces may be brighter than the threshold: (group, slot)."""
+    """Return the surfaces that may be brighter than the threshold: (group, slot)."""
     return frozenset(
         (number, slot)
         for number, (group, bounds) in enumerate(
@@ -260,12 +260,12 @@ def _shining(content, threshold):
 
 
 def _mirroring(content, shining):
-    """Return which of the surfaces look different from different places on the lens."""
+    """Return the surfaces whose reflections depend on the place on the lens."""
     return frozenset(key for key in shining if mirrors(graph_of(content, key)))
 
 
 def _uneven(content, shining):
-    """Return the groups with shining surfaces that are more than one even emission."""
+    """Return the groups with shining surfaces that are not a single uniform emission."""
     return frozenset(
         key[0]
         for key in shining
@@ -295,13 +295,13 @@ def _largest_coc(content, plan, seen, colors):
 def _margin(plan, settings, largest, colors):
     narrowing = plan.lens_extent / plan.lens_extent[1]
     limit = settings.overscan * max(plan.width, plan.height)
-    # From where a smaller scale brings discs in.
+    # A lateral scale below 1 moves discs inwards: search farther out.
     moved = colors.growth * max(plan.width, plan.height) if colors else 0.0
     return tuple(int(np.ceil(min(largest * n + moved, limit))) + _RIM for n in narrowing)
 
 
 def filter_width(kind, size_px):
-    """Return the width of the box with the variance of a pixel filter along an axis, px."""
+    """Return the width, px, of the box with the variance of a pixel filter along an axis."""
     reach = 2.0 * size_px
     places = (np.arange(1024) + 0.5) / 1024 * 2.0 * reach - reach
     density = filter_density(places, kind, size_px)

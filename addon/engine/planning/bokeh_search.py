@@ -1,7 +1,7 @@
-"""Where a frame's highlights are searched, and how finely.
+"""Region and resolution of the search for a frame's highlights.
 
-The raster of the search has a texel for each sub-pixel; only the part where surfaces may shine is
-drawn, tile by tile.
+The raster of the search has a texel for each sub-pixel; only the part where surfaces may exceed the
+highlight threshold is drawn, tile by tile.
 """
 
 import numpy as np
@@ -14,15 +14,16 @@ from ...snapshot.brightness import emits
 _LARGEST_RASTER = 1 << 26
 _LARGEST_TILE = 1 << 22
 LEAST_SUBPIXELS, _MOST_SUBPIXELS = 2, 4
-# Sub-pixels along a side of a triangle that shines: a lamp of one is met within a few per cent.
+# Sub-pixels along a side of a triangle that shines: the light of a lamp of one triangle is then
+# found to a few per cent.
 _HITS_A_SIDE = 6.0
-# Across a lamp that stands alone: its light is met within one per cent. The error of m sub-pixels
-# of a lamp falls with m^(3/4); that of the sum of k lamps as if each had k^(2/3) times as many.
+# Sub-pixels across a single lamp: its light is found to one per cent. The error with m sub-pixels
+# on a lamp falls with m^(3/4); that of the sum of k lamps as if each had k^(2/3) times as many.
 _HITS_A_LAMP = 45.0
-# Sub-pixels along a side of a pixel, and all of them, for the sake of single lamps.
+# Most sub-pixels for the sake of single lamps: along a side of a pixel, and in all.
 _FINEST = 64
 _FINE_RASTER = 1 << 21
-# Of a tile's longer side, in sub-pixels.
+# Longest side of a tile, in sub-pixels.
 _LONGEST_TILE = 8192
 
 
@@ -38,14 +39,14 @@ def tiles_of(part, subpixels):
     Parameters
     ----------
     part : tuple of 4 int
-        x, y, width and height, px; one without area has no tiles.
+        x, y, width and height, px; without area there are no tiles.
     subpixels : int
         Along each side of a pixel.
 
     Returns
     -------
     list of tuple of 4 int
-        x, y, width and height in pixels; the first is as large as any.
+        x, y, width and height in pixels; the first is the largest.
     """
     left, below, width, height = part
     if width == 0 or height == 0:
@@ -64,7 +65,7 @@ def tiles_of(part, subpixels):
 
 
 def emitting(content, shining):
-    """Return which of the surfaces have light of their own."""
+    """Return the surfaces that emit light."""
     return frozenset(key for key in shining if emits(graph_of(content, key)))
 
 
@@ -84,7 +85,7 @@ def corners_of(content, rows):
 
 
 def rectangles_of(content, rows, plan, projection, size):
-    """Return where in the raster the boxes of instances are seen.
+    """Return the rectangles of the raster that the bounding boxes of instances cover.
 
     Parameters
     ----------
@@ -100,7 +101,7 @@ def rectangles_of(content, rows, plan, projection, size):
     Returns
     -------
     lower, upper : ndarray of shape (K, 2)
-        Of the boxes that are seen, px; of those that reach behind the camera, the whole raster's.
+        Of the visible boxes, px; of those that reach behind the camera, the whole raster's.
     size : tuple of 2 int
     """
     corners = corners_of(content, rows) @ plan.view[:3, :3].T + plan.view[:3, 3]
@@ -115,18 +116,18 @@ def rectangles_of(content, rows, plan, projection, size):
 
 
 def part_of(rectangles):
-    """Return the part of the raster that holds all rectangles: x, y, width, height."""
+    """Return the bounding rectangle of all rectangles in the raster: x, y, width, height."""
     lower, upper, size = rectangles
     if len(lower) == 0:
         return (0, 0, 0, 0)
-    # A pixel more, for rounding.
+    # A margin of a pixel for rounding.
     x, y = (max(int(np.floor(v)) - 1, 0) for v in lower.min(axis=0))
     right, top = (min(int(np.ceil(v)) + 1, s) for v, s in zip(upper.max(axis=0), size, strict=True))
     return (x, y, right - x, top - y)
 
 
 def subpixels_of_triangles(content, plan, rows, of_group, size):
-    """Return how finely highlights are searched: several times in small triangles that emit.
+    """Return the sub-pixels of the search, so that small emitting triangles have several.
 
     Parameters
     ----------
@@ -155,14 +156,14 @@ def subpixels_of_triangles(content, plan, rows, of_group, size):
 
 
 def subpixels_of_lamps(rectangles, part):
-    """Return how finely small lamps are searched so that each keeps its energy.
+    """Return the sub-pixels of the search, so that each small lamp keeps its energy.
 
     Parameters
     ----------
     rectangles : tuple
         Of the instances that emit; see `rectangles_of`.
     part : tuple of 4 int
-        That is searched.
+        The part of the raster that is searched.
 
     Returns
     -------

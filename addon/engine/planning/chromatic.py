@@ -1,8 +1,8 @@
-"""Chromatic aberration in a frame plan: a wavelength a sample, its focus and scale over the field.
+"""Chromatic aberration in a frame plan: a sample's wavelength, focus and scale over the field.
 
-The numpy twin of ``lib/chromatic_lib.glsl``: what the vertex shader does to a point is done here to
-the corners of bounding boxes, to know what can be seen, how large circles of confusion get, and
-which samples can share a drawing.
+The numpy twin of ``lib/chromatic_lib.glsl``: the displacement of vertices by the shader is applied
+here to the corners of bounding boxes, for frustum culling, bounds of circles of confusion, and the
+sharing of drawings.
 
 The field is a plane at 1 m from the lens, its middle on the optical axis, which need not be the
 picture's middle (lens shift); for a parallel projection it is the plane of the lens itself. The
@@ -18,15 +18,15 @@ from ...sampling.chromatic import FARTHEST_FOCUS, LEAST_FOCAL_SHARE, LEAST_SCALE
 from ...sampling.field_maps import field_corner
 from ...sampling.spectral_bands import spectral_bands
 
-# Columns of the field table, for maps that vary with the tilt alone and those that turn; the error
-# of straight lines between them is below 1e-4 of a map's change, except where it is clamped.
+# Columns of the field table, for radial maps and for maps that depend on the angle; the error of
+# linear interpolation is below 1e-4 of a map's change, except where it is clamped.
 _COLUMNS, _COLUMNS_TURNING = 2048, 512
 _ROWS_TURNING = 256
 
 
 @dataclass(frozen=True, eq=False)
 class FieldRanges:
-    """How focus and scale vary over the wavelengths within boxes.
+    """Ranges of focus and lateral scale over all wavelengths within bounding boxes.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class FieldRanges:
 
 @dataclass(frozen=True, eq=False)
 class ChromaticPlan:
-    """The wavelengths of a frame's samples and what they do.
+    """The wavelengths of a frame's samples, their weights, focus and lateral scale.
 
     Parameters
     ----------
@@ -52,12 +52,12 @@ class ChromaticPlan:
     focal_errors : ndarray of shape (N,)
         Relative difference of the focal length on the axis from the reference wavelength's.
     lateral_strengths : ndarray of shape (N,)
-        By which share objects are larger where the lateral map is 1.
+        Relative magnification of objects where the lateral map is 1.
     table : ndarray of shape (R, C, 2)
         float32, axial and lateral map; columns: distance from the axis in the field, from 0 to
-        `radius`; rows: round the axis, see `diamond_angles`; one row where the maps do not turn.
+        `radius`; rows: round the axis, see `diamond_angles`; one row for radial maps.
     radius : float
-        Of the picture's outermost corner in the field, where t is 1.
+        Distance of the picture's outermost corner from the axis in the field, where t is 1.
     parallel : bool
         The projection is a parallel one.
     focal_length : float
@@ -65,9 +65,9 @@ class ChromaticPlan:
     inverse_focus : float
         At the reference wavelength, 1/m.
     raster : ndarray of shape (4,)
-        From pixels of the region to the field: scale and offset, x and y each.
+        Mapping from pixels of the region to the field: scale and offset, x and y each.
     typical_errors : tuple of 2 float
-        Focal errors whose circles of confusion have about the mean square of all wavelengths'.
+        Two focal errors whose circles of confusion have about the mean square of all wavelengths'.
     """
 
     wavelengths_nm: np.ndarray
@@ -92,7 +92,7 @@ class ChromaticPlan:
 
     @property
     def samples_for_one(self):
-        """How many samples of one wavelength each are worth one of all, mean of the channels."""
+        """Number of samples of one wavelength that are worth one of all, mean of the channels."""
         colors = self.weights[:, :3]
         return float((len(colors) * np.square(colors).sum(axis=0) / colors.sum(axis=0) ** 2).mean())
 
@@ -102,7 +102,7 @@ class ChromaticPlan:
         return self.inverse_focus / FARTHEST_FOCUS
 
     def typical_coc(self, eye, coc_scale):
-        """Return the circles of confusion that stand for those of all wavelengths.
+        """Return the circles of confusion that represent all wavelengths.
 
         The share of light that is splatted depends on them, so that it is the same at every
         wavelength.
@@ -155,7 +155,7 @@ class ChromaticPlan:
         return between(row) * (1.0 - across) + between((row + 1) % rows) * across
 
     def displaced(self, eye, lens_positions, samples=slice(None)):
-        """Return where points appear, in the pinhole's camera space, for each sample.
+        """Return the displaced positions of points, in the pinhole's camera space, by sample.
 
         Parameters
         ----------
@@ -191,7 +191,7 @@ class ChromaticPlan:
         return np.maximum(inverse, self.least_inverse_focus)
 
     def ranges(self, corners):
-        """Return how focus and scale vary over the wavelengths within boxes.
+        """Return the ranges of focus and scale over all wavelengths within bounding boxes.
 
         Parameters
         ----------
@@ -259,7 +259,7 @@ def plan_chromatic(aberration, samples, camera, film, focus_distance):
     -------
     ChromaticPlan
     """
-    # Mean and width of all the light there is, whatever wavelengths the samples have.
+    # Mean and width of the whole spectrum, independent of the wavelengths of the samples.
     (light,) = spectral_bands(aberration, 0.0, 0.0, 1)
     deviation = light.focal_width / np.sqrt(12.0)
     radius = camera.field_radius or picture_radius(camera.projection, camera.orthographic)
@@ -291,7 +291,7 @@ def picture_radius(projection, orthographic):
 
 
 def field_of_clip(clip, projection):
-    """Return the places of the field that appear at places of the picture.
+    """Convert places of the picture to places of the field.
 
     Parameters
     ----------
@@ -324,7 +324,7 @@ def field_of_raster(projection, film):
 
 
 def diamond_turn(place):
-    """Return how far round the axis places lie, from 0 to 4, in the steps of a diamond.
+    """Return the angle of places round the axis as a diamond angle, from 0 to 4.
 
     Parameters
     ----------
@@ -373,7 +373,7 @@ def field_table(aberration, radius, parallel):
 
 
 def _extremes(low, high, first, last):
-    """Return the extremes of runs of rows, from stacks of powers of two as N-buffers are.
+    """Return the minima and maxima of runs of columns, from a sparse table as N-buffers are.
 
     Parameters
     ----------
@@ -395,7 +395,7 @@ def _extremes(low, high, first, last):
         a, b = first[here], last[here] - span + 1
         found[0, here] = np.minimum(low[a], low[b])
         found[1, here] = np.maximum(high[a], high[b])
-        # Pieces that would reach beyond the end are never asked for.
+        # Blocks that would reach beyond the end are never looked up.
         low[:-span], high[:-span] = (
             np.minimum(low[:-span], low[span:]),
             np.maximum(high[:-span], high[span:]),

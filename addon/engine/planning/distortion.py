@@ -1,11 +1,11 @@
-"""Distortion of the picture: a larger raster without it, and where each pixel lies in that.
+"""Distortion of the picture: the size of an undistorted raster, and the mapping between both.
 
-Everything is drawn without distortion, in a raster that covers what the distorted picture shows;
-the picture is then sampled from it, once, when it is made. Division model (methods 13) over the
-field, the plane at 1 m from the lens (see `engine.planning.chromatic`): what is seen at d is what
-lies at ``u = d / (1 + K |d|^2)`` without distortion. The middle is the optical axis; K is in units
-of the distance of the picture's outermost corner from it. Farther out, where only a viewport looks,
-the scale stays what it is at the corner.
+Everything is drawn undistorted, in a raster that covers what the distorted picture shows; the
+picture is then resampled from it, once. Division model (methods 13) over the field, the plane at
+1 m from the lens (see `engine.planning.chromatic`): the place d of the distorted picture shows the
+undistorted place ``u = d / (1 + K |d|^2)``. The centre is the optical axis; K is in units of the
+distance of the picture's outermost corner from it. Farther out, which only a viewport shows, the
+scale is that of the corner.
 
 A barrel shows more of the scene than the frame holds. A pincushion enlarges its corners: the raster
 is as fine as they need, within a limit. The pixel filter is that of a pixel of the raster; where
@@ -19,32 +19,32 @@ import numpy as np
 from .bokeh_plan import filter_width
 from .chromatic import field_of_raster, picture_radius
 
-# Pixels of the raster along one of the picture, at most: four times the work.
+# Most pixels of the raster along one of the picture: four times the work.
 _FINEST = 2.0
-# Around what the picture shows, px: the reach of the sampling and of its blur.
+# Margin of the raster, px: the reach of the resampling filter and its blur.
 _RIM = 4
 
 
 @dataclass(frozen=True, eq=False)
 class DistortionPlan:
-    """Where the pixels of a distorted picture lie in the raster without distortion.
+    """Mapping from the pixels of a distorted picture to the undistorted raster.
 
     Parameters
     ----------
     k : float
-        Of the division model, per square of the field's unit.
+        K of the division model, per square of the field's unit.
     radius : float
-        Of the picture's outermost corner in the field.
+        Distance of the picture's outermost corner from the axis in the field.
     width, height : int
-        Of the picture, px.
+        Size of the picture, px.
     to_field : ndarray of shape (4,)
         From places in the picture, px, to the field: scale and offset, x and y each.
     from_field : ndarray of shape (4,)
         From the field to places in the raster, px.
     fineness : float
-        Pixels of the raster along one of the picture, where nothing is distorted.
+        Pixels of the raster along one of the picture, on the axis.
     filter_width : float
-        Side of the square that blurs as the pixel filter does, px.
+        Side of the box with the variance of the pixel filter, px.
     """
 
     k: float
@@ -57,7 +57,7 @@ class DistortionPlan:
     filter_width: float
 
     def sources(self, places):
-        """Return where places of the picture lie in the raster.
+        """Convert places of the picture to places of the raster.
 
         Parameters
         ----------
@@ -73,7 +73,7 @@ class DistortionPlan:
         return field * self._factor(field) * self.from_field[:2] + self.from_field[2:]
 
     def pictured(self, sources):
-        """Return where places of the raster lie in the picture; the inverse of `sources`."""
+        """Convert places of the raster to places of the picture; the inverse of `sources`."""
         field = (sources - self.from_field[2:]) / self.from_field[:2]
         square = np.sum(field**2, axis=-1, keepdims=True)
         corner = 1.0 + self.k * self.radius**2
@@ -83,7 +83,7 @@ class DistortionPlan:
         return (field - self.to_field[2:]) / self.to_field[:2]
 
     def growth(self, places):
-        """Return how many pixels of the raster lie along a pixel of the picture.
+        """Return the magnification: pixels of the raster along a pixel of the picture.
 
         Parameters
         ----------
@@ -93,7 +93,7 @@ class DistortionPlan:
         Returns
         -------
         ndarray of shape (..., 2)
-            Away from the axis and across.
+            Radially and tangentially.
         """
         field = places * self.to_field[:2] + self.to_field[2:]
         square = np.sum(field**2, axis=-1, keepdims=True)
@@ -102,12 +102,12 @@ class DistortionPlan:
         return self.fineness * np.concatenate([along, across], axis=-1)
 
     def centres(self):
-        """Return the middles of the picture's pixels, shape (height, width, 2), px."""
+        """Return the centres of the picture's pixels, shape (height, width, 2), px."""
         x, y = np.arange(self.width) + 0.5, np.arange(self.height) + 0.5
         return np.stack(np.meshgrid(x, y), axis=-1)
 
     def nearest(self, size):
-        """Return which pixel of the raster each of the picture's shows: rows and columns.
+        """Return the nearest pixel of the raster for each of the picture's: rows and columns.
 
         Parameters
         ----------
@@ -139,7 +139,7 @@ def plan_distortion(snapshot):
     distortion : DistortionPlan or None
         None where there is none.
     snapshot : SceneSnapshot
-        What is drawn: of the larger raster where there is distortion, else the one given.
+        With the film of the undistorted raster; without distortion the one given.
     """
     camera, film = snapshot.camera, snapshot.film
     k = camera.bokeh.distortion if camera.bokeh else 0.0
@@ -147,7 +147,7 @@ def plan_distortion(snapshot):
         return None, snapshot
     x, y, width, height = film.region
     radius = camera.field_radius or picture_radius(camera.projection, camera.orthographic)
-    # Of the whole frame, so that all its parts have the same pixels.
+    # Chosen for the whole frame, so that render regions have the same pixels.
     fineness = min(max(1.0, (1.0 + k) ** 2 / (1.0 - k)), _FINEST)
     to_field = field_of_raster(camera.projection, film)
     whole = field_of_raster(camera.projection, replace(film, region=(0, 0, *film.region[2:])))
@@ -178,9 +178,9 @@ def plan_distortion(snapshot):
 
 
 def _covered(distortion):
-    """Return the corners, in whole pixels, of what the picture shows of the raster."""
+    """Return the corners, in whole pixels, of the part of the raster that the picture shows."""
     across, up = (np.linspace(0.0, n, 4 * n + 1) for n in (distortion.width, distortion.height))
-    # The map is continuous and has an inverse: the edge shows how far it reaches.
+    # The mapping is continuous and invertible: its extent is that of the picture's edge.
     edge = np.concatenate(
         [
             np.stack(np.broadcast_arrays(x, y), axis=-1)
@@ -198,7 +198,7 @@ def _covered(distortion):
 
 
 def _crop(size, low, high):
-    """Return what restricts the clip space of a picture of a size to a part, both in px."""
+    """Return the matrix that restricts a picture's clip space to a part of it, both in px."""
     crop = np.eye(4)
     crop[[0, 1], [0, 1]] = size / (high - low)
     crop[:2, 3] = (size - low - high) / (high - low)

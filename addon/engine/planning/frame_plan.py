@@ -1,4 +1,4 @@
-"""What the pipeline carries out: every number a frame needs, as a value."""
+"""The plan of a frame: every number that drawing it needs, as a frozen value."""
 
 from dataclasses import dataclass
 
@@ -12,14 +12,14 @@ from .frame_samples import SampleSource
 
 @dataclass(frozen=True)
 class AutomaticSampling:
-    """How a frame finds its number of samples while it is drawn.
+    """Noise threshold: the number of samples is found while the frame is drawn.
 
     Parameters
     ----------
     error : float
-        Of the picture, 1 - SSIM.
+        Threshold of the picture's error, 1 - SSIM.
     least, most : int
-        Lens samples.
+        Bounds of the number of lens samples.
     unit : int
         Samples that share a place on the lens; see `sampling.rounds`.
     """
@@ -32,7 +32,7 @@ class AutomaticSampling:
 
 @dataclass(frozen=True, eq=False)
 class FramePlan:
-    """What the pipeline carries out.
+    """Every number that drawing a frame needs.
 
     Parameters
     ----------
@@ -56,45 +56,48 @@ class FramePlan:
     subpixel_weights : ndarray of shape (N, 2, subpixels)
         Of the columns and rows of sub-pixels; see `sampling.pixel_filter.subpixel_weights`.
     subsample_offsets : ndarray of shape (N, K, 2)
-        Places on the lens that a sample stands for besides its own, relative to it, in m.
+        Subsamples: places on the lens that a sample stands for besides its own, relative to it,
+        in m.
     subsample_counts : ndarray of shape (N,)
-        int; how many of them each sample has.
+        int; number of subsamples of each sample.
     level_bias : float or None
-        Subtracted from the level of detail; None draws everything in full detail.
+        Subtracted from the level of detail; None draws everything at full detail.
     least_triangles : int
         No level of detail has fewer.
     reuse_grid : int
         Cells along a pixel in which samples share a drawing; 0 shares none.
     progressive : bool
-        The frame may be given up before all its samples are drawn.
+        The frame may be shown or given up before all its samples are drawn.
     lens_extent : ndarray of shape (2,)
         Half the width and height of the opening, in m.
     coc_scale : float
-        Radius of the circle of confusion in pixels, for `lib/lens_lib.glsl`.
+        Factor from defocus to the radius of the circle of confusion, in pixels; see
+        `engine.planning.plan.coc_scale`.
     sharp_radius : float
-        Largest radius that counts as sharp, in pixels; see `sharp_radius`.
+        Largest radius of a circle of confusion that counts as sharp, in pixels.
     empty_coc : float
-        Radius of the circle of confusion where nothing is, in pixels.
+        Radius of the circle of confusion where there is no surface, in pixels.
     passes : tuple of str
     alpha_threshold : float
         Opacity below which a surface is left out of the data passes.
     previous, next : ndarray of shape (4, 4)
         World to clip space of the region in the neighbouring frames.
     bokeh : BokehPlan or None
-        None draws highlights as everything else.
+        None: highlights are sampled like all other light.
     chromatic : ChromaticPlan or None
-        None: every sample stands for all wavelengths.
+        None: every sample represents all wavelengths.
     plain : FramePlan or None
-        The same frame without chromatic aberration, where Fringe needs it.
+        The same frame without chromatic aberration, for Fringe.
     distortion : DistortionPlan or None
-        How the picture is made of the raster that is drawn; None: it is that raster.
+        Mapping from the picture to the undistorted raster; None: no distortion.
     source : SampleSource or None
-        What the samples are drawn from.
+        Source of the lens samples.
     automatic : AutomaticSampling or None
-        The plan is then that of the samples up to the end of a round; see `plan.extended`.
+        The plan then has the samples up to the end of a round; see
+        `engine.planning.plan.extended`.
     first : int
-        First sample of the round: what samples have in common, levels of detail and drawings, is
-        divided among those from here on.
+        First sample of the round: levels of detail and shared drawings are chosen for the samples
+        from here on.
     time_limit : float or None
         Seconds of drawing after which no further samples are drawn.
     """
@@ -173,7 +176,7 @@ class FramePlan:
         return own[:, None] * self.chromatic.weights[first:end]
 
     def in_round(self, sample):
-        """Return which sample of its round a sample is, and how many the round has."""
+        """Return the index of a sample in its round, and the number of samples of the round."""
         return sample - self.first, self.samples - self.first
 
     def lens_sample(self, index):
@@ -187,7 +190,7 @@ class FramePlan:
 
     @property
     def sweep(self):
-        """How far surfaces move between two places on the lens; see ``lib/bokeh/sweep_lib.glsl``.
+        """Movement of surfaces between two places on the lens; see ``lib/bokeh/sweep_lib.glsl``.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""The samples of a frame: places on the lens and in the pixel, wavelengths, further places."""
+"""The lens samples of a frame: places on the lens and in the pixel, wavelengths, subsamples."""
 
 from dataclasses import dataclass
 
@@ -40,23 +40,23 @@ class FrameSamples:
 
 @dataclass(frozen=True, eq=False)
 class SampleSource:
-    """What the samples of a frame are drawn from.
+    """Generator of the lens samples of a frame.
 
     Parameters
     ----------
     lens : ThinLens or None
-        None sees everything from one place.
+        None is a pinhole.
     aberration : ChromaticAberration or None
     subsamples : int
-        Further places of each sample, on the average.
+        Mean number of subsamples of each sample.
     filter_kind : str
     filter_size_px : float
     subpixels, seed : int
     progressive : bool
-        The picture may be looked at before it is done.
+        The picture may be shown before it is done.
     endless : bool
-        Its number of samples is not known yet: the samples of a smaller number are the first ones
-        of a larger, with their further places and weights (`sampling.rounds`).
+        The number of samples is not known yet: the samples of a smaller number are the first ones
+        of a larger, with their subsamples and weights (`sampling.rounds`).
     """
 
     lens: ThinLens | None
@@ -77,7 +77,7 @@ class SampleSource:
             colors = wavelengths_for(
                 self.aberration, count, self.seed, in_proportion=not self.endless
             )
-            # Samples of several wavelengths may look from the same place.
+            # Samples of several wavelengths share a place on the lens.
             taken = colors.lens_indices
         different = int(taken.max()) + 1
         positions, offsets, counts = self._places(different)

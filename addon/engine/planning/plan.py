@@ -1,4 +1,4 @@
-"""From a snapshot to a frame plan: every number a frame needs, decided before anything is drawn."""
+"""From a snapshot to a frame plan: every number a frame needs, chosen before anything is drawn."""
 
 from dataclasses import replace
 
@@ -18,12 +18,13 @@ from .quality import LEAST_ERROR, settle
 # sharp: the usual criterion of depth-of-field tables (0.029 mm for 36 x 24 mm).
 _SHARP_CIRCLES_PER_DIAGONAL = 1500.0
 
-# Their wavelengths reach as far as those of many.
+# Samples whose wavelengths reach as far as those of many, for bounds.
 _TYPICAL_SAMPLES = 64
 
-# Sub-pixels along a side of a pixel: as many as two vectors of weights hold.
+# Most sub-pixels along a side of a pixel: two vectors of weights hold as many.
 _MOST_SUBPIXELS = 4
-# A lens sample's raster, in pixels (20 bytes each), and its longer side: within any device's means.
+# Largest raster of a lens sample, in pixels (20 bytes each), and its longest side: any device has
+# room for that.
 _LARGEST_RASTER = 1 << 24
 _LONGEST_RASTER = 8192
 
@@ -51,11 +52,11 @@ def region_projection(projection, film):
 
 
 def subpixels(content, width, height, support=1.0):
-    """Choose how finely a lens sample is rasterised.
+    """Choose the sub-pixels of a lens sample's raster.
 
-    Where triangles are smaller than pixels, one place a pixel sees one triangle of many, and the
-    average over the lens samples stays noisy. The raster is therefore made about as fine as the
-    geometry, so that its cost stays in proportion to that of the triangles.
+    Where triangles are smaller than pixels, one sub-pixel a pixel sees one triangle of many, and
+    the average over the lens samples stays noisy. The raster is therefore made about as fine as
+    the geometry, so that its cost stays in proportion to that of the triangles.
 
     Parameters
     ----------
@@ -63,7 +64,7 @@ def subpixels(content, width, height, support=1.0):
     width, height : int
         Of the rendered region, in pixels.
     support : float
-        Width of the pixel filter, in pixels: what lies outside of it would be drawn for nothing.
+        Width of the pixel filter, in pixels: sub-pixels outside of it would have no weight.
 
     Returns
     -------
@@ -82,9 +83,9 @@ def subpixels(content, width, height, support=1.0):
 def sharp_radius(width, height):
     """Return the largest radius of a circle of confusion that counts as sharp.
 
-    A circle whose diameter is 1/1500 of the picture's diagonal, but at least one pixel, so that the
-    matte of a small picture is not decided by less than it can show. Focus Matte is the share of a
-    point's light that falls inside that circle: 1 up to this radius, then falling with its square.
+    A circle whose diameter is 1/1500 of the picture's diagonal, but at least one pixel, which is
+    the least that a small picture can show. Focus Matte is the share of a point's light that falls
+    inside that circle: 1 up to this radius, then falling with the square of the radius.
 
     Parameters
     ----------
@@ -102,7 +103,7 @@ def sharp_radius(width, height):
 def coc_scale(projection, film, lens):
     """Return the factor from defocus to pixels of the circle of confusion.
 
-    The radius is that along the picture's vertical, which an anamorphic iris leaves alone.
+    The radius is that along the picture's vertical, which the anamorphic ratio does not change.
 
     Parameters
     ----------
@@ -147,7 +148,7 @@ def _plan_raster(snapshot):
     sampling = snapshot.sampling
     automatic = None
     if sampling.method == "ADAPTIVE" and sampling.target_error is not None:
-        # Of wavelengths, several tell how far they reach.
+        # Bounds over the wavelengths need several samples.
         count = 1 if snapshot.camera.chromatic is None else _TYPICAL_SAMPLES
         first = _plan(snapshot, replace(sampling, lens_samples=count, subsamples=0))
         automatic = AutomaticSampling(
@@ -185,7 +186,7 @@ def _plan(snapshot, sampling, automatic=None):
         subsamples=sampling.subsamples if adaptive else 0,
         filter_kind=film.filter_kind,
         filter_size_px=film.filter_size_px,
-        # Subsamples and levels of detail take the place of a finer raster.
+        # The adaptive method has subsamples and levels of detail instead of a finer raster.
         subpixels=1 if adaptive else subpixels(snapshot.content, width, height, support),
         seed=sampling.seed,
         progressive=sampling.progressive,
@@ -245,12 +246,12 @@ def _arrays(drawn, width, height):
 
 
 def extended(plan):
-    """Return the plan of the next round as well: twice the samples, the first half the same.
+    """Extend a plan by the next round: twice the samples, of which the first half is the same.
 
     Parameters
     ----------
     plan : FramePlan
-        With `automatic` sampling; what Fringe compares with has a plan of its own.
+        With `automatic` sampling; the plain frame of Fringe has a plan of its own.
 
     Returns
     -------
@@ -272,7 +273,7 @@ def _empty_coc(camera, scale, focus):
     if not camera.orthographic:
         # The limit of scale (d - focus) / (d focus).
         return scale / focus
-    # It grows without bound with the depth; what is not there is taken to be at the far plane.
+    # Unbounded for a parallel projection: empty pixels count as at the far plane.
     inverse = np.linalg.inv(camera.projection)
     far = -(inverse @ np.array([0.0, 0.0, 1.0, 1.0]))[2]
     return float(scale * (far - focus) / focus)

@@ -1,9 +1,9 @@
-"""One number for quality: what it decides before a frame is drawn.
+"""The noise threshold: settings that are chosen from it before a frame is drawn.
 
-The number is the error of the picture, 1 - SSIM. How many lens samples it takes is found while they
-are drawn, from what the picture shows (`sampling.tile_control`, `engine.frame.tile_sampling`). What
-more samples do not mend has to be small from the start: levels of detail and shared drawings are
-therefore the finer the smaller the number is.
+The threshold is an error of the picture, 1 - SSIM. The number of lens samples is found while they
+are drawn, from the picture itself (`sampling.tile_control`, `engine.frame.tile_sampling`). Errors
+that more samples do not reduce must be small from the start: levels of detail and shared drawings
+are therefore the finer the smaller the threshold is.
 """
 
 import math
@@ -16,24 +16,26 @@ from ...sampling.subsamples import FIRST_INTERVAL
 
 LEAST_ERROR = 1e-4
 _SUBSAMPLES = 4
-# What moves by less stays in its texel; see ``passes/subsample_frag.glsl``.
+# Least movement, px, across a subsample's cell that leaves its texel; see
+# ``passes/subsample_frag.glsl``.
 _LEAST_MOVE_PX = 0.5
 
-# Levels blur colours that vary from vertex to vertex: the smaller the error, the finer the level.
+# Threshold below which levels of detail get finer, as levels blur vertex colours.
 _BIAS_AT = 0.02
-# In cells of half a pixel, edges in focus have 4 steps.
+# Threshold up to which shared drawings have four cells along a pixel instead of two; with two,
+# edges in focus have 4 steps.
 _FINE_CELLS_BELOW = 0.005
 
 
 def settle(sampling, snapshot, plan):
-    """Choose what the target error leaves open.
+    """Choose subsamples, level bias and cells of shared drawings from the target error.
 
     Parameters
     ----------
     sampling : Sampling
     snapshot : SceneSnapshot
     plan : FramePlan
-        Of any number of samples.
+        A plan with any number of samples.
 
     Returns
     -------
@@ -44,7 +46,7 @@ def settle(sampling, snapshot, plan):
     if error is None:
         return sampling
     error = max(error, LEAST_ERROR)
-    # The part of the lens that a sample of the first round stands for, seen through the largest
+    # The part of the lens that a sample of the first round stands for, in pixels of the largest
     # blur. Later rounds have smaller parts.
     moved = largest_coc(snapshot.content, plan) / math.sqrt(FIRST_INTERVAL)
     return replace(
@@ -57,9 +59,9 @@ def settle(sampling, snapshot, plan):
 
 
 def largest_coc(content, plan):
-    """Return the largest circle of confusion of what the frame shows.
+    """Return the largest circle of confusion in the frame.
 
-    Boxes stand for the objects: of each, the part inside the frame counts.
+    It is found from the bounding boxes of the objects, clipped to the frustum.
 
     Parameters
     ----------
@@ -79,10 +81,10 @@ def largest_coc(content, plan):
     eye = corners @ plan.view[:3, :3].T + plan.view[:3, 3]
     depths = (np.maximum(depth, 1e-6) for depth in (seen.nearest, seen.farthest))
     bound = np.abs(coc_ends(*depths, plan, seen.inverse_focus)).max(axis=0)
-    # A parallel camera sees the same point of the world in every pixel: nothing to blur.
+    # With a parallel projection all pixels show the same point of the world: nothing to blur.
     shows_world = bool(content.world.image) and not plan.orthographic
     largest = abs(plan.empty_coc) if shows_world else 0.0
-    # From the largest down, until no other can be larger.
+    # By falling upper bound, until no other can be larger.
     for row in np.argsort(-bound, kind="stable"):
         if bound[row] <= largest:
             break
@@ -95,7 +97,7 @@ def largest_coc(content, plan):
 
 
 def _depths_inside(corners, projection):
-    """Return least and largest depth of the part of a box that is in the frame, or None.
+    """Return the depth range of the part of a box inside the frustum, or None.
 
     Every face is clipped at the planes of the frustum (Sutherland and Hodgman).
     """

@@ -1,1 +1,1 @@
-"""From which places on the lens a highlight is seen (methods 10, 11)."""
+"""Visibility of highlights: masks over the lens of what is not occluded (methods 10, 11)."""

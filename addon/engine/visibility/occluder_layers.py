@@ -1,7 +1,7 @@
-"""The surfaces that a pinhole at the lens' centre sees behind one another, as occluders.
+"""Depth-peeled layers, seen by a pinhole at the lens' centre, as occluders of highlights.
 
-Rays from highlights to the lens are cast through these layers, and N-buffers over them bound what
-a cone of rays can meet.
+Rays from highlights to the lens are cast through these layers, and N-buffers over them bound the
+occluders that a cone of rays can meet.
 
 References
 ----------
@@ -17,9 +17,9 @@ from ...passes.bokeh import peel
 from ...passes.surface import surface
 from ...passes.visibility import culling, visibility_warp
 
-# Cells of the N-buffers over the peeled raster.
+# Most cells of the N-buffers over the peeled raster.
 _MOST_CELLS = 1 << 18
-# Of the layers, along a side of a pixel: coarser ones miss what is thin. And of all their texels.
+# Most texels of the layers along a side of a pixel (coarser ones miss thin occluders), and in all.
 _TEXELS_PER_PIXEL = 3
 _LARGEST_RASTER = 1 << 23
 _LONGEST_SIDE = 16384
@@ -97,7 +97,7 @@ def draw_layers(plan, drawing, instances, fine):
                 layers["color"], layers[depth], channel, raster["layers"], raster["opacity"]
             )
             depth, front = front, depth
-        # The layers are given back only after the device has read them.
+        # The layers may be released only after the device has read them.
         readback.wait(layers.framebuffer("color", depth=front))
     drawing.counts.draw_calls += number * len(draws)
     drawing.counts.triangles += number * sum(d.triangles * d.count for d in draws)
@@ -105,12 +105,12 @@ def draw_layers(plan, drawing, instances, fine):
 
 
 def cull_by_layers(sources, count, parameters, raster, again, states):
-    """Decide by the layers which sources need a mask.
+    """Cull sources by the layers: hidden, visible, or in need of a mask.
 
     Parameters
     ----------
     sources, count, parameters, again, states
-        As of `bokeh_culling.cull`.
+        As for `passes.visibility.culling.cull`.
     raster : Targets
         Of `draw_layers`.
 

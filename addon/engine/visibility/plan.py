@@ -1,8 +1,8 @@
-"""How the visibility of a frame's highlights is found: parameters, atlas of masks, choice by cost.
+"""Visibility of a frame's highlights: parameters, atlas of masks, choice of the method by cost.
 
-Masks have about a texel for each pixel of the disc. There is room for a number of texels that does
-not depend on the number of highlights: where they are many, their masks are smaller, so that the
-cost of the masks stays within bounds.
+Masks have about a texel for each pixel of the disc. The atlas has a size that does not depend on
+the number of highlights: where there are many, their masks are smaller, so that the cost of all
+masks is bounded.
 """
 
 from dataclasses import dataclass
@@ -12,40 +12,40 @@ import numpy as np
 from ...passes.visibility import culling
 from ..drawing.occluders import CLUSTER
 
-# Steps of a ray (7 to 8 ns each on software OpenGL) that take as long as a triangle of a mask, a
-# triangle of a layer, and a texel of a layer.
+# Cost in steps of a ray (7 to 8 ns each on software OpenGL): of a triangle in a mask, a triangle in
+# a layer, and a texel of a layer.
 STEPS_PER_TRIANGLE = 8
 STEPS_PER_DRAWN = 8
 STEPS_PER_TEXEL = 4
-# Triangles that stand for an instance that lets light through.
+# Triangles that are counted for an instance of a transparent surface.
 _SURFACE_TRIANGLES = 64
-# Surfaces so close before a source that the lens' rim sees them moved by less, in pixels, do not
-# part the lens into places that see it and places that do not.
+# Parallax, px, below which a surface in front of a source is no occluder: all places on the lens
+# see the source as the lens' centre does.
 _SAME_VIEW = 0.25
-# The square root of 3: the spline that masks are read with then blurs as a pixel does.
+# The square root of 3: the spline with which masks are read then blurs as a pixel does.
 _MASK_TEXELS_PER_PIXEL = 1.73
-# Texels of the atlas, at most, and its longer side.
+# Most texels of the atlas, and its longest side.
 LARGEST_ATLAS = 1 << 25
 LONGEST_ATLAS = 16384
 
 
 @dataclass
 class VisibilityCounts:
-    """What the tests found.
+    """Numbers of sources by the results of the visibility tests, and the cost of their masks.
 
     Attributes
     ----------
     outside, hidden, visible, free, masked : int
-        Sources whose disc is outside the frame; that nothing of the lens sees; that no surface of
-        the layers lies before; that have no triangles in their cone; that are left.
+        Sources whose disc is outside the frame; hidden from the whole lens; without a surface of
+        the layers in front; without triangles in their cone; and those that are left.
     empty, whole : int
-        Of the hidden and of the visible ones, those that were found by their masks.
+        Of the hidden and of the visible sources, those that were found by their masks.
     pairs, surface_pairs : int
-        Of source and cluster of opaque triangles, of source and instance that lets light through.
+        Pairs of source and cluster of opaque triangles, and of source and transparent instance.
     work : int
         Steps of rays that masks by WARP take.
     texels : int
-        Of all masks.
+        Texels of all masks.
     method : str
         RASTER, WARP or SPLAT; empty if no source is left.
     """
@@ -65,7 +65,7 @@ class VisibilityCounts:
 
     @property
     def triangles(self):
-        """Triangles that masks by RASTER take, without surfaces that let light through."""
+        """Triangles that masks by RASTER take, without transparent surfaces."""
         return self.pairs * CLUSTER
 
 
@@ -96,15 +96,15 @@ def note(found, room=LARGEST_ATLAS):
 
 
 def choose(counts, method, layers):
-    """Return which method makes the masks.
+    """Choose the method of the masks by cost.
 
     Parameters
     ----------
     counts : VisibilityCounts
     method : {'AUTO', 'RASTER'}
-        What is asked for.
+        The camera's setting.
     layers : int
-        What the layers cost, in steps of rays.
+        Cost of the layers, in steps of rays.
 
     Returns
     -------
@@ -120,7 +120,7 @@ def choose(counts, method, layers):
 
 
 def layers_cost(triangles, texels, layers):
-    """Return what drawing layers costs, in steps of rays.
+    """Return the cost of drawing the peeled layers, in steps of rays.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def visibility_params(plan, fine=1, reach=1.0):
     fine : int
         Texels of the layers along a side of a pixel.
     reach : float
-        How far a disc reaches in units of its radius.
+        Extent of a disc in units of its radius.
 
     Returns
     -------
@@ -192,10 +192,10 @@ def _colors(colors, focus_distance):
 
 
 def _reaching_depth(plan):
-    """Return up to which depth discs are wider than what the raster has around the frame, m.
+    """Return the depth, m, up to which discs are wider than the raster's margin around the frame.
 
-    A surface outside the raster that is farther away, but nearer than a highlight whose own disc is
-    not, is seen at no pixel of the frame: it hides nothing of what the frame shows.
+    A surface outside the raster at a larger depth is blurred too little to reach into the frame,
+    so it occludes no part of a disc inside the frame.
     """
     margin = min(plan.bokeh.margin)
     colors = plan.bokeh.colors
@@ -204,7 +204,7 @@ def _reaching_depth(plan):
         margin -= colors.growth * max(plan.bokeh.width, plan.bokeh.height)
         focus = 1.0 / plan.focus_distance + colors.focus_changes[0]
         away = margin / plan.coc_scale
-        # Beyond any highlight where even that does not hide it.
+        # Infinitely far where the margin is too narrow at every depth.
         reach = (1.0 - away) / focus if plan.orthographic else 1.0 / max(focus + away, 1e-9)
         return max(reach, 0.0)
     if plan.orthographic:
@@ -214,14 +214,14 @@ def _reaching_depth(plan):
 
 @dataclass(frozen=True, eq=False)
 class AtlasLayout:
-    """Where the masks of each size lie.
+    """Layout of the masks of each size in the atlas.
 
     Parameters
     ----------
     width, height : int
-        Of the atlas, texels.
+        Size of the atlas, texels.
     sizes : ndarray of shape (SIZES, 4)
-        Of each size: masks of other sizes before, height of the first row, side, masks a row.
+        For each size of mask: number of masks before it, y of its first row, side, masks a row.
     """
 
     width: int
@@ -235,12 +235,12 @@ class AtlasLayout:
 
 
 def lay_out(numbers, most_texels=LARGEST_ATLAS):
-    """Lay out an atlas; where the masks are too many, larger ones are made smaller.
+    """Lay out an atlas; where masks do not fit, larger ones are made smaller.
 
     Parameters
     ----------
     numbers : sequence of int
-        Masks of each size.
+        Number of masks of each size.
     most_texels : int
 
     Returns
@@ -262,15 +262,15 @@ def _sides(kinds):
 
 
 def lay_out_more(layout, before, numbers):
-    """Lay out more masks above those of a layout, which stay where they are.
+    """Add masks to a layout above those that it has, which stay in place.
 
     Parameters
     ----------
     layout : AtlasLayout
     before : int
-        How many masks it has.
+        Number of masks of the layout.
     numbers : sequence of int
-        Further masks of each size.
+        Number of further masks of each size.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What of a scene can hide a highlight: opaque triangles, and surfaces that let light through."""
+"""The occluders of a scene: opaque triangles, and transparent surfaces."""
 
 from functools import cached_property
 
@@ -8,7 +8,7 @@ from ..drawing.occluders import Occluders, Part
 
 
 class SceneOccluders:
-    """What of a scene can hide a highlight.
+    """The occluders of a scene on the device.
 
     Parameters
     ----------
@@ -18,8 +18,8 @@ class SceneOccluders:
 
     Attributes
     ----------
-    groups : tuple of passes.bokeh_cones.GroupRange
-        Groups of instances with a surface that lets light through.
+    groups : tuple of passes.visibility.cones.GroupRange
+        Groups of instances with a transparent surface.
     """
 
     def __init__(self, content, buffers):
@@ -34,7 +34,7 @@ class SceneOccluders:
         )
 
     def _see_through(self, group):
-        """Return which slots of a group's mesh let light through, dict of slot to bool."""
+        """Return which material slots of a group's mesh are transparent, dict of slot to bool."""
         mesh = self._content.meshes[group.mesh]
         return {
             slot: not group.holdout
@@ -68,6 +68,6 @@ class SceneOccluders:
         return [draw for draw in draws if draw.level == 0 and draw.constants is not None]
 
     def draws_of(self, number):
-        """Return the draws of surfaces of a group that let light through."""
+        """Return the draws of the transparent surfaces of a group."""
         group = self._content.groups.index(self._groups[number])
         return [draw for draw in self._draws if draw.group == group]

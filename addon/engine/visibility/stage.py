@@ -1,13 +1,13 @@
-"""From which places on the lens each highlight of a frame is seen (methods 10, 11).
+"""Visibility of a frame's highlights from the lens: culling, and masks (methods 10, 11).
 
-Tests sort out what needs no mask. What is left gets a mask over the lens in an atlas, drawn by
-projecting the scene (RASTER) or by rays through the peeled layers (WARP), or is left to rays that
-the splat casts pixel by pixel (SPLAT).
+Culling finds the sources that need no mask. The others get a mask over the lens in an atlas, drawn
+by projecting the scene from the source (RASTER) or by rays through depth-peeled layers (WARP), or
+their rays are cast by the splat, pixel by pixel (SPLAT).
 
-The layers cost as much as the scene has triangles, how few highlights there may be; so for RASTER
-the triangles alone decide. AUTO tests highlights against triangles first and draws the masks from
-what it meets, unless that is more work than layers and rays are, by counts. Where highlights are
-very many, it takes the layers without asking for triangles.
+The cost of the layers grows with the triangles of the scene, however few highlights there are; so
+RASTER culls by triangles alone. AUTO tests highlights against triangles first and rasterises the
+masks from the clusters that it meets, unless the counts say that layers and rays are less work.
+Where there are very many highlights, it uses the layers without testing triangles.
 """
 
 from dataclasses import dataclass, replace
@@ -34,12 +34,13 @@ from .scene_occluders import SceneOccluders
 
 __all__ = ("BokehVisibility", "SceneOccluders", "Visibility", "VisibilityCounts", "lay_out")
 
-# Pairs that are listed at once, and least room for them.
+# Pairs of source and cluster that are listed at once, and least room for them.
 _WINDOW = 1 << 20
 _LEAST_PAIRS = 1 << 18
-# More sources are left to the layers alone, which cost the less a source the smaller the masks are.
+# Most sources that are tested against triangles; more are left to the layers alone, whose cost a
+# source falls with the size of its mask.
 _MOST_CONES = 1 << 17
-# Texels of the atlas where sources are many, and of that of drafts.
+# Number of sources from which on the atlas is smaller, its texels then, and those of a draft's.
 _MANY = 1 << 15
 _ATLAS_OF_MANY = 1 << 23
 _DRAFT_ATLAS = 1 << 19
@@ -49,7 +50,7 @@ MASKED, IN_SPLAT = 2, 3
 
 @dataclass(frozen=True, eq=False)
 class Visibility:
-    """What the splat reads.
+    """Visibility of sources as textures that the splat reads.
 
     Parameters
     ----------
@@ -57,17 +58,17 @@ class Visibility:
         A texel for each source: place and side of its mask, kind (see
         lib/bokeh/visibility_lib.glsl).
     masks : GPUTexture
-        The atlas.
+        The atlas of masks.
     layers, opacity : GPUTexture or None
-        The peeled layers, if there are any, for rays that the splat casts.
+        The depth-peeled layers, if there are any, for rays that the splat casts.
     states : GPUTexture
-        How far each source's rays go, and how its parts see what hides it (see
-        passes/bokeh_culling_comp).
+        State of each source: end of its rays, blur by its occluders' parallax (see
+        passes/visibility/bokeh_culling_comp.glsl).
     parameters : GPUUniformBuf
         `VisibilityParams`.
     counts : VisibilityCounts
     bytes : int
-        Of its textures.
+        Memory of its textures.
     """
 
     tiles: object
@@ -81,7 +82,7 @@ class Visibility:
 
 
 class BokehVisibility:
-    """Finds what hides the highlights of a frame.
+    """Finds the visibility of a frame's highlights.
 
     Parameters
     ----------
@@ -90,7 +91,7 @@ class BokehVisibility:
     occluders : SceneOccluders
     buffers : SceneBuffers
     reach : float
-        How far a disc reaches in units of its radius.
+        Extent of a disc in units of its radius.
     """
 
     def __init__(self, plan, occluders, buffers, reach=1.0):
@@ -102,7 +103,7 @@ class BokehVisibility:
         self._parameters = uniform_buffer(culling.VISIBILITY_PARAMS.pack(**self._values))
 
     def find(self, sources, count, drawing, targets, method=None, culls=True):
-        """Test the sources and make the masks of those that need one.
+        """Cull the sources, and make the masks of those that need one.
 
         Parameters
         ----------
@@ -112,11 +113,11 @@ class BokehVisibility:
         drawing : SceneDrawing
             Aimed at the frame.
         targets : list
-            Gets the `Targets` that the result lives in, for the caller to release.
+            Gets the `Targets` of the result, for the caller to release.
         method : {'AUTO', 'RASTER', 'WARP', 'SPLAT'}, optional
             Default: the plan's.
         culls : bool
-            False gives every source a mask, for comparison: those that the tests sort out as well.
+            False gives every source a mask, for comparison, also those that are culled.
 
         Returns
         -------
@@ -150,12 +151,12 @@ class _Search:
         self._raster = None
 
     def release(self):
-        """Give back what the result does not need."""
+        """Release what the result does not need."""
         for targets in self._own:
             targets.release()
 
     def run(self, method, targets):
-        """Find what hides the sources; parameters and result as of `BokehVisibility.find`."""
+        """Find the visibility; parameters and result as of `BokehVisibility.find`."""
         rows = max(1, -(-self._count // COLUMNS))
         specs = [TargetSpec(n, "RGBA32F") for n in ("tiles", "masked", "states")]
         lists = self._lists = Targets(COLUMNS, rows, specs)
@@ -290,7 +291,7 @@ class _Search:
         return layers_cost(self._drawing.full_detail, texels, number_of(bokeh))
 
     def _lay_out(self, counts):
-        """Return the layout of the masks, and the same with those for comparison."""
+        """Return the layout of the masks, and the same with masks for comparison."""
         drawn = self._found[culling.COUNT_SIZES :][: self._tables.kinds]
         if counts.method not in {"RASTER", "WARP"}:
             drawn = drawn * 0
@@ -309,7 +310,7 @@ class _Search:
         return LARGEST_ATLAS if self._count <= _MANY else _ATLAS_OF_MANY
 
     def _format(self):
-        # Products of several surfaces must not be rounded to 8 bits each.
+        # More than 8 bits: transmittances of several surfaces are multiplied.
         return "R16F" if self._occluders.groups else "R8"
 
     def _draw_masks(self, counts, atlas, base, whole):
@@ -318,8 +319,8 @@ class _Search:
         draw = {"WARP": self._warp, "RASTER": self._rasterise}.get(counts.method)
         if draw is None:
             return
-        # Where a triangle lands depends on the size of the atlas in the last bits. Masks for
-        # comparison have a part of their own, so that the others are the same without them.
+        # Rasterisation depends on the size of the atlas in the last bits. Masks for comparison have
+        # a part of their own, so that the others are the same without them.
         with atlas.bind(), state.confined(0, 0, base.width, base.height):
             draw(counts, atlas, uniform_buffer(base.packed()))
         if whole is not base:
@@ -342,7 +343,7 @@ class _Search:
         }
         batch = geometry.numbered_batch(visibility_raster.BATCH_CORNERS)
         self._buffers.expected_pairs = counts.pairs + counts.pairs // 4
-        # Places of the prefix sums begin behind the masks'.
+        # The pairs' prefix sums begin behind those of the masks.
         first = counts.masked
         numbers = [counts.pairs, *self._found[culling.COUNT_GROUPS :].tolist()]
         listed = counts.pairs <= cones.room_of(self._pairs)
