@@ -26,15 +26,16 @@ LOOK_BAR = 0.02
 # Noise decides no more where its standard error is this share of the bar: two of them, which one
 # scene in twenty has by chance, are then half the bar.
 _QUIET = 0.25
-# A scene fails by more than chance brings one of a few thousand scenes, at four numbers each.
-_CHANCE = 1e-5
-# Pictures of the scene's own method: three tell their spread within a factor of 4 (two: 13), and
-# twelve are what a check can afford.
-_FEWEST, MOST = 3, 12
+# A scene fails by more than chance brings one of ten thousand scenes, at four numbers each and as
+# many looks at them as there are rounds.
+_CHANCE = 1e-6
+# Pictures of each method: three tell their spread within a factor of 4 (two: 13), and with a
+# hundred the noise is a tenth of one picture's.
+_FEWEST, MOST = 3, 96
 # Processor time of a comparison, in seconds; see `compare`.
 PATIENCE = 20.0
-# Of the reference method fewer are needed, because their samples grow, too: at first, at most.
-_MOST_REFERENCES = 3
+# Of a picture of the reference method: at first, at most. Its samples are spread evenly, so that
+# twice as many quieten it more than two pictures do: about to a half.
 _REFERENCE_SAMPLES = (64, 256)
 # Light below this, in a picture's mean, is black on every display and lost in single precision.
 _DARK = 1e-6
@@ -86,7 +87,7 @@ class Agreement:
     measured : dict of str to float
         ``energy`` (largest relative difference of a channel), ``energy_noise`` (its standard
         error), ``look`` (mean difference as displayed, without noise), ``look_noise``, ``renders``
-        (of each method) and ``undecided`` (1 where noise still decides).
+        (of its own method) and ``undecided`` (1 where noise still decides).
     """
 
     fault: str = ""
@@ -105,32 +106,70 @@ def compare(scene, render, first, most=MOST, patience=PATIENCE):
     first : dict of (str, str) to ndarray
         What the scene itself rendered to.
     most : int
-        Pictures of the scene's own method; a scene that is undecided then is not failed, but told.
+        Pictures of each method; a scene that is undecided then is not failed, but told.
     patience : float
-        Seconds of processor time after which a scene that is undecided is left so.
+        Seconds of processor time that are not exceeded by choice; a scene that is undecided then is
+        left so.
 
     Returns
     -------
     Agreement
     """
+    end = time.process_time() + patience
     with _fit_to_compare(scene) as changed:
         own = _Estimate(scene, render, _set_seed)
         if not changed:
             own.add(first)
-        count, samples = _FEWEST, _REFERENCE_SAMPLES[0]
-        end = time.process_time() + patience
+        own.fill(_FEWEST)
+        reference = _reference(scene, render, _REFERENCE_SAMPLES[0])
         while True:
-            own.fill(count)
-            # Of more samples each, too: their noise falls faster that way than by averaging.
-            reference = _Estimate(scene, render, partial(_render_reference, samples=samples))
-            reference.fill(min(count, _MOST_REFERENCES))
             found = _judge(scene, own, reference)
-            settled = found.fault or not found.measured["undecided"]
-            # The next round takes about twice as long as all before.
-            late = end - time.process_time() < 2.0 * (time.process_time() - end + patience)
-            if settled or 2 * count > most or late:
+            if found.fault or not found.measured["undecided"]:
                 return found
-            count, samples = 2 * count, min(2 * samples, _REFERENCE_SAMPLES[1])
+            left = end - time.process_time()
+            steps = [s for s in _steps(own, reference, most) if s.seconds <= left]
+            if not steps:
+                return found
+            # Where noise is bought off cheapest: of the one method or of the other.
+            step = max(steps, key=lambda s: s.gain / s.seconds)
+            if step.samples:
+                reference = _reference(scene, render, step.samples, reference.made)
+            else:
+                step.estimate.fill(2 * step.estimate.count)
+
+
+@dataclass(frozen=True)
+class _Step:
+    """What can be done about the noise: how much it takes off a variance, in which time."""
+
+    estimate: object
+    gain: float
+    seconds: float
+    samples: int = 0
+
+
+def _steps(own, reference, most):
+    parts = [estimate.variance(reference) for estimate in (own, reference)]
+    if max(parts) == 0.0:
+        # Only looks are undecided.
+        parts = [1.0, 1.0]
+    steps = []
+    if 2 * own.count <= most:
+        steps.append(_Step(own, parts[0] / 2.0, own.count * own.seconds))
+    if reference.samples < _REFERENCE_SAMPLES[1]:
+        if reference.made + _FEWEST <= most:
+            seconds = 2.0 * _FEWEST * reference.seconds
+            steps.append(_Step(reference, parts[1] * 0.75, seconds, 2 * reference.samples))
+    elif reference.made + reference.count <= most:
+        steps.append(_Step(reference, parts[1] / 2.0, reference.count * reference.seconds))
+    return steps
+
+
+def _reference(scene, render, samples, made=0):
+    estimate = _Estimate(scene, render, partial(_render_reference, samples=samples))
+    estimate.samples, estimate.made = samples, made
+    estimate.fill(_FEWEST)
+    return estimate
 
 
 class _Estimate:
@@ -141,8 +180,15 @@ class _Estimate:
         self._render = render
         self._prepare = prepare
         self._seed = scene.aplanat.seed
+        self._taken = []
         self.pictures = {}
-        self.count = 0
+        self.count = self.made = 0
+        self.samples = 0
+
+    @property
+    def seconds(self):
+        """Processor time of a picture; what is made once for all is in the first one's."""
+        return max(float(np.median(self._taken)) if self._taken else 0.0, 1e-3)
 
     def add(self, passes):
         for (layer, name), pixels in passes.items():
@@ -152,8 +198,21 @@ class _Estimate:
 
     def fill(self, count):
         while self.count < count:
+            begun = time.process_time()
             with self._prepare(self._scene, self._seed + self.count):
                 self.add(self._render(self._scene))
+            self.made += 1
+            self._taken.append(time.process_time() - begun)
+
+    def variance(self, reference):
+        """Largest variance of the energy of a channel, relative to the reference's."""
+        found = [0.0]
+        for layer, pictures in self.pictures.items():
+            scale = np.abs(np.mean(reference.pictures[layer], axis=(0, 1, 2)))
+            means = np.stack([p.mean(axis=(0, 1)) for p in pictures])
+            lit = scale > _DARK
+            found += list(means.var(axis=0, ddof=1)[lit] / len(means) / scale[lit] ** 2)
+        return float(max(found))
 
 
 @contextmanager

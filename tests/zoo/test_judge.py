@@ -123,9 +123,24 @@ def test_noise_alone_does_not_fail_a_scene(scene):
     for seed in range(0, 2000, 100):
         scene.aplanat.seed = seed
         render = pictures_of(0.0, 0.05)
-        found = agreement.compare(scene, render, render(scene))
+        found = agreement.compare(scene, render, render(scene), most=12)
         assert not found.fault
         assert found.measured["undecided"] == 1.0
+
+
+@pytest.mark.parametrize("noisy", ["ADAPTIVE", "REFERENCE"])
+def test_the_noisier_method_gets_more_pictures(scene, noisy):
+    rendered = {"ADAPTIVE": 0, "REFERENCE": 0}
+    calm, wild = pictures_of(0.005, 1e-5), pictures_of(0.005, 6e-3)
+
+    def render(scene):
+        rendered[scene.aplanat.method] += 1
+        return (wild if scene.aplanat.method == noisy else calm)(scene)
+
+    found = agreement.compare(scene, render, wild(scene))
+    assert (found.fault, found.measured["undecided"]) == ("", 0.0)
+    assert rendered.pop(noisy) >= 6
+    assert rendered.popitem()[1] == 3
 
 
 def test_a_picture_that_looks_different_with_the_same_energy_is_seen(scene):
