@@ -1,7 +1,7 @@
-"""Which level of detail every instance is drawn at, and for which lens samples (methods 3).
+"""Choice of the level of detail of every instance and lens sample, by its blur (methods 3).
 
-The level is a real number: with 2.3 the first 70 % of a frame's lens samples draw level 2, the rest
-level 3. Any stretch of the sample sequence is spread evenly over the lens, so both levels are
+The level is a real number: at 2.3 the first 70 % of a frame's lens samples draw level 2, the rest
+level 3. Any contiguous part of the sample sequence covers the lens evenly, so both levels are
 blurred alike, and nothing pops when the number changes.
 
 References
@@ -13,33 +13,33 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# Subtracted from every level. The mapping makes a triangle as large as the circle of confusion, so
-# that a blurred silhouette keeps its shape; but what varies from vertex to vertex is blurred by the
+# Least bias, subtracted from every level. Without it a triangle is as large as the circle of
+# confusion, so that a blurred silhouette keeps its shape; but vertex attributes are blurred by the
 # triangles, too, and that blur should be small beside the lens'.
 LEAST_ALLOWANCE = 0.5
-# Highlights are found at full detail and taken out of the samples as those are drawn: where colours
-# or light are blurred from vertex to vertex, more or less would be taken out than is splatted. On a
-# ball that mirrors lamps 1.5 more left 0.06 % of the picture's light, 3 less than rounding.
+# Bias of objects with highlights. Highlights are found at full detail, but taken out of the samples
+# at the level that these draw: where levels blur colours or shading, more or less light is taken
+# out than is splatted. On a ball that mirrors lamps a bias of 1.5 left an error of 0.06 % of the
+# picture's light, 3 less than rounding.
 _HIGHLIGHT_ALLOWANCE = 3.0
 
-# Smaller objects that are partly in focus save less by being coarser where they blur than the draw
-# calls of their own that they need then.
+# Least triangles of a graded mesh: smaller ones save less than their own draw calls cost.
 LEAST_GRADED_TRIANGLES = 10_000
 
-# Triangles are counted once a side: half of them face away.
+# Share of a mesh' triangles that face the camera.
 _FACING_SHARE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
 class Extents:
-    """How far the instances reach from the camera, and how large they are.
+    """Depth ranges and bounding spheres of the instances, seen from the camera.
 
     Parameters
     ----------
     nearest, farthest : ndarray of shape (I,)
         Least and largest depth of the corners of the bounding box, m.
     center_depth, radius : ndarray of shape (I,)
-        Of the sphere round those corners, m.
+        Of the bounding sphere of those corners, m.
     inverse_focus : ndarray of shape (2, I) or None
         Least and largest inverse of the focus distance of any wavelength, 1/m; None without
         chromatic aberration.
@@ -59,7 +59,7 @@ def world_corners(content, bounds):
     ----------
     content : SceneContent
     bounds : dict of int to ndarray of shape (2, 3)
-        Of each mesh, by uid, in object space.
+        Bounding box of each mesh, by uid, in object space.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def world_corners(content, bounds):
 
 
 def extents(corners, view, chromatic=None):
-    """Measure the instances as a camera sees them.
+    """Return depth ranges and bounding spheres of the instances for a camera.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def coc_radius(depth, plan):
 
 
 def coc_ends(near, far, plan, inverse_focus=None):
-    """Return the signed circles of confusion between which those of a range of depths lie.
+    """Return the signed circles of confusion at the ends of depth ranges.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def coc_ends(near, far, plan, inverse_focus=None):
 
 
 def blur_for_levels(mesh, *levels):
-    """Return the blur from which on each level of detail of a mesh may be drawn.
+    """Return the blur that hides the errors of each level of detail of a mesh.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def blur_for_levels(mesh, *levels):
     Returns
     -------
     ndarray of shape (L,)
-        Rising; as a level of detail, by the size of triangles alone: see `choose_levels`.
+        Rising; expressed as a level of detail by the size of triangles: see `choose_levels`.
     """
     low, high = np.asarray(mesh.bounds, np.float64)
     radius = np.linalg.norm(high - low) / 2.0
@@ -162,7 +162,7 @@ def blur_for_levels(mesh, *levels):
 
 
 def allowed_levels(chosen, wanted):
-    """Return the levels whose errors the blur hides.
+    """Limit levels to those whose errors the blur hides.
 
     Parameters
     ----------
@@ -174,23 +174,23 @@ def allowed_levels(chosen, wanted):
     Returns
     -------
     ndarray of shape (I,)
-        From 0 to L. Between the blurs for two levels, both are drawn.
+        From 0 to L; fractional between the blurs of two levels.
     """
     if len(wanted) == 0:
         return np.zeros(len(chosen))
-    # Levels that ask for the same blur follow one another at once.
+    # Levels with the same blur follow one another at once.
     steps = np.append(wanted[0] - 1.0, wanted) + 1e-6 * np.arange(len(wanted) + 1)
     return np.interp(chosen, steps, np.arange(len(wanted) + 1.0))
 
 
 def choose_levels(seen, triangles, plan, bias=0.0):
-    """Choose the level of detail of every instance.
+    """Choose the level of detail of every instance by its blur and the size of its triangles.
 
     Parameters
     ----------
     seen : Extents
     triangles : ndarray of shape (I,)
-        Of the mesh at full detail.
+        Number of triangles at full detail.
     plan : FramePlan
     bias : float or ndarray of shape (I,)
         Subtracted from the level.
@@ -209,7 +209,7 @@ def choose_levels(seen, triangles, plan, bias=0.0):
 
 
 def may_grade(seen, triangles, plan):
-    """Return which instances may be drawn coarser where they are out of focus.
+    """Return which instances may be drawn with a graded mesh.
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ def may_grade(seen, triangles, plan):
     Returns
     -------
     ndarray of shape (I,)
-        bool; large ones of which a part is blurred enough for another level of detail.
+        bool; large ones, partly blurred enough for a coarser level of detail.
     """
     near = np.where(plan.orthographic, seen.nearest, np.maximum(seen.nearest, 1e-9))
     ends = coc_ends(near, np.maximum(seen.farthest, near), plan, seen.inverse_focus)
@@ -232,7 +232,7 @@ def may_grade(seen, triangles, plan):
 
 
 def _level(radius, seen, triangles, plan):
-    """Return the level whose triangles are as large as circles of confusion; it may be negative."""
+    """Return the level whose triangles are as large as circles of confusion; may be negative."""
     blur_area = np.pi * radius**2 * _narrowing(plan)
     scale = plan.projection[1, 1] * plan.height / 2.0
     size = scale * seen.radius
@@ -244,10 +244,10 @@ def _level(radius, seen, triangles, plan):
 
 
 def blurred_area(depth, world, plan, bias):
-    """Return how large the triangles of an instance may be where it is blurred.
+    """Return the largest area of triangles that the blur hides, at each vertex of an instance.
 
-    In the picture, a triangle that is seen at an average angle is then as large as the circle of
-    confusion, or smaller by the bias.
+    Seen at an average angle, a triangle of that area covers as much of the picture as the circle of
+    confusion, or less by the bias.
 
     Parameters
     ----------
@@ -262,7 +262,7 @@ def blurred_area(depth, world, plan, bias):
     Returns
     -------
     ndarray of shape (V,)
-        An area in object space; 0 in focus or behind the camera.
+        Area in object space; 0 in focus or behind the camera.
     """
     front = (depth > 0.0) | plan.orthographic
     ahead = np.where(front, depth, 1.0)
@@ -270,7 +270,7 @@ def blurred_area(depth, world, plan, bias):
     circle = np.pi * _smallest(*coc_ends(ahead, ahead, plan, focus)) ** 2 * _narrowing(plan)
     scale = plan.projection[1, 1] * plan.height / 2.0
     pixels = np.full(len(depth), scale) if plan.orthographic else scale / ahead
-    # The mean over all directions of how an area is stretched and foreshortened.
+    # Mean over all directions of the scaling and foreshortening of an area.
     stretch = np.abs(np.linalg.det(world[:3, :3])) ** (2.0 / 3.0) * 0.5
     area = circle / np.maximum(pixels**2 * stretch, 1e-30)
     return np.where(front, area * 2.0**-bias, 0.0)
@@ -286,13 +286,13 @@ def _narrowing(plan):
 
 
 def level_for_sample(levels, sample, samples):
-    """Return the level that each instance is drawn at for one lens sample.
+    """Return the whole level that each instance is drawn at for one lens sample.
 
     Parameters
     ----------
     levels : ndarray of shape (I,)
     sample, samples : int
-        Which one, of how many.
+        Index of the sample, and number of samples.
 
     Returns
     -------
@@ -305,7 +305,7 @@ def level_for_sample(levels, sample, samples):
 
 
 def allowances(content, plan):
-    """Return by how many levels every instance is drawn finer for the sake of its highlights.
+    """Return the level bias of every instance for the sake of its highlights.
 
     Parameters
     ----------
@@ -325,7 +325,7 @@ def allowances(content, plan):
 
 
 def meshes_with_levels(content, plan):
-    """Return which meshes are drawn at a lower level of detail, if they have any, or in part.
+    """Return the meshes whose levels of detail a frame needs, whole or as graded meshes.
 
     Parameters
     ----------
@@ -339,7 +339,7 @@ def meshes_with_levels(content, plan):
     """
     if plan.level_bias is None or plan.coc_scale == 0.0:
         return []
-    # What Fringe compares with is drawn beside the frame.
+    # The plain frame of Fringe is drawn with the same levels.
     beside = set(meshes_with_levels(content, plan.plain)) if plan.plain else set()
     meshes = [content.meshes[group.mesh] for group in content.groups]
     bounds = {mesh.uid: mesh.bounds for mesh in meshes}

@@ -1,7 +1,7 @@
-"""Levels of detail of large meshes on disk: how each follows from the one before, by content hash.
+"""Disk cache of levels of detail of large meshes: the collapses of each level, by content hash.
 
-A file that is damaged, of another version or missing is as good as none: the levels are made
-again. What was read last stays longest when the folder is full.
+Where a file is damaged, of another version or missing, the levels are made again. When the folder
+is full, the least recently used files are removed.
 """
 
 import contextlib
@@ -16,20 +16,20 @@ from ..errors import OutputError
 from ..files.whole_file import whole_file
 from .making.mesh_levels import Halving
 
-# Grows when the same mesh would get other levels.
+# Version of the cache; raised when the same mesh would get other levels.
 _VERSION = 4
 _FIELDS = tuple(field.name for field in fields(Halving))
 
 
 class LevelFiles:
-    """A folder of sequences of halvings.
+    """A cache folder of halvings (see `level_collapses.Halving`).
 
     Parameters
     ----------
     folder : Path
         Made when something is written.
     limit : int
-        Bytes that its files may take together.
+        Most bytes of all its files.
     """
 
     def __init__(self, folder, limit):
@@ -37,11 +37,11 @@ class LevelFiles:
         self._limit = limit
 
     def path(self, key):
-        """Return where the halvings of a key are kept."""
+        """Return the file of a key."""
         return self.folder / f"{key}.npz"
 
     def read(self, key):
-        """Return halvings and shrinkage of a key, or None if there are none that can be used."""
+        """Return halvings and shrinkage of a key, or None if there is no usable file."""
         path = self.path(key)
         try:
             with open(path, "rb") as file, np.load(file, allow_pickle=False) as arrays:
@@ -59,7 +59,7 @@ class LevelFiles:
         return halvings, shrinkage
 
     def write(self, key, halvings, shrinkage):
-        """Keep halvings; a folder that cannot be written to keeps nothing.
+        """Write halvings; does nothing where the folder cannot be written.
 
         Parameters
         ----------
@@ -84,7 +84,7 @@ class LevelFiles:
             self._make_room()
 
     def clear(self):
-        """Remove the halvings of all keys."""
+        """Remove all files of the cache."""
         for path in self.folder.glob("*.npz"):
             with contextlib.suppress(OSError):
                 path.unlink()

@@ -1,9 +1,9 @@
-"""Levels of detail of one mesh: a function of the mesh alone, whatever was made before.
+"""Levels of detail of one mesh: a function of the mesh alone, independent of history.
 
-Which places of a mesh merge is decided from its shape without deformation where that is known
-(`MeshSnapshot.rest`), so every frame of a mesh that deforms gets its levels by the same collapses,
-in whichever process and order the frames are drawn. What was decided once is kept, in memory and
-for large meshes on disk: that only saves time.
+The collapses of a mesh follow from its rest shape where that is known (`MeshSnapshot.rest`), so
+every frame of a deforming mesh gets its levels by the same collapses, in whichever process and
+order the frames are drawn. Collapses are cached, in memory and for large meshes on disk: that only
+saves time.
 """
 
 import hashlib
@@ -17,22 +17,22 @@ from ..snapshot.scene import MeshSnapshot
 from .making.level_collapses import weld
 from .making.mesh_levels import replay, seam_edges, simplify
 
-# Smaller meshes are simplified about as fast as they are read.
+# Least triangles of a mesh that is cached on disk: smaller ones are simplified as fast as read.
 _LEAST_TRIANGLES_ON_DISK = 50_000
-# A mesh is deformed too much for the collapses of its shape without deformation if its area shrinks
-# more by this factor, or less, on the way to the coarsest level.
+# A mesh is deformed too much for the collapses of its rest shape if its area shrinks by this factor
+# more or less than the rest shape's on the way to the coarsest level.
 _AREA_TOLERANCE = 1.15
 
 
 @dataclass
 class LevelWork:
-    """Work that was done.
+    """Statistics of the making of levels.
 
     Attributes
     ----------
     decimations, replays, loads : int
-        How many meshes were simplified, got their levels by collapses that were known, and by those
-        on disk.
+        Meshes that were simplified, that got their levels by cached collapses, and by those read
+        from disk.
     """
 
     decimations: int = 0
@@ -48,12 +48,12 @@ class LevelWork:
 
 @dataclass(frozen=True, eq=False)
 class Collapses:
-    """Which places of a shape merge from level to level.
+    """The collapses of a shape: which places merge from level to level.
 
     Parameters
     ----------
     halvings : tuple of Halving
-        Their `places` are not used.
+        Without use of their `places`.
     shrinkage : float
         Area of the coarsest level over that of the shape.
     """
@@ -63,7 +63,7 @@ class Collapses:
 
 
 class LevelMaker:
-    """Makes levels of detail, by collapses that are known already where there are any.
+    """Makes levels of detail, by cached collapses where there are any.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class LevelMaker:
         self._generation = 0
 
     def make(self, mesh, least_triangles, check):
-        """Return the levels of a mesh and what they took.
+        """Return the levels of a mesh, and the work they took.
 
         Parameters
         ----------
@@ -111,14 +111,14 @@ class LevelMaker:
         return levels, work
 
     def forget(self):
-        """Forget what is known, in memory and on disk."""
+        """Clear the caches in memory and on disk."""
         with self._lock:
             self._generation += 1
             self._known.clear()
             self._files.clear()
 
     def _by_rest(self, mesh, least_triangles, check, work):
-        """Return the levels by the collapses of the shape without deformation, None if unfit."""
+        """Return the levels by the collapses of the rest shape; None if it is deformed too much."""
         places = weld(mesh.rest)
         if not _meet(mesh.positions, places):
             return None
@@ -175,7 +175,7 @@ class LevelMaker:
 
 
 def content_key(mesh, least_triangles):
-    """Hash everything that the levels of a mesh depend on.
+    """Return a hash of all that the levels of a mesh depend on.
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ def content_key(mesh, least_triangles):
 
 
 def _shape_key(mesh, positions, places, seams, least_triangles):
-    """Hash what the collapses depend on: places, the triangles between them, slots and seams."""
+    """Return a hash of what collapses depend on: places, triangles, material slots, seams."""
     shape = _bare(mesh, positions, places)
     digest = hashlib.blake2b(f"{least_triangles} {mesh.slots}".encode(), digest_size=20)
     for array in (shape.positions, shape.triangles, seams):
@@ -208,10 +208,10 @@ def _shape_key(mesh, positions, places, seams, least_triangles):
 
 
 def _bare(mesh, positions, places):
-    """Return a shape with one vertex for each place, and nothing on it.
+    """Return a shape with one vertex for each place, without attributes.
 
-    How a mesh is split along its seams changes with its normals, and so from frame to frame; which
-    places merge does not depend on that.
+    The splitting of vertices along seams depends on the normals, and so on the frame; collapses
+    must not depend on it.
     """
     first = np.zeros(int(places.max(initial=-1)) + 1, np.intp)
     # Written from the back, so that a place's first vertex stands for it.
@@ -222,7 +222,7 @@ def _bare(mesh, positions, places):
 
 
 def _meet(positions, places):
-    """Whether the vertices of each place lie at one position."""
+    """Whether all vertices of each place have the same position."""
     count = int(places.max(initial=-1)) + 1
     if count == len(places):
         return True

@@ -1,4 +1,4 @@
-"""What one client of a `LevelStore` asked for, and how much of it is made."""
+"""The levels of detail that one client of a `LevelStore` has requested, and their progress."""
 
 from collections import OrderedDict
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ from .level_making import LevelWork
 
 @dataclass(eq=False)
 class LevelRequests:
-    """The meshes of one handle whose levels of detail are wanted.
+    """The meshes of one handle whose levels of detail are requested.
 
     Not safe to use from several threads at once: `LevelStore` holds its lock meanwhile.
 
@@ -29,9 +29,9 @@ class LevelRequests:
     errors : dict of int to Exception
         Why the levels of a mesh could not be made.
     work : LevelWork
-        Done for this client so far.
+        Work done for this client so far.
     waits : bool
-        The client does nothing else until all is made.
+        The client waits for its levels, so they are made first.
     """
 
     least_triangles: int = 0
@@ -46,7 +46,7 @@ class LevelRequests:
     waits: bool = False
 
     def replace(self, meshes, least_triangles):
-        """Want these meshes in place of those before; what they lack is not in the queue yet."""
+        """Request these meshes instead of the previous ones; nothing is queued yet."""
         if least_triangles != self.least_triangles:
             self.least_triangles = least_triangles
             self.keys.clear()
@@ -59,7 +59,7 @@ class LevelRequests:
             self.batch.pop(uid, None)
 
     def enqueue(self, made, current):
-        """Put what is wanted and lacking into the queue, the meshes with most triangles last.
+        """Queue the requested meshes without levels, those with most triangles last.
 
         Parameters
         ----------
@@ -104,26 +104,26 @@ class LevelRequests:
         return min(sum(self.done.values()) + self.begun, total), total
 
     def finish_mesh(self, uid):
-        """Take note that a mesh is done, with levels or with an error."""
+        """Count a mesh as done, with levels or with an error."""
         self.begun = 0
         if uid in self.batch:
             self.done[uid] = self.batch[uid]
 
     def give_up(self):
-        """Ask for nothing that is still to be made."""
+        """Drop the requests whose levels are not made yet."""
         self.queue.clear()
         self.batch.clear()
         self.done.clear()
         self.begun = 0
 
     def begin_anew(self):
-        """Forget what was made and what went wrong; all that is wanted is lacking."""
+        """Forget levels and errors: all requested levels have to be made again."""
         self.keys.clear()
         self.errors.clear()
         self.give_up()
 
     def end(self):
-        """Want nothing any more."""
+        """Drop all requests."""
         self.give_up()
         self.wanted.clear()
         self.keys.clear()

@@ -1,9 +1,9 @@
-"""The levels of detail of the scene's meshes: made in the background, kept, shared.
+"""The store of levels of detail: made in a background thread, cached, shared between clients.
 
-Every client - each scene that 3D views show, each final render - opens a handle of its own, asks by
-it, waits by it, and hears by it of its own errors; none sees what others ask for. Behind the
-handles, meshes of equal content share their levels, and one thread makes what is missing, first
-for those who wait. What is kept from before only saves time: see `level_making`.
+Every client (each scene that 3D views show, each final render) opens a handle of its own, by which
+it requests levels, waits for them, and gets its own errors; none sees the requests of others.
+Behind the handles, meshes of equal content share their levels, and one thread makes what is
+missing, first for clients that wait. Caches only save time: see `level_making`.
 """
 
 import atexit
@@ -22,7 +22,7 @@ from .made_levels import MadeLevels
 
 _MEMORY_LIMIT = 1 << 30
 _DISK_LIMIT = 2 << 30
-# How often a waiting caller looks whether it was cancelled.
+# Seconds between checks of a waiting caller whether it was cancelled.
 _POLL_SECONDS = 0.05
 
 
@@ -35,19 +35,19 @@ class _Job:
 
 
 class LevelStore:
-    """Levels of detail by the content of meshes, shared by all that open a handle.
+    """Levels of detail by the content of meshes, shared by all handles.
 
-    Safe to use from several threads. The work is done by one thread, which exists while there is
-    some.
+    Safe to use from several threads. One thread makes the levels; it exists while there are
+    requests.
 
     Parameters
     ----------
     memory_limit : int
-        Bytes of levels that are kept for meshes that nobody requests at the moment.
+        Most bytes of levels that are kept for meshes without requests.
     folder : Path, optional
-        For the collapses of large meshes; default the user's cache.
+        Folder of the collapses of large meshes; default the user's cache.
     disk_limit : int
-        Bytes that the folder may take.
+        Most bytes of the folder.
 
     Attributes
     ----------
@@ -61,8 +61,8 @@ class LevelStore:
         self._maker = LevelMaker(files, memory_limit)
         self._changed = threading.Condition()
         self._clients = []
-        # Of handles that were lost without being closed; taken off where the lock is held, because
-        # garbage may be collected anywhere.
+        # Clients of handles that were garbage-collected without being closed. They are removed
+        # later under the lock, because garbage may be collected in any thread.
         self._abandoned = deque()
         self._made = MadeLevels(memory_limit)
         self._generation = 0
@@ -77,7 +77,7 @@ class LevelStore:
         Returns
         -------
         LevelHandle
-            To be closed; one that is lost closes itself.
+            To be closed; one that is garbage-collected closes itself.
         """
         client = LevelRequests()
         with self._changed:
@@ -88,7 +88,7 @@ class LevelStore:
 
     @property
     def progress(self):
-        """Triangles of full detail that are done, and in all, of all handles together."""
+        """Triangles of full detail that are done, and their total, over all handles."""
         with self._changed:
             self._forget_abandoned()
             pairs = [client.progress() for client in self._clients]
@@ -108,12 +108,12 @@ class LevelStore:
 
     @property
     def generation(self):
-        """How often everything was forgotten; levels of an earlier generation are out of date."""
+        """Number of rebuilds so far; levels of an earlier generation are out of date."""
         with self._changed:
             return self._generation
 
     def rebuild(self):
-        """Forget every level, in memory and on disk, and make the requested ones again."""
+        """Clear all levels, in memory and on disk, and make the requested ones again."""
         self._maker.forget()
         with self._changed:
             # What is being made at this moment was begun with what is forgotten now.
@@ -169,7 +169,7 @@ class LevelStore:
             self._thread.start()
 
     def _take_job(self):
-        """Take the next mesh off a queue, of those who wait for it first; None if all is done."""
+        """Take the next mesh off a queue, waiting clients first; None if all is done."""
         self._forget_abandoned()
         busy = [client for client in self._clients if client.queue]
         if not busy or self._stopping:
@@ -226,7 +226,7 @@ class LevelStore:
             client.finish_mesh(uid)
 
     def _check(self, done):
-        """Raise if nobody needs any more what is being made; called from within the work."""
+        """Raise an exception if no client needs the mesh in progress; called from the work."""
         with self._changed:
             self._forget_abandoned()
             job = self._job
@@ -241,7 +241,7 @@ class LevelStore:
 
 
 class LevelHandle:
-    """What one client asks of a `LevelStore`; made by `LevelStore.open`.
+    """The access of one client to a `LevelStore`; made by `LevelStore.open`.
 
     A handle is used from one thread at a time; closing it is allowed from any.
     """
@@ -259,10 +259,10 @@ class LevelHandle:
         self.close()
 
     def request(self, meshes, least_triangles):
-        """Ask for the levels of meshes, in place of those asked for before by this handle.
+        """Request the levels of meshes, instead of the previous request of this handle.
 
-        Returns at once; a thread makes what is not here yet, the meshes with most triangles last.
-        Work on a mesh that has begun goes on: the next one may be the same, deformed.
+        Returns at once; a thread makes missing levels, the meshes with most triangles last. Work
+        on a mesh that has begun goes on: the next mesh may be the same, deformed.
 
         Parameters
         ----------
@@ -282,19 +282,19 @@ class LevelHandle:
         Returns
         -------
         tuple of MeshSnapshot or None
-            From level 1 up, empty if it cannot be simplified; None while they are not made.
+            From level 1 up; empty if it cannot be simplified, None while they are not made.
         """
         return self._store._ready(self._client, uid)
 
     @property
     def progress(self):
-        """Triangles of full detail done, and in all, since this handle had nothing to wait for."""
+        """Triangles of full detail done, and their total, since all requests were last met."""
         with self._store._changed:
             return self._client.progress()
 
     @property
     def work(self):
-        """What was done for this handle so far, as `LevelWork`."""
+        """Work done for this handle so far, as `LevelWork`."""
         return self._client.work
 
     @property
@@ -316,20 +316,19 @@ class LevelHandle:
         progress : callable, optional
             Called with the triangles done and their total.
         cancelled : callable, optional
-            Tells whether to give up.
+            Returns whether to stop waiting.
 
         Returns
         -------
         dict of int to tuple of MeshSnapshot
-            By uid, as `ready` returns them; there, also where all is rebuilt at this moment.
+            By uid, as `ready` returns them; complete even during a `LevelStore.rebuild`.
 
         Raises
         ------
         RenderCancelledError
-            If `cancelled` says so; what this handle asked for and nobody else does is not made
-            then, and nothing counts as left to do.
+            If `cancelled` returns True; requests that only this handle has are then dropped.
         Exception
-            What went wrong with a mesh of this handle; the next call tries again.
+            The error of a mesh of this handle; the next call tries again.
         """
         store, client = self._store, self._client
         client.waits = True
@@ -351,7 +350,7 @@ class LevelHandle:
         return found
 
     def _all_ready(self):
-        """Return all levels, or None where some are missing; somebody is making them, then."""
+        """Return all levels, or None while some are missing and being made."""
         store, client = self._store, self._client
         with store._changed:
             store._enqueue(client)
@@ -364,7 +363,7 @@ class LevelHandle:
             return {uid: store._ready(client, uid) for uid in client.wanted}
 
     def close(self):
-        """Want nothing any more; what is being made for this handle alone is given up."""
+        """Drop all requests; work for this handle alone is stopped."""
         self._store._remove(self._client)
 
 

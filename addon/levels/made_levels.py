@@ -1,17 +1,17 @@
-"""The levels of detail that are in memory, by the content of their meshes."""
+"""Memory cache of levels of detail, by the content of their meshes."""
 
 from collections import OrderedDict
 
 
 class MadeLevels:
-    """Levels of detail by content; those that nobody uses go when they take too much memory.
+    """Levels of detail by content; unused ones are dropped when they take too much memory.
 
     Not safe to use from several threads at once: `LevelStore` holds its lock meanwhile.
 
     Parameters
     ----------
     memory_limit : int
-        Bytes of levels that are kept though nobody uses them.
+        Most bytes of unused levels.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class MadeLevels:
         self._sizes = {}
 
     def __contains__(self, key):
-        """Whether the levels of a key are here."""
+        """Whether the levels of a key are cached."""
         return key in self._levels
 
     @property
@@ -38,7 +38,7 @@ class MadeLevels:
         return self._levels.get(key)
 
     def add(self, key, levels):
-        """Take levels in.
+        """Add levels.
 
         Parameters
         ----------
@@ -50,17 +50,17 @@ class MadeLevels:
         self._sizes[key] = size_of_levels(levels)
 
     def clear(self):
-        """Forget all levels."""
+        """Remove all levels."""
         self._levels.clear()
         self._sizes.clear()
 
     def make_room(self, used):
-        """Drop what was used longest ago, until what nobody uses keeps to the limit.
+        """Drop unused levels, least recently used first, until they keep to the limit.
 
         Parameters
         ----------
         used : set of bytes
-            Keys of levels that somebody uses now; they stay.
+            Keys of levels in use; they stay.
         """
         for key in used & self._levels.keys():
             self._levels.move_to_end(key)

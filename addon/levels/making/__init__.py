@@ -1,1 +1,1 @@
-"""From a mesh to its next level of detail."""
+"""Mesh simplification: from a mesh to its next level of detail."""

@@ -1,15 +1,15 @@
-"""One mesh at several levels of detail: every part as coarse as its own blur allows.
+"""Graded meshes: one mesh at several levels of detail, each part as coarse as its blur allows.
 
-A vertex of full detail becomes the vertex of a coarser level that it was merged into; a triangle
-becomes that of its three corners' vertices. As each vertex becomes one other, and all vertices at
-one place become vertices at one place, nothing opens where levels meet. A place of a level is used
-only if everything that was merged into it is blurred enough: the levels then meet along the
-outlines of what merged, without folds across them.
+A vertex of full detail is replaced by the vertex of a coarser level that it was merged into, a
+triangle by that of its three corners' replacements. As each vertex has one replacement, and all
+vertices at one place get replacements at one place, no cracks open where levels meet. A place of a
+level is used only if all vertices that were merged into it are blurred enough: levels then meet
+along the outlines of merged regions, without folds across them.
 
-How much blur a place needs is known before there is a view. The triangles round it must be smaller
-than the blur; and because a triangle's colours are linear, what the colour at its corner stands out
-from them is spread over its area, and must be faint in that of the blur. What a level moves,
-textures above all, must be small in the blur, too.
+The blur that a place needs does not depend on the view. The triangles round it must be smaller than
+the blur. Colours are interpolated linearly over a triangle, so the difference of the colour at a
+corner from its surroundings is spread over the triangle's area, and must be faint in the area of
+the blur. Displacements by a level, of textures above all, must be small in the blur, too.
 """
 
 import numpy as np
@@ -18,17 +18,17 @@ from ...snapshot.scene import MeshSnapshot, next_uid
 from .level_collapses import weld
 from .mesh_levels import slots_of, surviving
 
-# A colour may stand out by this much where triangles are as large as the blur, and by more in
-# proportion where they are smaller. On dragons with baked highlights, whose dragon in focus then
-# has half its triangles, grading takes 0.0002 of the SSIM; twice this value takes 0.0005 and saves
-# next to nothing more.
+# Largest difference of a vertex colour from its neighbours where triangles are as large as the
+# blur; more in proportion where they are smaller. On dragons with baked highlights, where half of
+# the triangles of the dragon in focus are saved, grading costs 0.0002 of the SSIM; twice this value
+# costs 0.0005 and saves next to nothing more.
 _FAINT = 0.0225
-# Vertices that are looked at to estimate what is left.
+# Number of vertices from which the share of triangles that is left is estimated.
 _PROBES = 4096
 
 
 class MergeTree:
-    """What the vertices of a mesh become from level to level; independent of the view.
+    """The merging of a mesh' vertices from level to level; independent of the view.
 
     Parameters
     ----------
@@ -84,19 +84,19 @@ class MergeTree:
         Parameters
         ----------
         blur : ndarray of shape (V,)
-            How large triangles may be at each vertex of full detail: an area in the space of the
-            mesh, 0 in focus. Vertices at one place have the same.
+            Largest area of triangles at each vertex of full detail, in the space of the mesh; 0 in
+            focus. Vertices at one place have the same.
 
         Returns
         -------
         MeshSnapshot
-            The vertices that its triangles touch, with all attributes.
+            Graded mesh: the vertices that its triangles use, with all attributes.
         """
         allowed = self._allowed(blur)
         deepest = len(allowed)
         mesh = self._meshes[0]
         triangles = self._vertices(allowed)[mesh.triangles]
-        # What is not merged cannot have come to lie on anything.
+        # Triangles without merged corners cannot have become duplicates.
         moved = (triangles >= len(mesh.positions)).any(axis=1)
         changed = np.flatnonzero(moved)
         places = self._numbered_places(deepest)[triangles[changed]]
@@ -107,7 +107,7 @@ class MergeTree:
         return self._compact(triangles[kept], slots_of(mesh.slots, kept), deepest)
 
     def _allowed(self, blur):
-        """Return, for the levels from 1 up, which of their places are used or merged further."""
+        """Return, for each level from 1 up, which of its places are used or merged further."""
         least = np.zeros(_count(self._places[0]))
         least[self._places[0]] = blur
         allowed = []
@@ -126,7 +126,7 @@ class MergeTree:
         return allowed
 
     def _vertices(self, allowed):
-        """Return what each vertex of full detail becomes; levels are numbered one after another."""
+        """Return the replacement of each vertex of full detail, numbered through all levels."""
         counts = [len(mesh.positions) for mesh in self._meshes]
         firsts = np.cumsum([0, *counts])
         vertex_of = None
@@ -141,7 +141,7 @@ class MergeTree:
         return vertex_of
 
     def _numbered_places(self, deepest):
-        """Return the places of all vertices; levels are numbered one after another."""
+        """Return the places of all vertices, numbered through all levels."""
         parts, first = [], 0
         for places in self._places[: deepest + 1]:
             parts.append(places + np.int32(first))
@@ -188,16 +188,16 @@ def _needed_blur(mesh, places):
         if key.startswith("color:"):
             for channel in values[:, :3].T:
                 np.maximum(contrast, _standing_out(channel, places, corners, uses), out=contrast)
-    # What has moved, textures with it, shows under less blur than the places' mean asks for; half
-    # of a triangle's area is seen at an average angle.
+    # Displaced textures need more blur than the mean of the places; on average half of a triangle's
+    # area is seen.
     moves = np.pi / 2.0 * mesh.errors.blur_of_moves**2
     return areas * np.maximum(contrast / _FAINT, max(moves / max(mesh.triangle_area, 1e-300), 1.0))
 
 
 def _standing_out(values, places, corners, uses):
-    """Return by how much each place's value differs from the mean of those round it."""
+    """Return the difference of each place's value from the mean of its neighbours."""
     own = np.zeros(len(uses))
-    # Of the sides of a seam, one stands for all.
+    # One side of a seam is used for all.
     own[places] = values
     around = own[corners]
     whole = around.sum(axis=0)

@@ -1,12 +1,11 @@
-"""What the vertices of a level of detail carry.
+"""Vertex attributes of a level of detail: colours, normals, UVs.
 
-Colours and normals are those that come nearest, in the mean square over the surface, to the old
-ones: the old vertices are projected to the new triangles, and the values there fitted by least
-squares. Each part keeps the mean of every attribute over its surface; what was not negative is
-light: it stays so, and stays on its side. It is the mean that is kept and not the integral: finer
-wrinkles are lost with their area, but nobody sees less of the surface.
-UVs are read where a new vertex lies nearest to the old triangles, so that they stay inside their
-part of the texture.
+Colours and normals are a least-squares fit to the old ones over the surface: the old vertices are
+projected to the new triangles, and the interpolated values fitted there. Each part keeps the mean
+of every attribute over its surface. Colours that were not negative stay so, and light stays on its
+side of the surface. The mean is kept and not the integral: fine wrinkles are lost with their area,
+but the visible surface does not get smaller. UVs are read at the place of the old triangles nearest
+to a new vertex, so that they stay inside their part of the texture.
 
 References
 ----------
@@ -21,18 +20,18 @@ from .level_errors import ErrorMeter, LevelErrors, edge_length, moved_by_pairs
 from .level_parts import mixed
 from .level_projection import vertex_areas
 
-# Steps of conjugate gradients, scaled by the vertices' areas; what is left to converge is below a
-# hundredth of the values' deviation.
+# Steps of conjugate gradients, preconditioned by the vertices' areas; they converge to a hundredth
+# of the values' deviation.
 _STEPS = 6
-# Share of a plain mean in the fit: where few samples lie, it decides.
+# Weight of the plain mean in the fit: it decides where there are few samples.
 _MEAN_WEIGHT = 0.1
-# Of a value that is not negative, in means of the merged ones: so it can still grow by a factor.
+# Least value of a non-negative channel, in means of the merged ones, so that factors can raise it.
 _LEAST_SHARE = 0.01
-# Steps by Lucy after the least squares.
+# Richardson-Lucy steps after the least squares.
 _LUCY_STEPS = 2
-# How much values change at most to keep light on its side.
+# Largest change of values to keep light on its side of the surface.
 _MOST_GAIN = 1.2
-# Steps by which normals keep their mean; each is exact but for their length.
+# Steps by which the mean of the normals is kept; each is exact but for their length.
 _NORMAL_STEPS = 2
 
 
@@ -136,7 +135,7 @@ class _Fit:
         return result
 
     def leaning(self, normals, old):
-        """Return unit normals whose mean over each part is the old ones', as far as they can.
+        """Return unit normals with the old mean over each part, as far as possible.
 
         Parameters
         ----------
@@ -169,7 +168,7 @@ class _Fit:
             following = (residual * scaled).sum()
             direction = scaled + following / max(length, 1e-300) * direction
             length = following
-        # Within the range of the old ones, widened by as much again.
+        # Bounded by the range of the old values, widened by as much again.
         low = np.minimum.reduceat(old, samples.first)
         high = np.maximum.reduceat(old, samples.first)
         spread = widening * (high - low)
@@ -177,7 +176,7 @@ class _Fit:
         if not positive:
             return np.clip(x, low, high)
         x = np.clip(x, np.maximum(low, _LEAST_SHARE * mean), high)
-        # What the bounds added is taken away again round about.
+        # What the bounds have added is subtracted from the neighbours.
         hold = mean_weight * samples.mass
         whole = samples.gather(1.0) + samples.still_mass + hold
         least = max(old.max(), 1e-300) * 1e-12
@@ -193,10 +192,10 @@ class _Fit:
         return samples.gather(samples.at(x)) + hold * x
 
     def _with_light(self, x, every):
-        """Scale values so that each part keeps their mean, and their integral by its direction.
+        """Scale values so that each part keeps their mean, and their first moment over direction.
 
-        A blur of colours carries light from the lit side of a surface to the other one, and each
-        side that is seen would change.
+        Blurred colours carry light from the lit side of a surface to the other, which would change
+        the brightness of each side.
         """
         wanted = np.stack([self._of_old(row) for row in self._old * every])
         wanted[3] *= self._new_size / np.maximum(self._old_size, 1e-300)
@@ -212,12 +211,12 @@ class _Fit:
             self._spread(g) * slope for g, slope in zip(gain, self._slopes, strict=True)
         )
         x = x * np.clip(factor, 1.0 / _MOST_GAIN, _MOST_GAIN)
-        # What clipping left.
+        # Correct the mean after clipping.
         total = self._of_new(self._new[3] * x)
         return x * self._spread(np.where(total > 0.0, wanted[3] / np.maximum(total, 1e-300), 1.0))
 
     def _mixed(self, x, every):
-        """Give parts that took others in the mean of both colours, vertex by vertex."""
+        """Give parts that have absorbed others the mean of both colours, vertex by vertex."""
         step = self._step
         if step.pairs is None:
             return x
@@ -232,7 +231,7 @@ class _Fit:
         return x
 
     def _missing(self, x, every):
-        """Return what the mean over each part lacks."""
+        """Return the difference of the mean over each part from the old one."""
         wanted = self._of_old(self._old[3] * every) / np.maximum(self._old_size, 1e-300)
         return wanted - self._of_new(self._new[3] * x) / self._new_size
 
@@ -248,7 +247,7 @@ class _Fit:
         return np.bincount(self._new_part, values, self._part_count)
 
     def _spread(self, of_parts):
-        """Return what each new vertex has from its part."""
+        """Return the value of each new vertex' part."""
         return of_parts[0] if self._new_part is None else of_parts[self._new_part]
 
 
@@ -257,10 +256,10 @@ def _unit(vectors):
 
 
 def _upright_facets(normals, positions, step):
-    """Give a vertex of one triangle only, a flat facet's, that facet's own normal."""
+    """Give vertices with a single triangle (of flat facets) that triangle's normal."""
     triangles = step.triangles
     uses = np.bincount(triangles.ravel(), minlength=len(positions))
-    # What stands alone only now is what is left of a smooth side of a seam.
+    # Vertices that have got a single triangle only now belong to a smooth side of a seam.
     samples = step.projection
     before = np.bincount(step.mesh.triangles.ravel(), minlength=len(step.mesh.positions))
     before = np.maximum.reduceat(before[samples.members], samples.first)

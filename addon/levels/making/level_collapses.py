@@ -1,9 +1,9 @@
-"""Which places of a mesh merge into one in the next level of detail.
+"""Edge collapses: which places of a mesh merge into one in the next level of detail.
 
-fast-simplification decides the collapses. It holds the interpreter while it works, so a large mesh
-is given to it in patches; their rims stay as they are, and lie elsewhere in the next level. It
-never moves a border's vertex inwards, so a mesh of many holes would stay as it is: holes are closed
-by cones for it, whose steep sides hold the border as Garland's perpendicular planes do, while a
+fast-simplification decides the collapses. It holds the interpreter lock while it works, so a large
+mesh is given to it in patches; their rims are kept, and lie elsewhere in the next level. It never
+moves a border's vertex inwards, so a mesh of many holes would not be simplified: holes are closed
+by cones first, whose steep sides hold the border as Garland's perpendicular planes do, while a
 small hole may vanish.
 """
 
@@ -15,12 +15,12 @@ import numpy as np
 
 from .level_parts import paired, small_parts
 
-# fast-simplification's thresholds begin at 2e-6 in squared lengths: the mesh is scaled so that its
-# edges are long against that, and the best collapses come first.
+# Scaled edge length: fast-simplification's thresholds begin at 2e-6 in squared lengths, so edges
+# must be much longer for the best collapses to come first.
 _EDGE_LENGTH = 0.5
-# Triangles that the library gets at once: some 20 ms of work, and its data fit into a cache.
+# Triangles of a patch: some 20 ms of work, and its data fit into a cache.
 _PATCH = 32_000
-# Of a triangle that takes part, in mean areas.
+# Least area of a triangle that takes part, in mean areas.
 _LEAST_AREA = 1e-9
 # Height of the cone over a hole, in radii of the hole.
 _CONE_HEIGHT = 3.0
@@ -31,7 +31,7 @@ _library = threading.Lock()
 
 @dataclass(frozen=True, eq=False)
 class Halving:
-    """How one level follows from the one before.
+    """The collapses from one level to the next.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Halving:
 
 
 class Surface:
-    """The places of a mesh and its triangles between them: what collapses depend on.
+    """The welded surface of a mesh: its places and the triangles between them.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class Surface:
     seams : ndarray of shape (E, 2)
         Of its places; see `level_seams`.
     parts : ndarray of shape (P,), optional
-        The part of each place, where that is known.
+        The connected part of each place, if it is known.
 
     Attributes
     ----------
@@ -85,12 +85,12 @@ class Surface:
 
     @cached_property
     def borders(self):
-        """The edges that one triangle has alone, and those triangles: see `borders`."""
+        """The edges with a single triangle, and those triangles: see `borders`."""
         return borders(self.faces, len(self.points))
 
     @cached_property
     def parts(self):
-        """The part of each place: what edges connect."""
+        """The connected part of each place."""
         if self._parts is not None:
             return self._parts
         edges = np.concatenate([self.faces[:, :2], self.faces[:, 1:]])
@@ -103,7 +103,7 @@ class Surface:
 
 
 def weld(positions):
-    """Give a number to each distinct position, bit by bit, in the order of their first vertices.
+    """Weld vertices: number the distinct positions in the order of their first vertices.
 
     Parameters
     ----------
@@ -148,20 +148,20 @@ def differ(a, b):
 
 
 def _numbered(first):
-    """Give numbers to runs, from an array that holds each entry's first of its run."""
+    """Number the runs of an array that holds the first entry of each entry's run."""
     leads = np.zeros(len(first), bool)
     leads[first] = True
     return (np.cumsum(leads, dtype=np.int32) - 1)[first]
 
 
 def decimate(surface, triangles, slots=(), check=None):
-    """Decide which places merge.
+    """Choose the collapses of places for the next level.
 
     Parameters
     ----------
     surface : Surface
     triangles : int
-        How many to leave.
+        Number of triangles to leave.
     slots : sequence of (int, int, int), optional
         Material slot, first triangle and count, of the mesh.
     check : callable, optional
@@ -172,7 +172,7 @@ def decimate(surface, triangles, slots=(), check=None):
     Halving
     """
     points, faces, normal = surface.points, surface.faces, surface.normal
-    # A triangle without area has no plane, and none of its errors would be a number.
+    # A triangle without area has no plane, and its quadric error would be NaN.
     proper = surface.size > _LEAST_AREA * surface.size.mean()
     small, of_face = small_parts(surface)
     pairs = np.empty((0, 2), np.int64)
@@ -204,10 +204,10 @@ def decimate(surface, triangles, slots=(), check=None):
 
 
 def _scaled(surface, points, faces):
-    """Return points with edges of one mean length in every part.
+    """Scale every part to the same mean edge length.
 
-    So each part loses the same share of its triangles: against one bound for the whole mesh, small
-    lamps beside large ones would vanish before those are touched.
+    So each part loses the same share of its triangles: with one error bound for the whole mesh,
+    small parts would vanish before large ones are touched.
     """
     along = (points[faces[:, 0]] - points[faces[:, 1]]).T
     length = np.sqrt(np.square(along).sum(axis=0))
@@ -230,7 +230,7 @@ def _collapse(points, faces, share, in_part):
     """Return the collapses, shape (C, 2), that leave a share of a patch's faces."""
     import fast_simplification
 
-    # An order without meaning: the library stops in the midst of a round.
+    # A random order of the triangles: the library stops in the middle of a round.
     corners = faces[np.random.default_rng(0).permutation(len(faces))].ravel()
     number = np.empty(len(points), np.int32)
     number[corners] = np.arange(len(corners), dtype=np.int32)
@@ -251,7 +251,7 @@ def _patches(points, faces):
     """Split faces into patches of about equal number by planes; return the faces of each."""
     if len(faces) <= _PATCH:
         return [np.arange(len(faces))]
-    # Turned at random, level by level, so that no rim lies where one was in the level before.
+    # Rotated at random for each level, so that no rim lies where one was in the level before.
     turn, _ = np.linalg.qr(np.random.default_rng(len(faces)).normal(size=(3, 3)))
     columns = [np.ascontiguousarray(corner) for corner in faces.T]
     centers = []
@@ -267,7 +267,7 @@ def _split(centers, chosen, parts):
     if parts <= 1 or len(chosen) == 0:
         return [chosen] if len(chosen) else []
     axis = max(centers, key=np.ptp)
-    # A sample tells well enough where the middle is.
+    # A sample of the centres is enough for the median.
     sample = np.sort(axis[:: max(len(axis) // 4096, 1)])
     low = axis < sample[len(sample) * (parts // 2) // parts]
     result = []
@@ -283,7 +283,7 @@ def _points(positions, places):
 
 
 def _groups(collapses, count, apexes):
-    """Follow the collapses: each moves its second place into its first."""
+    """Return the group of each place: collapses move their second place into their first."""
     target = np.arange(count + apexes)
     target[collapses[:, 1]] = collapses[:, 0]
     while True:
@@ -291,7 +291,7 @@ def _groups(collapses, count, apexes):
         if np.array_equal(following, target):
             break
         target = following
-    # Numbered by the first place of each group, which is no apex.
+    # Groups are numbered by their first place, which is never an apex.
     target = target[:count]
     first = np.empty(count + apexes, np.int64)
     first[target[::-1]] = np.arange(count)[::-1]
@@ -319,7 +319,7 @@ def facets(points, faces):
 
 
 def borders(faces, count):
-    """Return the edges that one triangle has alone, shape (E, 2), and those triangles.
+    """Return border edges, those of a single triangle, shape (E, 2), and their triangles.
 
     Parameters
     ----------
@@ -327,9 +327,9 @@ def borders(faces, count):
     count : int
         Of the places.
     """
-    # Triangles that face the same way have the edge between them in both directions. The numbers
-    # of its ends, signed by the direction, then cancel at its first; they are replaced by random
-    # ones, so that others do not.
+    # Two triangles of the same orientation have their common edge in both directions. The numbers
+    # of the edge's ends, signed by direction, then cancel; they are replaced by random ones, so
+    # that other edges' numbers do not cancel by chance.
     label = np.random.default_rng(0).integers(1, 1 << 40, count).astype(np.float64)
     balance = np.zeros(count)
     columns = [np.ascontiguousarray(corner) for corner in faces.T]
@@ -359,7 +359,7 @@ def borders(faces, count):
 
 
 def _cones(points, border, owner, normal):
-    """Return apexes over the holes, shape (K, 3), and triangles from the borders to them."""
+    """Return apexes of cones over the holes, shape (K, 3), and the cones' triangles."""
     if len(border) == 0:
         return np.empty((0, 3)), np.empty((0, 3), np.int32)
     used, local = np.unique(border, return_inverse=True)
@@ -382,7 +382,7 @@ def _cones(points, border, owner, normal):
 
 
 def connected(edges, count):
-    """Give a number to each part that edges connect.
+    """Label connected components.
 
     Parameters
     ----------
@@ -393,13 +393,13 @@ def connected(edges, count):
     Returns
     -------
     ndarray of shape (count,)
-        The least node of each one's part.
+        The least node of each node's component.
     """
     label = np.arange(count)
     while True:
         least = np.minimum(label[edges[:, 0]], label[edges[:, 1]])
         following = label.copy()
-        # The roots are joined, too, so that the number of rounds grows with the logarithm.
+        # Roots are linked, too, so that the number of rounds is logarithmic.
         for end in edges.T:
             np.minimum.at(following, end, least)
             np.minimum.at(following, label[end], least)

@@ -1,11 +1,10 @@
-"""How much blur hides what a level of detail changes, measured as it is fitted.
+"""Errors of a level of detail, and the blur that hides them, measured as the level is made.
 
-A level's least squares fit leaves errors without a mean over a few triangles: a blur of diameter D
-spreads each over its area, and what is left is the share of the triangles that its rim cuts. So an
-error e of triangles with edges h shows as e (h / D)^1.5. A texture or an outline that has moved
-by s shows where it has edges, as s / D of their contrast; moves of different triangles are
-independent, which leaves a factor of (h / D)^0.5. Squares of both add up over the levels, each with
-its own h.
+A level's least-squares fit leaves errors whose mean over a few triangles is 0: a blur of diameter D
+averages them over its area, and only the triangles that its rim cuts contribute. So an error e of
+triangles with edges h shows as e (h / D)^1.5. A texture or an outline that is displaced by s shows
+at its edges, as s / D of their contrast; displacements of different triangles are independent,
+which leaves a factor of (h / D)^0.5. Squares of both add up over the levels, each with its own h.
 
 References
 ----------
@@ -17,15 +16,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# An error of normals by this much counts as one of colours: shading changes by less than its
-# normal, and by a part of full light.
+# Weight of an error of normals against one of colours: shading changes by less than the normal, and
+# by a part of full light.
 _SHADE_OF_NORMAL = 0.3
-# What does not show: an error of colours, and a move in diameters of the blur. Some times the
-# deviation that a picture of 42 dB has, as only a part of a picture errs. On toys with colours of
-# high contrast, levels then cost 43.5 dB; twice both values 40.8 dB, for a tenth less triangles.
+# Largest errors that do not show: of colours, and of displacements in diameters of the blur. Some
+# times the standard deviation of a picture with 42 dB, as only a part of a picture has errors. On
+# toys with colours of high contrast, levels then have 43.5 dB; with twice both values 40.8 dB, for
+# a tenth less triangles.
 _FAINT_COLOR = 0.015
 _FAINT_MOVE = 0.02
-# A texture is seen everywhere, an outline on some pixels: what it moves counts this much.
+# Weight of the displacement of an outline, which is seen on few pixels, against that of a texture.
 _OUTLINE_SHARE = 0.25
 # Edge of an equilateral triangle, in roots of its area.
 _EDGE = 1.52
@@ -33,23 +33,23 @@ _EDGE = 1.52
 
 @dataclass(frozen=True)
 class LevelErrors:
-    """Of a level against full detail.
+    """Errors of a level against full detail.
 
     Parameters
     ----------
     displacement : float
-        Sum of s^2 h, in cubed units of the object; s is the distance between where a piece of the
-        surface with its texture was and where it is, in the mean square.
+        Sum of s^2 h, in cubed units of the object; s: displacement of the surface and its texture,
+        root mean square.
     color : float
-        Sum of e^2 h^3; e is that of vertex colours, scene linear, of the channel that errs most.
-        Shading counts, too.
+        Sum of e^2 h^3; e: error of the vertex colours, scene linear, of the channel with the
+        largest. Shading counts, too.
     """
 
     displacement: float = 0.0
     color: float = 0.0
 
     def __add__(self, other):
-        """Return the errors of two levels, one after the other."""
+        """Return the accumulated errors of two successive levels."""
         return LevelErrors(self.displacement + other.displacement, self.color + other.color)
 
     @property
@@ -59,7 +59,7 @@ class LevelErrors:
 
     @property
     def blur_of_moves(self):
-        """The same of the displacement alone."""
+        """Diameter of the blur that hides the displacement alone, in units of the object."""
         return self._hidden(self.displacement / _FAINT_MOVE**2)
 
     @staticmethod
@@ -74,17 +74,17 @@ def edge_length(step):
 
 
 def moved_by_pairs(step):
-    """Return the mean squared move of the surface by parts that became one."""
+    """Return the mean squared displacement of the surface by the merging of small parts."""
     if step.pairs is None:
         return 0.0
     return step.pair_moves / max(float(step.surface.size.sum()), 1e-300)
 
 
 class ErrorMeter:
-    """Measures the values of a level at the vertices of the level before.
+    """Measures the errors of a level's attributes at the vertices of the level before.
 
-    Each error counts with the edges of the triangles where it is: on flat parts of a body those are
-    far longer than in the mean.
+    Each error is weighted with the edge length there: on flat parts edges are far longer than the
+    mean.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class ErrorMeter:
         self._displacement, self._color = max(_OUTLINE_SHARE * distance, of_pairs), 0.0
 
     def add(self, key, values, old):
-        """Count an attribute.
+        """Add the errors of an attribute.
 
         Parameters
         ----------
@@ -131,7 +131,7 @@ class ErrorMeter:
         return LevelErrors(float(self._displacement), float(self._color))
 
     def _mean_square(self, values, old, power):
-        """Return the mean of one component's squared errors, times a power of the edges there."""
+        """Return the mean squared error of one component, weighted by a power of the edges."""
         samples = self._samples
         old = old[samples.members].astype(np.float64)
         weight = samples.area * self._edge**power
@@ -140,9 +140,9 @@ class ErrorMeter:
         return float((weight * np.square(error)).sum()) / self._total
 
     def _length_of_uv(self, uv):
-        """Return how long a unit of the texture is on the surface, in the mean."""
+        """Return the mean length of a unit of UV on the surface."""
         a, b, c = (uv[corner].astype(np.float64) for corner in self._triangles.T)
         (x, y), (z, w) = (b - a).T, (c - a).T
         covered = float(np.abs(x * w - y * z).sum()) / 2.0
-        # A texture that covers nothing is one colour.
+        # A mesh whose UVs cover no area has one colour of its texture.
         return np.sqrt(self._surface / covered) if covered > 0.0 else 0.0

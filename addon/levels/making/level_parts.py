@@ -1,8 +1,8 @@
-"""Small parts of a mesh in its next level of detail: needles, leaves, lamps, pebbles.
+"""Merging of small parts of a mesh in its next level of detail: needles, leaves, lamps, pebbles.
 
-What has a dozen triangles cannot lose half of them and stay what it is. Where a mesh is made of
-many such parts they go two by two: one of the pair stays, at the centre of both, with the area of
-both and the mean of their colours.
+A part of a dozen triangles cannot lose half of them and keep its shape. Where a mesh is made of
+many such parts they are merged in pairs: one of the pair stays, at the centre of both, with the
+area of both and the mean of their colours.
 
 References
 ----------
@@ -14,22 +14,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# A part of more triangles can be simplified by collapses: an octahedron cannot, a ball of twenty
-# triangles can.
+# Most triangles of a small part; larger ones can be simplified by collapses: an octahedron cannot,
+# a ball of twenty triangles can.
 _MOST_TRIANGLES = 12
-# Of a mesh' triangles, for parts to go in pairs; two eyes of a figure stay two.
+# Least share of a mesh' triangles in small parts for these to be merged: two eyes of a figure stay.
 _LEAST_SHARE = 0.25
-# Between two that become one, in sums of their radii: lamps far apart are seen at other distances,
-# before other things, and stay what they are.
+# Largest distance of a pair, in sums of their radii: parts far apart have other depths and
+# backgrounds, and are not merged.
 _MOST_DISTANCE = 3.0
-# Along each axis of the curve through all parts on which neighbours are paired.
+# Bits along each axis of the Morton curve on which neighbouring parts are paired.
 _CURVE_BITS = 10
-# Across a line of places, in shares of the extent along it.
+# Least extent of a part across its longest axis, as a share of that along it.
 _FLAT = 1e-9
 
 
 def small_parts(surface):
-    """Find the parts that collapses cannot simplify.
+    """Find the parts that are too small for collapses.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def small_parts(surface):
 
 
 def paired(surface, small, of_face, slots):
-    """Decide which small parts become one.
+    """Pair the small parts that are merged.
 
     Parameters
     ----------
@@ -61,8 +61,8 @@ def paired(surface, small, of_face, slots):
     Returns
     -------
     ndarray of shape (C, 2)
-        Collapses of places: all of a part that goes into one of the part that stays. Empty where
-        small parts are few.
+        Collapses of places: all places of a removed part into a place of the one that stays. Empty
+        where small parts are few.
     """
     chosen = np.flatnonzero(small[of_face])
     if len(chosen) < _LEAST_SHARE * len(of_face):
@@ -70,7 +70,7 @@ def paired(surface, small, of_face, slots):
     slot_of = np.repeat(np.arange(len(slots)), [count for _, _, count in slots])
     count = len(small)
     part, slot = of_face[chosen], slot_of[chosen]
-    # Both sides of a pair show one material.
+    # Both parts of a pair have the same material.
     low, high = np.full(count, len(slots)), np.full(count, -1)
     np.minimum.at(low, part, slot)
     np.maximum.at(high, part, slot)
@@ -98,14 +98,14 @@ def paired(surface, small, of_face, slots):
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Parts that took others in on the way to the next level.
+    """Pairs of parts that merge on the way to the next level.
 
     Parameters
     ----------
     passengers : ndarray of shape (P,)
-        bool; places of parts that went.
+        bool; places of removed parts.
     goes, stays : ndarray of shape (K,)
-        Parts.
+        The removed and the remaining part of each pair.
     """
 
     passengers: np.ndarray
@@ -114,7 +114,7 @@ class Pairs:
 
 
 def find_pairs(surface, groups):
-    """Find which parts became one by the groups of a halving; None if none did.
+    """Find the parts that the groups of a halving merge; None if there are none.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def following_parts(surface, groups, pairs):
 
 
 def grown(surface, pairs):
-    """Return where the places of parts that took others in lie then.
+    """Return the new places of the remaining parts, enlarged by the removed ones.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def grown(surface, pairs):
     places : ndarray of shape (K,)
     points : ndarray of shape (K, 3)
     moves : float
-        Squared moves of the parts' centres, by twice their areas.
+        Squared displacements of the parts' centres, weighted by twice their areas.
     """
     count = surface.part_count
     _, of_face = small_parts(surface)
@@ -224,7 +224,7 @@ def grown(surface, pairs):
 
 
 def mixed(surface, mesh, pairs, values):
-    """Return by what the colours of parts that took others in are multiplied.
+    """Return the factors that give the remaining parts the mean colour of their pairs.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def mixed(surface, mesh, pairs, values):
     Returns
     -------
     factor, summand : ndarray of shape (N,)
-        Of each part; the summand where there was nothing to multiply.
+        Of each part; the summand is used where the old colour is 0.
     """
     count = surface.part_count
     _, of_face = small_parts(surface)
@@ -277,7 +277,7 @@ def _radii(surface, center, small):
 
 
 def _axes(offset, part, growth):
-    """Return the principal axes of parts, and by how much they grow across the longest."""
+    """Return the principal axes of parts, and their growth across the longest axis."""
     count = len(growth)
     moments = np.empty((count, 3, 3))
     for i in range(3):

@@ -1,7 +1,7 @@
-"""Where the places that become one in the next level of detail merge to.
+"""Positions of merged places: quadric error minimisation.
 
-That is where the sum of squared distances from the planes of the triangles round the group,
-weighted by their area, is least: Garland's quadrics, solved for the whole group at once.
+A merged place minimises the sum of squared distances from the planes of the triangles round its
+group, weighted by their area: Garland's quadrics, solved for the whole group at once.
 
 References
 ----------
@@ -10,17 +10,18 @@ Garland and Heckbert, *Surface simplification using quadric error metrics*, SIGG
 
 import numpy as np
 
-# Weight of the perpendicular plane through a border or seam against the triangle there.
+# Weight of the perpendicular plane through a border or seam, relative to its triangle's.
 _BORDER_WEIGHT = 10.0
-# How much of the quadric's trace, without borders, pulls a merged place to the mean of its group.
+# Regularisation: share of the quadric's trace, without borders, that pulls a merged place to the
+# mean of its group.
 _PULL = 0.003
-# Weight of a seam's own direction, against the triangle there: along a curved seam its planes would
-# meet anywhere, so places keep the mean of their group along it.
+# Weight of the direction along a seam, relative to its triangle's: along a curved seam its planes
+# meet at ill-defined points, so places keep the mean of their group along it.
 _HOLD_ALONG_SEAMS = 2.0
 
 
 def merged_places(surface, groups):
-    """Return where the groups of places merge to.
+    """Return the positions of merged places.
 
     Parameters
     ----------
@@ -67,7 +68,7 @@ def merged_places(surface, groups):
     for row in (0, 3, 5):
         held[row] += hold
     move = _move(quadric, held, pull, mean)
-    # No farther than what merged: where planes are nearly parallel, they meet far away.
+    # Clamped to the extent of the group: nearly parallel planes meet far away.
     spread = sum(np.square(x - m[groups]) for x, m in zip(points.T, mean, strict=True))
     farthest = np.zeros(count)
     np.maximum.at(farthest, groups, spread)
@@ -78,7 +79,7 @@ def merged_places(surface, groups):
 
 
 def _through(points, edges, across):
-    """Return the planes through edges that hold what lies there, and their weights.
+    """Return the perpendicular planes through border or seam edges, and their weights.
 
     Parameters
     ----------
@@ -102,7 +103,7 @@ def _place_normals(surface):
 
 
 def _add_planes(quadric, pull, groups, moving, corners, points, normal, weight):
-    """Add the squared distances from planes to the groups at their corners, once a group.
+    """Add the quadrics of planes to the groups at their corners, once for each group.
 
     Parameters
     ----------
@@ -112,19 +113,19 @@ def _add_planes(quadric, pull, groups, moving, corners, points, normal, weight):
         Right sides; changed.
     groups : ndarray of shape (P,)
     moving : ndarray of shape (G,)
-        Which groups get planes.
+        bool; groups that get planes.
     corners : ndarray of shape (T, k)
         Places that each plane goes through.
     points : ndarray of shape (P, 3)
     normal : ndarray of shape (3, T)
-        As long as the plane weighs.
+        Normals, of the length of the plane's weight.
     weight : ndarray of shape (T,)
     """
     count = quadric.shape[1]
     target = []
     for corner in corners.T:
         group = groups[corner]
-        # A plane counts once for a group, however many of its corners are in it.
+        # A plane is added once to a group, however many of its corners are in it.
         once = moving[group]
         for other in target:
             once &= other != group
@@ -147,7 +148,7 @@ def _add_planes(quadric, pull, groups, moving, corners, points, normal, weight):
 
 
 def _move(quadric, held, pull, mean):
-    """Solve held x = pull - quadric mean, by cofactors: the matrices are well conditioned."""
+    """Solve held x = pull - quadric mean by cofactors; regularisation makes that stable."""
     xx, xy, xz, yy, yz, zz = quadric
     mx, my, mz = mean
     bx = pull[0] - (xx * mx + xy * my + xz * mz)

@@ -1,10 +1,10 @@
-"""Where what a mesh has lies on the triangles that follow it in the next level of detail."""
+"""Projection of a level's vertices to the triangles of the next level of detail."""
 
 import numpy as np
 
 from .level_collapses import differ, stable_order
 
-# Pairs of a point and a triangle that are looked at together; their numbers stay in a cache.
+# Pairs of a point and a triangle that are processed at once; they fit into a cache.
 _BLOCK = 1 << 15
 
 
@@ -35,7 +35,7 @@ class Projection:
     mass : ndarray of shape (W,)
         Sum of its members' areas.
     still, moved : ndarray
-        Indices of members: what did not move lies at its vertex, which needs no search.
+        Indices of members: those that did not move lie at their vertex and need no search.
     still_mass : ndarray of shape (W,)
         Area of the members of each new vertex that did not move.
     """
@@ -66,11 +66,11 @@ class Projection:
         self.moved_area = self.area[self.moved]
 
     def at(self, values):
-        """Return values of the new vertices, shape (W,), at the samples that moved."""
+        """Interpolate values of the new vertices, shape (W,), at the samples that moved."""
         return sum(w * values[corner] for w, corner in zip(self.weights, self.corners, strict=True))
 
     def gather(self, moved):
-        """Return, for each vertex, the sum of what samples have, by their areas and weights."""
+        """Return, for each vertex, the sum of its samples' values, weighted by area."""
         moved = self.moved_area * moved
         result = np.zeros(self.count)
         for w, corner in zip(self.weights, self.corners, strict=True):
@@ -78,7 +78,7 @@ class Projection:
         return result
 
     def gather_still(self, values):
-        """Return, for each vertex, the sum of what samples there have, by their areas.
+        """Return, for each vertex, the area-weighted sum of its samples that did not move.
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ def closest(points, vertex, fans, positions, triangles):
         index = np.arange(starts[-1] + many[-1])
         index += np.repeat(fans.first[vertex[block]] - starts, many)
         face = fans.faces[index]
-        # Seen from the point, single precision is enough.
+        # Relative to the point, single precision is enough.
         at = np.repeat(points[block], many, axis=0)
         a, b, c = ((positions[corner] - at).T for corner in triangles[face].T)
         v, w, distance = _nearest_weights(a, b, c)

@@ -1,18 +1,19 @@
-"""Where a texture, vertex colours or the material change from one triangle to its neighbour.
+"""Seams: edges across which UVs, vertex colours or the material are discontinuous.
 
-Such seams are lines on the surface. A place that leaves its seam would pull one side's texture
-over the other's. At further levels, seams follow by the places that merge, so that meshes of one
-shape with the same seams merge alike, whatever else is on them.
+Seams are lines on the surface. A place that leaves its seam would pull the texture of one side over
+the other. Seams of further levels follow from the places that merge, so that meshes of one shape
+with the same seams merge alike, whatever their attributes are.
 """
 
 import numpy as np
 
-# Of all edges of a mesh: where more are seams, as with a colour a facet, none is a line.
+# Largest share of a mesh' edges in seams: where there are more, as with a colour for each facet,
+# they are not treated as seams.
 _MOST_SHARE = 0.3
 
 
 def seam_edges(mesh, places):
-    """Find the edges of which the triangles on both sides differ in more than their normals.
+    """Find the edges whose two triangles differ in more than their normals.
 
     Parameters
     ----------

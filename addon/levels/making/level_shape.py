@@ -1,8 +1,8 @@
-"""Where the places of a level lie, so that what it covers in the picture stays the same.
+"""Correction of a level's places so that outlines, volumes and silhouettes are kept.
 
-The outline of a sheet or a hole keeps its vector area, which is what it covers seen from anywhere.
-Then each part grows or shrinks along its normals until its volume is what it was. The surface' area
-would be a wrong measure: wrinkles that a level loses have some, and no silhouette shows it.
+The outline of a sheet or a hole keeps its vector area, which is its projected area from any
+direction. Then each part grows or shrinks along its normals until it has its old volume. Surface
+area would be a wrong measure: wrinkles that a level loses have area that no silhouette shows.
 
 References
 ----------
@@ -14,19 +14,20 @@ import numpy as np
 
 from .level_collapses import borders, connected, facets
 
-# How far a place may move at most, in roots of the area round it. Corrections are far smaller; this
-# keeps a tangle of triangles from being turned inside out.
+# Largest correction of a place, in square roots of the area round it. Usual corrections are far
+# smaller; this keeps crumpled triangles from being turned inside out.
 _MOST_MOVE = 0.3
-# Growth of a loop's vector area as it is widened, over the length of its outline: a flat one has 1.
-# One of less is too crumpled to be corrected.
+# Least growth of a loop's vector area as it is widened, over the length of its outline: a flat loop
+# has 1; one with less is too crumpled to be corrected.
 _LEAST_FLATNESS = 0.3
-# Of the surface that a part has gained at the same volume, its silhouette has this share: measured
-# on bodies of several hundred facets with limbs.
+# Share of the surface that a part gains at the same volume which its silhouette gains: measured on
+# bodies of several hundred facets with limbs.
 _SILHOUETTE_SHARE = 0.55
-# More than this over the number of facets is no facetting but wrinkles, which silhouettes do not
-# show. A ball gains 1.2, limbs several times that.
+# Largest gain by facetting, divided by the number of facets; more is by wrinkles, which silhouettes
+# do not show. A ball gains 1.2, limbs several times that.
 _MOST_EXCESS = 10.0
-# A part of fewer is about convex: a quarter of its surface is the mean of its silhouettes.
+# A part with fewer facets is about convex: the mean area of its silhouettes is a quarter of its
+# surface.
 _FEW_FACETS = 64
 _MOST_SCALE = 2.0
 
@@ -59,7 +60,7 @@ class Shape:
         self._face_part = parts[faces[:, 0]]
 
     def outlined(self, points):
-        """Return the places with the outlines of holes and sheets as large as they were.
+        """Return the places with the old vector areas of the outlines of holes and sheets.
 
         Parameters
         ----------
@@ -114,7 +115,7 @@ class Shape:
         return points + step[loop][:, None] * direction
 
     def filled(self, points):
-        """Return the places with each part as large as it was: in volume, and seen as a silhouette.
+        """Return the places with the old volume and silhouette of each part.
 
         Parameters
         ----------
@@ -165,7 +166,7 @@ class Shape:
         return np.bincount(self._face_part, size, self._part_count) / 2.0
 
     def _moved(self, step, normal):
-        """Return by what the places of parts move along their normals, shape (G, 3)."""
+        """Return the displacements of parts' places along their normals, shape (G, 3)."""
         return (np.where(self._fixed, 0.0, step[self._parts]) * normal).T
 
     def _normals(self, points):
@@ -194,7 +195,7 @@ def _vector_area(points, edges, loop, count):
 
 
 def _closed(edges, loop, count):
-    """Return which loops run in one sense: as many edges end at each of their places as begin."""
+    """Return which loops are closed: as many edges end at each of their places as begin."""
     balance = np.bincount(edges[:, 0], minlength=count) - np.bincount(edges[:, 1], minlength=count)
     return np.bincount(loop, np.abs(balance[edges[:, 0]]), count) == 0.0
 

@@ -1,6 +1,6 @@
-"""One step from a level of detail to the next: which vertices and places follow from which, where.
+"""One step from a level of detail to the next: correspondence of places and vertices.
 
-What the following modules need to know about both levels is gathered here.
+It gathers what the other modules of this room need to know about both levels.
 """
 
 from functools import cached_property
@@ -14,7 +14,7 @@ from .level_shape import Shape
 
 
 class Step:
-    """From a level to the next.
+    """The step from a level to the next.
 
     Parameters
     ----------
@@ -37,8 +37,8 @@ class Step:
     parts : ndarray of shape (G,)
         Of the new places.
     pair_moves : float
-        Squared moves of the centres of parts that became one, by twice their areas; with pairs
-        only.
+        Squared displacements of the centres of merged parts, weighted by twice their areas; with
+        pairs only.
     points : ndarray of shape (G, 3)
         The new places.
     """
@@ -79,7 +79,7 @@ class Step:
         )
 
     def part_of_old(self):
-        """Return the part of each old vertex, shape (V,); of what became one, that of the whole."""
+        """Return the part of each old vertex, shape (V,); merged parts count as one."""
         return self.whole[self.surface.parts][self.surface.places]
 
     def part_of_new(self):

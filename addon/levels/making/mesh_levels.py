@@ -1,9 +1,8 @@
 """Levels of detail of a mesh: each with about half the triangles of the one before (methods 3).
 
-A level follows from its predecessor by merging places that edges connect. Which places merge is
-decided once, by collapses of least quadric error; where they merge to, and what the vertices carry,
-follows from the mesh. So a mesh that deforms without changing its topology gets its levels by
-merging the same places again.
+A level follows from its predecessor by merging places that edges connect. The collapses are chosen
+once, by least quadric error; positions and attributes of the merged vertices follow from the mesh.
+So a mesh that deforms without changing its topology gets its levels by the same collapses.
 
 References
 ----------
@@ -34,13 +33,13 @@ __all__ = [
     "surviving",
 ]
 
-# A level that keeps more than this share of its predecessor's triangles is not worth its memory.
+# Largest share of its predecessor's triangles that a level may keep to be worth its memory.
 _LEAST_REDUCTION = 0.75
 
 
 @dataclass(frozen=True, eq=False)
 class MeshLevel(MeshSnapshot):
-    """A level of detail, and how the one before merged into it.
+    """A level of detail, and the merging of the level before into it.
 
     Parameters
     ----------
@@ -48,8 +47,7 @@ class MeshLevel(MeshSnapshot):
         int32; the place of each vertex of the level before: those of one place are the sides of a
         seam.
     merged : ndarray of shape (V,)
-        int32; the vertex of this level that each of those became; -1 where nothing is left at its
-        place.
+        int32; the vertex of this level that each of those was merged into; -1 where none is left.
     errors : LevelErrors
         Against full detail.
     """
@@ -60,7 +58,7 @@ class MeshLevel(MeshSnapshot):
 
 
 def available():
-    """Return whether meshes can be simplified here; some platforms lack the library."""
+    """Return whether fast-simplification is installed; some platforms lack it."""
     try:
         import fast_simplification  # noqa: F401
     except ImportError:
@@ -118,9 +116,9 @@ def replay(mesh, halvings, places=None):
         With the triangles of the mesh that was simplified; its positions may differ.
     halvings : sequence of Halving
     places : ndarray of shape (V,), optional
-        Of its vertices, where they are split in another way than those of the mesh that was
-        simplified; both have the same triangles between the same places. Default: not split in
-        another way.
+        Places of its vertices, if these are split differently from those of the mesh that was
+        simplified; both have the same triangles between the same places. Default: the same
+        splitting.
 
     Returns
     -------
@@ -149,7 +147,7 @@ def _merge(mesh, surface, halving):
     positions = np.ascontiguousarray(points[vertex_places], np.float32)
     attributes, errors = carry(step, positions)
     before = mesh.errors if isinstance(mesh, MeshLevel) else LevelErrors()
-    # A side of a seam that has shrunk to nothing continues as another of its place.
+    # A side of a seam that has vanished is replaced by another side of its place.
     vertex_at = np.full(len(points), -1, np.int32)
     vertex_at[vertex_places] = np.arange(len(vertex_places), dtype=np.int32)
     level = MeshLevel(
@@ -172,10 +170,10 @@ def _merge(mesh, surface, halving):
 
 
 def surviving(before, corners):
-    """Return the triangles that stay: with three corners, and not twice.
+    """Return the triangles that stay: not degenerate, and no duplicates.
 
-    Where two that face each other have come to lie on one another, there is no inside left between
-    them, and both go, unless they lay so already.
+    Where two triangles that face each other have come to coincide, the volume between them has
+    vanished, and both are removed, unless they coincided before.
 
     Parameters
     ----------
@@ -196,7 +194,7 @@ def surviving(before, corners):
     run = np.cumsum(starts) - 1
     faces, old = faces[order], np.sort(before[several[order]], axis=1)
     a, b, c = faces.T
-    # Cyclic order of the corners tells the side that a triangle faces.
+    # The cyclic order of the corners gives the orientation of a triangle.
     side = np.where((a < b) ^ (b < c) ^ (c < a), 1, -1)
     first = np.flatnonzero(starts)
     fresh = np.logical_or.reduceat((old != old[first[run]]).any(axis=1), first)
@@ -215,7 +213,7 @@ def _proper(faces):
 
 
 def _perhaps_several(faces):
-    """Return which triangles may have the same corners as another one, in any order."""
+    """Return which triangles may have the same corners as another one, by a hash."""
     # Sums of random numbers do not depend on the order.
     label = np.random.default_rng(0).integers(0, 1 << 24, int(faces.max(initial=-1)) + 1)
     bits = min(int(4 * len(faces)).bit_length(), 24)
@@ -235,7 +233,7 @@ def _runs(rows):
 
 
 def slots_of(slots, kept):
-    """Count the kept triangles of each material slot; they are still sorted by it.
+    """Return the material slots of the kept triangles, which are still sorted by slot.
 
     Parameters
     ----------
@@ -277,7 +275,7 @@ def _vertices(mesh, halving, place, kept):
     """
     key = place
     if len(mesh.positions) > len(halving.groups):
-        # The sides of a seam stay apart, also where the seam does not cut the mesh in two.
+        # The sides of a seam stay separate, even where the seam does not divide the mesh.
         side = _sides(mesh.triangles, halving.places, place)
         order = stable_order(side)
         order = order[stable_order(place[order])]
@@ -302,7 +300,7 @@ def _without_gaps(numbers):
 
 
 def _sides(triangles, places, merged):
-    """Give a number to each side of the seams at merging places: to what triangles connect there.
+    """Number the sides of seams at merging places: the vertices that triangles connect there.
 
     Parameters
     ----------
