@@ -1,4 +1,4 @@
-"""The words of the command line and what they may be; no Blender.
+"""The arguments of the command line: parsing and checks; no Blender.
 
 Every refusal is an `InputError` of one line.
 """
@@ -75,7 +75,7 @@ def parse(words, program="aplanat"):
 
 
 def wants_json(words):
-    """Whether `--json` was asked for, even if the rest makes no command."""
+    """Whether `--json` is among the arguments, even if the rest is invalid."""
     return "--json" in words
 
 

@@ -25,7 +25,7 @@ from .words.json_file import json_text
 
 @dataclass(frozen=True)
 class _Command:
-    """How words become arguments, and arguments what carries them out; see `main`."""
+    """A parser of arguments and a function that finds the runner of a command; see `main`."""
 
     parse: Callable
     runner_of: Callable
@@ -45,8 +45,8 @@ def main(words, program="aplanat", parse=words_of.parse, runner_of=None):
     parse : callable
         Words and program to arguments; see `arguments.parse`.
     runner_of : callable, optional
-        Arguments, and a function that registers Aplanat, to what carries them out; default: the
-        commands of this package.
+        From the arguments, and a function that registers Aplanat, to the function that runs the
+        command; default: the commands of this package.
 
     Returns
     -------
@@ -60,15 +60,14 @@ def main(words, program="aplanat", parse=words_of.parse, runner_of=None):
 def run_process(parse=words_of.parse, runner_of=None):
     """Run the command of `sys.argv` as this process, and end it; arguments as of `main`.
 
-    Stdout and stderr stay with the command to the end: what Blender still prints while it ends
-    belongs to nobody.
+    Stdout and stderr stay redirected to the end: what Blender prints while it exits is dropped.
     """
     command = _Command(parse, runner_of or _runner)
     sys.exit(_run(command, sys.argv[1:], "aplanat", _register, lambda console: None))
 
 
 def run_in_blender(words):
-    """Run a command of ``blender --command aplanat``; stdout stays with it to the end.
+    """Run a command of ``blender --command aplanat``; stdout stays redirected to the end.
 
     Returns
     -------
@@ -115,7 +114,7 @@ def _carry_out(command, arguments, console, prepare):
             console.answer(json_text(_errors(error, arguments.command)))
         return 2 if refused else 1
     except Exception as error:
-        # Not foreseen: everything that helps to find the cause is shown.
+        # A fault of ours: show everything that helps to find the cause.
         console.say(f"failed: {error!r}")
         console.err.write("".join(traceback.format_exception(error)))
         console.show_chatter()

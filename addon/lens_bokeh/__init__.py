@@ -1,1 +1,1 @@
-"""The bokeh of a lens: what its discs look like."""
+"""The bokeh of a lens: tables of its traced light, and the look of its discs; pure numpy."""

@@ -18,9 +18,9 @@ from ..lens_bokeh.tables.profile import make_profile
 from .profile_file import FORMAT_VERSION, StoredProfile, load_profile, save_profile
 
 LARGEST_SIZE = 512 * 1024 * 1024
-# Counted whenever the tracer or the tables change what a lens gives.
+# Version of tracer and tables, part of the hash: raised when they give another result.
 CONTENT_VERSION = 1
-# What the cache and its neighbours put there; nothing else is touched.
+# Endings of the files of this cache and of those that share its folder; no others are removed.
 _OWN_FILES = ("*.exr", "thumb-*.npy")
 # An unfinished file that old was left by a process that ended.
 _ABANDONED_SECONDS = 24 * 3600.0
@@ -32,7 +32,7 @@ def profile_folder():
 
 
 def content_hash(prescription, label=None):
-    """Hash of what a lens does to light at a zoom position.
+    """Hash of all optical properties of a lens at a zoom position.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from .toml.findings import Finding
 from .toml.toml_reader import parse_lens, read_lens
 from .toml.toml_writer import lens_toml
 
-# Of an id, so that paths stay usable everywhere.
+# Longest id, so that paths stay usable everywhere.
 _LONGEST_ID = 80
 _NAME_LINE = re.compile(
     rb"""^name[ \t]*=[ \t]*(?:"(?:[^"\\\r\n]|\\.)*"|'[^'\r\n]*')""", re.MULTILINE

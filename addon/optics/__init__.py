@@ -1,1 +1,1 @@
-"""Real lenses: prescription, rays, first-order values, pupils, bokeh profiles; pure numpy."""
+"""Real lenses: prescription, glass, first-order values; ray tracing in `rays`. Pure numpy."""

@@ -42,7 +42,7 @@ class Bundle:
     bc : ndarray of shape (2, N)
         Scratch, of which b is the first row.
     rows : ndarray of int or None
-        Which rays of the chunk these are; None while all are on their way.
+        Indices of these rays in the chunk; None while all of it is being traced.
     """
 
     __slots__ = ("_buffer", "bc", "index", "lm", "rows", "xy", *ROWS)
@@ -53,7 +53,7 @@ class Bundle:
 
     @property
     def count(self):
-        """How many rays are on their way."""
+        """Number of rays that are being traced."""
         return len(self.x)
 
     def load(self, origins, directions, index=1.0):
@@ -66,7 +66,7 @@ class Bundle:
             np.multiply(directions[:, axis], index, out=getattr(self, direction))
 
     def keep(self, chosen):
-        """Go on with some of the rays.
+        """Keep some of the rays.
 
         Parameters
         ----------
@@ -94,7 +94,7 @@ class Bundle:
         return block[:, :3], block[:, 3:] / self.index
 
     def park(self, places):
-        """Let rays run along the axis, where nothing can happen to them.
+        """Put rays that have ended on the axis, where they meet every surface without error.
 
         Parameters
         ----------
@@ -110,8 +110,8 @@ class Bundle:
     def approach(self):
         """Move every ray to the point of its line that is nearest to the vertex.
 
-        That also serves rays along the vertex plane, and takes the rounding of a far origin out of
-        all that follows.
+        That also works for rays along the vertex plane, and avoids the rounding errors of a far
+        origin in all further steps.
         """
         self.sideways(self.a)
         self.a += np.multiply(self.z, self.n, out=self.b)

@@ -1,4 +1,4 @@
-"""What a photographer asks about a lens: focal length, opening, coverage, elements and groups."""
+"""Facts of a lens for photographers: focal length, opening, coverage, elements and groups."""
 
 import math
 from dataclasses import dataclass

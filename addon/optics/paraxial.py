@@ -15,11 +15,10 @@ from ..errors import PrescriptionError
 from .glass import REFERENCE_WAVELENGTH_NM
 from .media import indices
 
-# Weaker than this, 1/mm, a lens has no power: its focus would be beyond 1000 km, and what is left
-# is rounding.
+# Least power of a lens, 1/mm: with less its focus is beyond 1000 km, and its value is rounding.
 LEAST_POWER = 1.0e-9
-# A pupil this many times as large as the stop is an image at infinity: the stop is in the focal
-# plane of what stands on that side, to the digits that prescriptions have.
+# Largest magnification of a pupil: beyond, it is an image at infinity, as the stop is in the focal
+# plane of the elements on that side, to the digits of prescriptions.
 LARGEST_PUPIL = 1.0e6
 
 

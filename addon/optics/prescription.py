@@ -1,4 +1,4 @@
-"""The sequential prescription of a lens: what its file says, and what stands there when it is used.
+"""The sequential prescription of a lens, and its configurations: zoom position, opening, focus.
 
 Lengths are in mm, angles of lens files in degrees; light travels towards +z; a radius is positive
 when the centre of curvature lies on the +z side. Surfaces are counted from 1 in the order in which
@@ -13,7 +13,7 @@ from ..errors import PrescriptionError
 from .glass import AIR, Glass
 from .surfaces import sag
 
-# Patents print the place of a stop at the rim of a surface with few digits.
+# Depth of a stop inside a bulge over the sag at the rim, at most: patents print it with few digits.
 _ROUNDED_BULGE = 1.1
 
 
@@ -62,7 +62,7 @@ class Surface:
 
 
 def may_overlap(surfaces, number):
-    """Tell whether the distance behind a surface may be as negative as it is.
+    """Return whether the negative distance behind a surface is possible.
 
     The opening of an iris may lie behind the vertex of the surface that follows, or in front of
     that of the one before it, where their rims leave room. It is a plane that refracts nothing, so
@@ -184,7 +184,7 @@ class ZoomPosition:
 
 @dataclass(frozen=True)
 class Configuration:
-    """A lens as it stands: one zoom position, one opening, one focus; ready to be traced.
+    """A lens at one zoom position, opening and focus, ready to be traced.
 
     Parameters
     ----------
@@ -230,7 +230,7 @@ class Configuration:
 
     @property
     def sensor(self):
-        """The z of the plane that the last thickness tells, mm, from surface 1."""
+        """The z of the sensor plane by the last thickness, mm, from surface 1."""
         return self.vertices[-1] + self.surfaces[-1].thickness
 
     def with_thickness(self, number, thickness):
@@ -264,7 +264,7 @@ class Configuration:
 
 @dataclass(frozen=True)
 class Prescription:
-    """What a lens file says.
+    """The prescription of a lens, as its file has it.
 
     Parameters
     ----------

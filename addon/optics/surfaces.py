@@ -15,8 +15,8 @@ import numpy as np
 
 from .bundle import DIRECTION, POSITION, Bundle
 
-# Beyond this a ray does not meet a surface, mm: no lens is a thousand kilometres wide, and squares
-# stay far from overflow.
+# Largest coordinate of a hit, mm: farther away a ray misses the surface, and squares never
+# overflow.
 FAR = 1.0e9
 # Newton's method: the last step along the ray, mm, and how many steps before a ray is given up.
 # It converges quadratically, so the position is far better than the last step.
@@ -90,12 +90,12 @@ def intersect(surface, points, directions):
 
 
 def within_reach(points):
-    """Replace what is not a number by 0, and what is too far by the farthest place."""
+    """Replace NaN by 0, and clamp coordinates to the largest one."""
     return np.clip(np.nan_to_num(points, nan=0.0), -FAR, FAR)
 
 
 class Shape:
-    """A surface made ready to be met by bundles of rays.
+    """A surface, prepared for intersection with bundles of rays.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ class Shape:
         self._rim_slant = self._slant_of_rim()
 
     def clears_rim(self, bundle):
-        """Tell whether all rays that met the surface are surely inside its rim.
+        """Return whether all rays that met the surface are certainly inside its rim.
 
         On a sphere the normal tells how far from the axis a ray is; no square needs to be made.
 

@@ -1,4 +1,4 @@
-"""The bokeh table of a lens as a picture, and disks of light in front of and behind the focus."""
+"""Plots of a lens' bokeh: its table, and discs of points in front of and behind the focus."""
 
 import numpy as np
 
@@ -13,14 +13,14 @@ from .style import QUIET, SMALL_SIZE, frame_diagram, frame_picture, length
 
 _ROWS, _RADII = 200, 256
 _DISK_PIXELS = 256
-# Of disks that are traced: about five rays a pixel in each direction.
+# Pixels of traced disks, and rays: about five a pixel in each direction.
 _TRACED_PIXELS, _TRACED_GRID, _TRACED_WAVELENGTHS = 72, 301, 7
 _FOCUS_IN_FOCAL_LENGTHS = 40.0
 # Where the disks' lights are, in focus distances, and what they are called.
 DISK_LIGHTS = ((0.6, "in front of the focus"), (1.0, "in focus"), (4.0, "behind the focus"))
 # Share of the energy that a picture of a disk holds, and its margin: halos may reach far.
 _HELD, _MARGIN = 0.98, 1.15
-# Of an even disk's brightness, so that bright rims have room above.
+# Grey of an even disk, so that bright rims are not clipped.
 _EVEN_GRAY = 0.35
 
 
@@ -119,7 +119,7 @@ def displayed(density):
 
 
 def _show_traced(axes, configuration, source):
-    """Draw the light of an object, told as for `pupil_rays`, on the sensor."""
+    """Draw the light of an object on the sensor; `source` as for `pupil_rays`."""
     axes.set_facecolor("black")
     picture = traced_disk(configuration, source)
     if picture is not None:

@@ -1,4 +1,4 @@
-"""Small pictures of a lens, by which it is recognised: cross-section and bokeh."""
+"""Thumbnails of a lens: cross-section and bokeh."""
 
 import contextlib
 import math
@@ -22,7 +22,7 @@ from .cross_section import ON_BLACK, draw_cross_section
 # Pixels on a side.
 THUMBNAIL_SIZE = 256
 SHEET_TILE = 96
-# Counted whenever the drawing changes.
+# Version of the drawing, part of the names of cached pictures.
 _DRAWING_VERSION = 1
 _BACKGROUND = "#1b1d20"
 # Focus in focal lengths (2 m at 50 mm), and lights in front of it, behind it and far away.
@@ -32,7 +32,7 @@ _LIGHTS = (0.5, 2.0, math.inf)
 # one for which rims are traced.
 _FIELDS = (0.0, 0.6, 1.0)
 _WAVELENGTHS_NM = (REFERENCE_WAVELENGTH_NM, 460.0, 530.0, 620.0)
-# Nearly all of the energy: a faint halo reaches far.
+# Share of the energy inside a picture: nearly all, as a faint halo reaches far.
 _HELD = 0.98
 
 

@@ -8,7 +8,7 @@ from .style import INK, QUIET, RULE, SMALL_SIZE, SPECTRUM, TEXT_SIZE, frame_pict
 
 _GRID = 41
 _OUTLINE = 128
-# Of the largest spot's rays, the share that the boxes hold: a few stray ones would shrink all else.
+# Share of the largest spot's rays that the boxes hold: a few stray ones would shrink all spots.
 _HELD = 0.98
 
 

@@ -1,4 +1,4 @@
-"""How our drawings look: ink, colours of wavelengths and fields, frames of diagrams."""
+"""Style of the plots: colours of lines, wavelengths and fields, frames of diagrams."""
 
 from dataclasses import dataclass
 

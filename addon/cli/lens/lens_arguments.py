@@ -1,4 +1,4 @@
-"""The words of `aplanat lens`; no Blender."""
+"""The arguments of `aplanat lens`; no Blender."""
 
 import argparse
 from pathlib import Path
@@ -14,12 +14,12 @@ from ..words.option_values import (
 )
 
 PLOT_ENDINGS = (".png", ".svg", ".pdf")
-# From where the glass of windows and lamps absorbs to where formulas of glass end.
+# Range of wavelengths, nm: from the absorption of ordinary glass to the end of dispersion formulas.
 WAVELENGTHS_NM = (200.0, 5000.0)
 # The fan of the axial point unless told otherwise.
 DEFAULT_RHO = tuple(place / 20.0 for place in range(21))
 DEFAULT_GRID = 401
-# Beyond, a file would be a list of numbers nobody reads, or take minutes to make.
+# Largest counts: beyond, output would be unreadable or take minutes.
 _MAX_COUNT = 10001
 _MAX_GRID = 4001
 

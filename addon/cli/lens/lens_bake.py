@@ -23,7 +23,7 @@ _PUPIL_WAVELENGTHS = (REFERENCE_WAVELENGTH_NM, F_LINE_NM, C_LINE_NM)
 
 
 def bake(arguments, console):
-    """Carry out `aplanat lens bake`; parameters and result as `lens.lens`."""
+    """Carry out `aplanat lens bake`; parameters and result as `lens_command.lens`."""
     if find_spec("OpenEXR") is None:
         raise InputError("the package OpenEXR is missing; install Aplanat from its extension zip")
     with removed_on_signals():

@@ -1,7 +1,7 @@
-"""`aplanat lens`: looking into real lenses, without Blender and its start.
+"""`aplanat lens`: information about real lenses, without starting Blender.
 
-Each word has its module, imported when it is asked for: a drawing library takes longer to load than
-most answers to compute.
+Each subcommand has its module, imported when it is used: a plotting library takes longer to load
+than most answers to compute.
 """
 
 import sys
@@ -10,7 +10,7 @@ from importlib import import_module
 from ...errors import InputError
 from ...lens_io.library import Library
 
-# By word: the module beside this one, and what it does with arguments and console.
+# By subcommand: the module beside this one, and its function of arguments and console.
 _WORDS = {
     "list": ("lens_list", "list_lenses"),
     "info": ("lens_info", "tell_facts"),

@@ -8,7 +8,7 @@ from ...lens_io.toml.toml_writer import lens_toml
 
 
 def import_file(arguments, console):
-    """Carry out `aplanat lens import`; parameters and result as `lens.lens`."""
+    """Carry out `aplanat lens import`; parameters and result as `lens_command.lens`."""
     options = ImportOptions(
         thickness=arguments.thickness,
         stop=arguments.stop,

@@ -1,4 +1,4 @@
-"""`aplanat lens info`: what a lens is, and its first-order values."""
+"""`aplanat lens info`: description and first-order values of a lens."""
 
 import textwrap
 
@@ -15,7 +15,7 @@ _WIDTH = 100
 
 
 def tell_facts(arguments, console):
-    """Carry out `aplanat lens info`; parameters and result as `lens.lens`."""
+    """Carry out `aplanat lens info`; parameters and result as `lens_command.lens`."""
     read = open_lens(arguments.lens)
     configuration = read.prescription.configuration(arguments.zoom)
     wavelength = arguments.wavelength or REFERENCE_WAVELENGTH_NM

@@ -8,7 +8,7 @@ from .lens_command import library
 
 
 def list_lenses(arguments, console):
-    """Carry out `aplanat lens list`; parameters and result as `lens.lens`."""
+    """Carry out `aplanat lens list`; parameters and result as `lens_command.lens`."""
     entries = [_entry(name, path) for name, path in sorted(library().paths().items())]
     if not arguments.json:
         console.answer(_text(entries))

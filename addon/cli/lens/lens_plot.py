@@ -9,7 +9,7 @@ from .lens_command import open_lens, tell_warnings
 
 
 def plot(arguments, console):
-    """Carry out `aplanat lens plot`; parameters and result as `lens.lens`."""
+    """Carry out `aplanat lens plot`; parameters and result as `lens_command.lens`."""
     if find_spec("matplotlib") is None:
         raise InputError(
             "drawing needs the package matplotlib, which is missing; install Aplanat from its"

@@ -1,4 +1,4 @@
-"""`aplanat lens trace`: a fan of rays from an axial point, or what of a beam gets through."""
+"""`aplanat lens trace`: a fan of rays from an axial point, or the vignetting of a beam."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ _PLANES = (-0.05, -0.01, 0.0, 0.01)
 
 
 def trace_lens(arguments, console):
-    """Carry out `aplanat lens trace`; parameters and result as `lens.lens`."""
+    """Carry out `aplanat lens trace`; parameters and result as `lens_command.lens`."""
     read = open_lens(arguments.lens)
     tell_warnings(read, console)
     configuration = read.prescription.configuration(arguments.zoom)
@@ -42,8 +42,8 @@ def trace_lens(arguments, console):
 def axis_fan(configuration, object_to_first_vertex, rho, planes, wavelength_nm):
     """Rays from an axial point through heights in the paraxial entrance pupil.
 
-    The pupil is that of the reference wavelength at any wavelength. Rims block no ray: what would
-    have is told.
+    The pupil is that of the reference wavelength at any wavelength. Rims end no ray; the first rim
+    that would block it is returned.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def default_planes(configuration, object_to_first_vertex):
 
 
 def beam(configuration, field_deg, wavelength_nm, grid):
-    """Measure what of a beam from infinity gets through.
+    """Measure the vignetting of a beam from infinity.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from ...errors import OutputError
 from ...files.whole_file import check_writable
 from .pictures import uses_compositor
 
-# The variables of a path that stand for a whole path, where they stand first.
+# Variables of a path that may begin it and stand for an absolute folder.
 _LEADING_FOLDER = re.compile(r"\{blend_dir(_lib)?\}")
 
 
@@ -33,7 +33,7 @@ class FileOutputs:
         if uses_compositor(scene):
             self._nodes = list(_nodes(scene.compositing_node_group, set()))
         self._before = []
-        # Why the files of a node cannot be written, by its number.
+        # Reasons why the files of a node cannot be written, by the node's number.
         self._lost = {}
 
     def __enter__(self):
@@ -65,7 +65,7 @@ class FileOutputs:
         Returns
         -------
         files : list of (Path, Path)
-            Where each is held, and where it belongs.
+            Held file and destination of each.
         warnings : list of str
             One for each node that should have written and has not.
         """

@@ -1,4 +1,4 @@
-"""The files of each frame: where Blender writes them, what they are called, and who takes them.
+"""The files of each frame: names, placeholders, and publishing of what Blender has written.
 
 Blender writes into a held folder (`files.held_files`). What it wrote is then published under the
 names that `-o` or the scene gives, and with it what the compositor's File Output nodes wrote.
@@ -46,16 +46,16 @@ def frame_path(path, frame):
 
 
 class FrameFiles:
-    """Takes care of the files of a render while a `with` block lasts.
+    """Manages the files of a render for the duration of a `with` block.
 
     Parameters
     ----------
     scene : bpy.types.Scene
         Its output settings are changed, and its File Output nodes are redirected.
     patterns : list of Path
-        Of `-o`; empty: the scene's own output.
+        File names of `-o`; empty: the scene's own output.
     keeps_back : bool
-        Nothing is published before `publish_all`.
+        No file is published before `publish_all`.
 
     Raises
     ------
@@ -74,7 +74,7 @@ class FrameFiles:
         self._nodes = FileOutputs(scene, self._held)
         self._claims = Claims()
         self._keeps_back = keeps_back
-        # Held files and where they belong; moved out of the way of the next frame.
+        # Held files and their destinations; moved aside before the next frame.
         self._kept = []
         self._moved = {}
         # Of the frame in progress.
@@ -89,20 +89,20 @@ class FrameFiles:
             self._check_scene_output()
 
     def __enter__(self):
-        """Have Blender write where files are held back."""
+        """Redirect Blender's output to the held folder."""
         with ExitStack() as stack:
             for part in (self._held, self._claims, self._nodes):
                 stack.enter_context(part)
             self._stack = stack.pop_all()
         render = self._scene.render
-        # What exists is looked for at the real names.
+        # Existing files are looked for under their real names.
         render.use_overwrite, render.use_placeholder = True, False
         render.save_output = self._saves
         render.filepath = str(self._held.room(_ROOM) / "frame_####")
         return self
 
     def __exit__(self, *error):
-        """Forget what was not published, and give back what was claimed for it."""
+        """Drop the files that were not published, and remove their placeholders."""
         self._stack.__exit__(*error)
 
     def begin(self, frame):
@@ -115,7 +115,7 @@ class FrameFiles:
         Returns
         -------
         bool
-            False: its files are there, or claimed by somebody else, and stay.
+            False: its files exist, or another process has claimed them.
 
         Raises
         ------
@@ -242,7 +242,7 @@ class FrameFiles:
             pictures.set_png(self._scene, self._views_format)
 
     def _pairs(self, frame, patterns):
-        """Return where Blender writes the pictures of a frame, and where they belong."""
+        """Return the held files of the pictures of a frame, and their destinations."""
         if not self._saves:
             return []
         held = self._names(frame, str(self._held.room(_ROOM) / "frame_####"))
@@ -263,7 +263,7 @@ class FrameFiles:
         return pairs
 
     def _names(self, frame, filepath):
-        """Return what Blender calls the files of a frame, one for each view with its own."""
+        """Return Blender's names of the files of a frame, one for each view with its own."""
         render = self._scene.render
         before = render.filepath
         render.filepath = filepath

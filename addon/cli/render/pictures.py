@@ -1,4 +1,4 @@
-"""What Blender is told about the picture files that it writes.
+"""Blender's output settings for the picture files of a render.
 
 All picture files are Blender's own: multilayer EXR with every pass, float, or PNG as displayed. So
 they hold what Blender holds (its compositor, stereoscopic views, borders, grease pencil), laid out
@@ -15,7 +15,7 @@ RENDER_RESULT = "Render Result"
 
 
 def set_exr(scene, views_format):
-    """Have Blender write multilayer EXR: float, scene linear, all passes, a part each.
+    """Set the output to multilayer EXR: float, scene linear, all passes, a part each.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def set_exr(scene, views_format):
 
 
 def set_png(scene, views_format):
-    """Have Blender write PNG: as displayed, 8 bits a channel, alpha if the film is transparent.
+    """Set the output to PNG: as displayed, 8 bits a channel, alpha if the film is transparent.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def set_png(scene, views_format):
 
 
 def _leave_out_times(scene):
-    """Leave out of a file when it was made, so that the same picture makes the same file."""
+    """Leave dates and times out of files, so that the same picture makes the same file."""
     render = scene.render
     # Unless they are to be seen in the picture.
     if not render.use_stamp:

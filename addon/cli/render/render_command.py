@@ -67,7 +67,7 @@ def render(arguments, console):
 
 
 class Warnings:
-    """The warnings of a command: each told once, or an error if it is strict.
+    """The warnings of a command: each printed once, or an error if it is strict.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class Warnings:
         self._console = console
 
     def add(self, lines):
-        """Tell those of the lines that are new.
+        """Print the lines that are new.
 
         Raises
         ------
@@ -103,14 +103,14 @@ class Warnings:
 
 
 def heard_render(keep_pictures=False, progress=None, strict=False, frame=None):
-    """Render a frame of the current scene and return what became of it.
+    """Render a frame of the current scene and return its outcome.
 
     Parameters
     ----------
     keep_pictures : bool
     progress : callable, optional
     strict : bool
-        See `outcome.listen`.
+        See `engine.outcome.listen`.
     frame : int, optional
         Rendered as an animation of one: Blender writes the scene's output, and File Output nodes
         number their files, as with ``blender -b -a`` and ``-f``. By default the current frame, as a

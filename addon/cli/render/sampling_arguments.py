@@ -1,4 +1,4 @@
-"""The sampling options of `aplanat render`: all that its panels for quality have."""
+"""The sampling options of `aplanat render`, as in the Sampling and Level of Detail panels."""
 
 from ...errors import InputError
 from ..words.option_values import number_between, positive_number, whole_number
@@ -12,12 +12,12 @@ MAX_BIAS = 16.0
 MAX_CELLS = 8
 MIN_TRIANGLES, MAX_TRIANGLES = 4, 10_000_000
 
-# What only the adaptive method has, by the name in the namespace.
+# Options of the adaptive method only, by their names in the namespace.
 _ADAPTIVE = (
     *("subsamples", "target_error", "min_samples", "max_samples", "level_bias", "no_levels"),
     *("min_triangles", "sharing_cells"),
 )
-# What belongs to a noise threshold, and what does to a number of samples.
+# Options that need a noise threshold, and options that need a fixed number of samples.
 _AUTOMATIC = ("target_error", "min_samples", "max_samples")
 _FIXED = ("samples", "subsamples")
 
@@ -126,7 +126,7 @@ def _given(arguments, names):
 
 
 def apply_sampling(settings, render, arguments):
-    """Put the options in force.
+    """Apply the options to a scene's settings.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Loading a .blend file and putting the options of the command line in force.
+"""Loading a .blend file and applying the options of the command line.
 
 The loaded scene is changed in memory and never saved.
 """
@@ -15,8 +15,8 @@ from ...lens_io.library import Library
 from ...scene.camera.lenses import shelf, user_folder
 from .sampling_arguments import apply_sampling
 
-# What a pixel takes at the same time, generously: targets of the device, read-back, Blender's
-# result and the picture file.
+# Upper bound of the bytes of a pixel: targets on the device, read-back, Blender's result and the
+# picture file together.
 _BYTES_PER_PIXEL = 160
 
 
@@ -50,7 +50,7 @@ def load_scene(path):
 
 
 def apply_options(scene, arguments):
-    """Put the options of `render` in force.
+    """Apply the options of `render` to a scene.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def apply_options(scene, arguments):
 
 
 def apply_frame(scene, frame, arguments):
-    """Go to a frame and put the options of its camera's lens in force.
+    """Go to a frame and apply the lens options to its camera.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def use_engine(scene):
 
 
 def check_size(scene):
-    """Refuse pictures that no memory of this machine could hold.
+    """Raise an error for pictures larger than this machine's memory.
 
     Raises
     ------

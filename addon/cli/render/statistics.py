@@ -1,4 +1,4 @@
-"""What `--stats` and `--json` tell; the keys are described in docs/command-line.md."""
+"""The statistics of `--stats` and `--json`; docs/command-line.md describes the keys."""
 
 import sys
 
@@ -227,7 +227,7 @@ def _noise(report):
 
 
 def total_work(parts):
-    """Add the work of several frames, key by key; of what is no sum, take the most."""
+    """Add the statistics of several frames, key by key; maxima for keys that are no sums."""
     total = {}
     for part in parts:
         for key, value in part.items():
@@ -250,7 +250,7 @@ def _error(noise):
 
 
 def machine():
-    """Return what rendered: versions, device and the process' peak memory."""
+    """Return versions, device and the process' peak memory."""
     return {
         "aplanat": version(),
         "blender": bpy.app.version_string,
@@ -260,7 +260,7 @@ def machine():
 
 
 def peak_memory():
-    """Return the largest memory this process ever had in bytes; None where nobody tells."""
+    """Return the peak memory of this process in bytes; None where the system has no figure."""
     try:
         import resource
     except ImportError:

@@ -1,1 +1,1 @@
-"""Words in and text out: what every command shares."""
+"""Shared by all commands: option values, parser, console, tables, JSON."""

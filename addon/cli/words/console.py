@@ -1,7 +1,7 @@
 """The command's two channels: one answer on stdout, progress and messages on stderr.
 
-Blender, its drivers and libraries print to both. Their file descriptors are turned to a temporary
-file, from which the end is shown if something fails unexpectedly.
+Blender, its drivers and libraries print to both. Their file descriptors are redirected to a
+temporary file, whose end is shown if something fails unexpectedly.
 """
 
 import contextlib
@@ -11,17 +11,17 @@ import sys
 import tempfile
 import time
 
-# How often progress is shown: rewritten on a terminal, as lines in a log.
+# Seconds between shown progress: rewritten on a terminal, as lines in a log.
 _TERMINAL_SECONDS, _LOG_SECONDS = 0.5, 10.0
 
 
 class Console:
-    """Stdout and stderr without Blender's chatter.
+    """Stdout and stderr without Blender's own messages.
 
     Parameters
     ----------
     verbose : bool
-        Let the chatter through to stderr.
+        Pass Blender's messages to stderr.
     """
 
     def __init__(self, verbose=False):
@@ -50,7 +50,7 @@ class Console:
             self.out.write(text + "\n")
             self.out.flush()
         except BrokenPipeError:
-            # Who reads has seen enough (`| head`); what is left goes nowhere.
+            # The reader has closed the pipe (`| head`): drop the rest.
             nowhere = os.open(os.devnull, os.O_WRONLY)
             os.dup2(nowhere, self.out.fileno())
             os.close(nowhere)
@@ -62,7 +62,7 @@ class Console:
         self.err.flush()
 
     def progress(self, text):
-        """Show how far it is, now and then."""
+        """Show progress, at most once in an interval."""
         now = time.monotonic()
         if now - self._last < (_TERMINAL_SECONDS if self._terminal else _LOG_SECONDS):
             return
@@ -83,7 +83,7 @@ class Console:
         self.err.flush()
 
     def close(self):
-        """Give stdout and stderr back."""
+        """Restore stdout and stderr."""
         self._end_progress()
         _flush()
         sys.stdout, sys.stderr = self._streams

@@ -1,4 +1,4 @@
-"""What a word after an option may be: readers for `argparse`, each refusing in one sentence."""
+"""Types of option values for `argparse`, each refusing in one sentence."""
 
 import argparse
 import math

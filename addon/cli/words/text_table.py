@@ -1,4 +1,4 @@
-"""Columns of text for people."""
+"""Tables as aligned columns of text."""
 
 
 def text_table(rows, right=()):

@@ -1,1 +1,1 @@
-"""What an artist adds to a disc, and the disc as pictures."""
+"""The look of a disc: iris, grain, diffraction, vignetting, and the disc as a picture."""

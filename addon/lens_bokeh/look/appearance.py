@@ -1,4 +1,4 @@
-"""What an artist adds to a pattern: everything that is a mask over the opening.
+"""The appearance of a disc: everything that is a mask over the opening (methods 13).
 
 A mask works on places of the opening in units of its radius, x to the right and y up as the camera
 sees it. Whether the places come from a sprite's texels or from the traced rays of a real lens makes
@@ -41,7 +41,7 @@ class Diffraction:
     weights: tuple[tuple[float, ...], ...] = ((1.0,),)
 
     def __post_init__(self):
-        """Refuse weights that do not fit."""
+        """Check that weights and wavelengths fit."""
         if not 0.0 <= self.strength <= 1.0:
             raise InputError(f"diffraction strength is {self.strength:g}; it must be from 0 to 1")
         widths = {len(row) for row in self.weights}
@@ -56,7 +56,7 @@ class Diffraction:
 
 @dataclass(frozen=True)
 class Appearance:
-    """Everything that shapes a sprite besides the lens.
+    """All masks that shape a disc besides the traced lens.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Appearance:
     edge: float = 0.0
 
     def __post_init__(self):
-        """Refuse values outside their range."""
+        """Check that all values are in range."""
         if not (np.isfinite(self.anamorphic_ratio) and self.anamorphic_ratio > 0.0):
             raise InputError(
                 f"anamorphic ratio is {self.anamorphic_ratio:g}; it must be greater than 0"
@@ -93,7 +93,7 @@ class Appearance:
             raise InputError(f"edge is {self.edge:g}; it must be from -1 to 1")
 
     def transmission(self, places, width, chief=(0.0, 0.0), fresnel_number=None):
-        """Share of light that everything together lets through.
+        """Transmittance of all masks together.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Pictures of a beam on the sensor: its rays laid down with their energy.
+"""Pictures of a beam on the sensor: the energy of its rays, deposited on texels.
 
 Every ray of a fine grid spreads its energy evenly over a square as wide as its neighbours are
 apart, so that a smooth beam gives a smooth picture and a folded one (a caustic) its bright edge.
@@ -10,7 +10,7 @@ import numpy as np
 from .iris_mask import BladedIris
 
 _FEWEST_RAYS, _MOST_RAYS = 192, 1024
-# Neighbouring rays land closer than this, in texels, for nearly all of the energy.
+# Largest distance of neighbouring rays on the sensor, in texels, for nearly all of the energy.
 _SPACING, _NEARLY_ALL = 0.6, 0.95
 # Rays farther apart are laid into pictures of half the resolution, a quarter, and so on.
 _LEVELS = 6
@@ -53,7 +53,7 @@ def open_weights(fine, iris=None, fresnel=False, stop_rim=True):
     fresnel : bool
         Whether rays lose what the surfaces reflect.
     stop_rim : bool
-        False: the caller looks after the stop.
+        False: the caller masks the stop itself.
 
     Returns
     -------
@@ -68,8 +68,7 @@ def open_weights(fine, iris=None, fresnel=False, stop_rim=True):
     iris = iris or BladedIris()
     width = np.maximum(spacing(points[..., 0]), spacing(points[..., 1]))
     opened = iris.coverage(points, width)
-    # Where the rim of a lens and hard blades run side by side, the narrower of the two is left;
-    # their product would count the edge twice.
+    # The minimum of rim and blades, not their product, which would count a common edge twice.
     both = np.minimum(rim, opened) if isinstance(iris, BladedIris) else rim * opened
     return energy * both
 

@@ -148,7 +148,7 @@ def _by_matrix(iris, number, size, extent):
     return intensity.reshape(size, parts, size, parts).mean(axis=(1, 3))
 
 
-# All wavelengths and all defocuses of an opening start from the same drawing of it.
+# All wavelengths and all defocuses of an opening use the same mask.
 @lru_cache(maxsize=4)
 def _amplitude(iris, samples):
     return iris_mask(iris.amplitude(), samples)

@@ -15,7 +15,7 @@ from ...errors import InputError
 
 
 def undistorted(points, k, centre=(0.0, 0.0)):
-    """Places without distortion of points of a distorted picture.
+    """Convert points of a distorted picture to undistorted ones.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def undistorted(points, k, centre=(0.0, 0.0)):
 
 
 def distorted(points, k, centre=(0.0, 0.0)):
-    """Places in a distorted picture of points without distortion; inverse of `undistorted`.
+    """Convert undistorted points to points of the distorted picture; inverse of `undistorted`.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def distorted(points, k, centre=(0.0, 0.0)):
 
 
 def fitted_coefficient(undistorted_radii, distorted_radii):
-    """Coefficient that follows a lens best.
+    """Fit the coefficient of the division model to a lens.
 
     Least squares on the radii ``r_u (1 + K r_d^2) = r_d``, with the scale of the picture left
     free, as the focal length of a distorted picture is a matter of convention.
@@ -91,7 +91,7 @@ def fitted_coefficient(undistorted_radii, distorted_radii):
     Raises
     ------
     InputError
-        If the radii do not tell a coefficient.
+        If the radii do not determine a coefficient.
     """
     u = np.asarray(undistorted_radii, dtype=float)
     d = np.asarray(distorted_radii, dtype=float)

@@ -22,7 +22,7 @@ _MOST_CELLS = 512
 
 @dataclass(frozen=True)
 class Grain:
-    """How grainy and how dusty.
+    """Strength and size of grain, and number, size and depth of dust spots.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Grain:
     seed: int = 0
 
     def __post_init__(self):
-        """Refuse values outside their range."""
+        """Check that all values are in range."""
         for name, low, high in (
             ("strength", 0.0, 1.0),
             ("cell", 2.0 / _MOST_CELLS, 2.0),
@@ -62,7 +62,7 @@ class Grain:
 
 
 def transmission(grain, points):
-    """Factor by which grain and dust change the light at places of the opening.
+    """Transmittance of grain and dust at places of the opening.
 
     Parameters
     ----------

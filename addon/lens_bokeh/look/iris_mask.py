@@ -40,7 +40,7 @@ class BladedIris:
     rotation: float = 0.0
 
     def __post_init__(self):
-        """Refuse openings that no blades form."""
+        """Check that blades can form the opening."""
         if self.blades != 0 and not 3 <= self.blades <= 32:
             raise InputError(f"iris has {self.blades} blades; use 0 (round) or 3 to 32")
         if not 0.0 <= self.curvature <= 1.0:
@@ -131,7 +131,7 @@ class PictureIris:
     _grey: np.ndarray = field(init=False, repr=False)
 
     def __post_init__(self):
-        """Refuse pictures that let no light through."""
+        """Check that the picture lets light through."""
         picture = np.asarray(self.picture, dtype=float)
         if picture.ndim == 3:
             picture = picture[..., :3].mean(axis=-1)

@@ -52,7 +52,7 @@ class OnionRings:
     seed: int = 0
 
     def __post_init__(self):
-        """Refuse values outside their range."""
+        """Check that all values are in range."""
         for name, low, high in (
             ("contrast", 0.0, 1.0),
             ("pitch", 1e-3, 10.0),
@@ -126,7 +126,7 @@ def rings_of_lens(
     irregularity=0.5,
     seed=0,
 ):
-    """Rings that the turned surface of a lens makes which shows most.
+    """Return the rings of the aspheric surface of a lens with the strongest contrast.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def rings_of_lens(
 
 
 def transmission(rings, points, field=(0.0, 0.0), width=0.0):
-    """Factor by which rings change the density at places of the opening.
+    """Factor of the light density by the rings at places of the opening.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The opening as splats read it: its density of light in layers of rising blur.
+"""The lens' opening for the splat: its light density in layers of rising blur.
 
 A disc in the picture is blurred by the pixel filter and by the extent of its source. Both are
 small beside a large disc and large beside a small one, so the opening is kept at several blurs:
@@ -20,7 +20,7 @@ _TENT = 16
 
 
 def extent(layer):
-    """Return how far a layer reaches from the centre, in units of the opening's radius."""
+    """Return the half width of a layer, in units of the opening's radius."""
     return 1.0 + LEAST_BLUR * 2.0**layer / np.sqrt(2.0)
 
 
@@ -47,7 +47,7 @@ def opening_layers(coverage, size=512, layers=LAYERS):
 
 
 def layers_of_mask(mask, layers, size=512):
-    """Make layers of an opening that has been drawn.
+    """Make layers of an opening from its mask.
 
     Parameters
     ----------
@@ -78,7 +78,8 @@ def layers_of_mask(mask, layers, size=512):
 def _blurred(mask, width, reach, size):
     """Return the means of a mask over tents round the texels of a layer, axis by axis.
 
-    A tent is a box twice; the layer's own texels, which are interpolated, are no part of it.
+    A tent is a box convolved with itself. The interpolation between the layer's texels, which
+    blurs a little more, is not part of it.
     """
     while width * len(mask) / 2.0 > 2 * _TENT:
         mask = 0.25 * (mask[::2, ::2] + mask[1::2, ::2] + mask[::2, 1::2] + mask[1::2, 1::2])

@@ -1,10 +1,10 @@
-"""The profile of a lens as splats read it: over depth and radius, in layers of rising blur.
+"""The bokeh profile of a lens for the splat: over depth and radius, in layers of rising blur.
 
-A splat multiplies the opening (`lens_bokeh.look.opening`) by the profile. Both are blurred to what
-a pixel and a source's extent ask for, the same layer of both at a time. The opening has the rim, so
-the profile goes on beyond it: otherwise the rim would be blurred twice. Each row of each layer is
-then scaled so that opening times profile has the opening's energy, channel by channel. Layers and
-rows are mixed linearly, which keeps that.
+A splat multiplies the opening (`lens_bokeh.look.opening`) by the profile. Both are blurred by the
+pixel filter and the extent of the source: the same layer of both is read. The opening has the rim,
+so the profile is continued beyond it: otherwise the rim would be blurred twice. Each row of each
+layer is then scaled so that opening times profile has the opening's energy, channel by channel.
+Layers and rows are interpolated linearly, which keeps that.
 
 Rows run over ``w = c / (|c| + c0)`` of the signed circle of confusion as in
 `lens_bokeh.tables.mapping`. Lengths on the sensor become pixels by the ratio of the renderer's
@@ -24,10 +24,10 @@ from .opening import LEAST_BLUR, extent
 from .sprite import edge_landing
 
 RADII = 256
-# Even in w: patterns change fast where they are as small as the lens' aberrations.
+# Rows, evenly spaced in w: patterns change fast where they are as small as the lens' aberrations.
 _ROWS = 128
 _EDGE_RAYS = 1025
-# Layers that reach less far are steep within a texel.
+# Half width of a layer below which its rim is steep within a texel, so that it is interpolated.
 _SMOOTH_REACH = 1.0 + 8.0 * LEAST_BLUR * 0.7
 _MM = 1000.0
 
@@ -82,7 +82,7 @@ def rows_of_lens(profile, focus_distance, f_number):
     ----------
     profile : LensProfile
     focus_distance : float
-        From the camera, which stands for the centre of the entrance pupil, m.
+        From the camera, which is taken as the centre of the entrance pupil, m.
     f_number : float
 
     Returns
@@ -117,7 +117,7 @@ def distance_from_h(profile, from_pupil):
         mm.
     """
     distance = from_pupil * _MM
-    # The pupil moves with a focus group, little against the distance.
+    # The pupil moves with a focus group, but little compared with the distance.
     for _ in range(8):
         state = profile.focused(distance)
         distance = from_pupil * _MM - (state.ray_map.pupil - state.first_order.h)
@@ -206,7 +206,7 @@ def radial_weights(light, reach):
 
 
 def _finer(light):
-    """Interpolate a picture as a device does, three times as finely: its rim is steep."""
+    """Upsample a picture three times by linear interpolation, as its rim is steep."""
     shares = np.array([1.0, 0.0, 1.0]) / 3.0
     for axis in (0, 1):
         light = np.moveaxis(light, axis, 0)

@@ -1,4 +1,4 @@
-"""Patterns of a real lens over field and depth, as splats read them.
+"""Tiles: bokeh patterns of a real lens over field and depth, for the splat.
 
 Each tile is the traced pattern of a point (`lens_bokeh.tables.pupil_beam`) at a field and a depth,
 in the meridional frame: the picture's azimuth of the point is +y. It holds the light, and for each
@@ -43,7 +43,7 @@ _LEAST_LIGHT = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class PupilTiles:
-    """What a shader samples.
+    """The textures of a lens' tiles.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class PupilTiles:
 
 
 def reach(blur):
-    """Return how far a tile of a blur reaches, in units of half its pattern's width."""
+    """Return the half width of a tile at a blur, in units of half its pattern's width."""
     return 1.0 + blur
 
 
@@ -197,7 +197,7 @@ def _traced(tables, point, f_number, box):
 
 
 def pupil_tiles(beams, shift, blur, soft, w_range):
-    """Lay out the patterns at one focus.
+    """Draw the tiles of a lens at one focus distance.
 
     Parameters
     ----------
@@ -258,10 +258,10 @@ def _store(place, tile, layer):
 
 
 def light_left(tiles, opening):
-    """Share of the tiles' light that an opening leaves at each azimuth.
+    """Share of the tiles' light that passes an opening at each azimuth.
 
-    A splat reads a layer of the opening for blurs from that of the layer before to that of the
-    layer after; the tiles are blurred as it is.
+    A splat reads a layer of the opening for blurs between those of the layers before and after;
+    the tiles are blurred as the disc is.
 
     Parameters
     ----------

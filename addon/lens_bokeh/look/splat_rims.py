@@ -1,7 +1,7 @@
-"""How much light analytic vignetting leaves of a splat, so that a shader can keep its energy.
+"""Energy of a splat under analytic vignetting, by which the shader divides to keep its energy.
 
-A splat is the product of opening, profile and rims (`lens_bokeh.look.vignetting_model`). What is
-left of it depends on the tangent of the chief ray's angle, on its azimuth where the opening is not
+A splat is the product of opening, profile and rims (`lens_bokeh.look.vignetting_model`). Its energy
+depends on the tangent of the chief ray's angle, on its azimuth where the opening is not
 round, on the blur and on the row of the profile. Along rings of the opening the integral over the
 azimuth is a circular correlation of the opening with the rims: one Fourier transform gives all
 azimuths.
@@ -14,14 +14,15 @@ from .opening import LEAST_BLUR, extent
 
 TANGENTS, AZIMUTHS, MOST_ROWS = 33, 128, 17
 _RINGS = 192
-# Edges of rims are at least that part of a layer's reach wide; as in lib/bokeh/bokeh_look_lib.glsl.
+# Least width of a rim's edge, as a share of the layer's half width; as in
+# lib/bokeh/bokeh_look_lib.glsl.
 EDGES = 96.0
-# Nothing is brightened beyond that: where hardly anything is left, hardly anything is shown.
+# Least share that is divided by: discs of which hardly anything is left stay dark.
 _LEAST_LIGHT = 1e-3
 
 
 def light_left(rims, opening, profile, largest_tangent):
-    """Share of light that rims leave.
+    """Share of a splat's light that passes the rims.
 
     Parameters
     ----------

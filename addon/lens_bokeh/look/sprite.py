@@ -1,8 +1,8 @@
-"""Sprites: the picture of a point out of focus, ready to be splatted.
+"""Bokeh sprites: the picture of a point out of focus, for panels and data sheets.
 
-A sprite is seen as in the final picture: x to the right along columns, y up along rows (row 0 is
-the bottom), its middle where a pinhole would put the point. Each channel sums to 1, so that the
-energy of a source is all that a splat multiplies.
+A sprite is oriented as in the final picture: x to the right along columns, y up along rows (row 0
+is the bottom), its centre where a pinhole would put the point. Each channel sums to 1, so that a
+splat only multiplies it by the energy of the source.
 
 Behind the plane of focus the opening appears upright; in front of it, turned by half a turn.
 """
@@ -50,8 +50,8 @@ def sprite(
     Returns
     -------
     ndarray of shape (size, size, channels)
-        Not negative, finite, each channel of sum 1. 1 or 3 channels: the most of row and
-        diffraction.
+        Not negative, finite, each channel of sum 1; as many channels as the row or diffraction
+        has, whichever are more.
     """
     appearance = appearance or Appearance()
     fine = size * _SUPERSAMPLING

@@ -1,8 +1,8 @@
-"""Drawing the tiles of a real lens: patterns of beams on grids of rays, many of them, in a hurry.
+"""Fast drawing of the tiles of a real lens: patterns of many beams on grids of rays.
 
-As `lens_bokeh.look.deposit` draws the pattern of one beam, but the grid has the half of the pupil
-where x is positive, which is the mirror image of the other one, and 32-bit numbers; and the picture
-holds, beside the light, the light times the place in the stop it has come through.
+As `lens_bokeh.look.deposit`, but the grid has only the half of the pupil where x is positive, of
+which the other is the mirror image, and 32-bit numbers; besides the light, the picture holds the
+light times the place in the stop that it has come through.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ import numpy as np
 RAYS = 224
 # Rays farther apart are laid into pictures of half the resolution, a quarter, and so on.
 _LEVELS = 6
-# A rim that all rays clear by so much cuts none: cells are far smaller.
+# Clearance beyond which a rim cuts no ray: cells of the grid are far smaller.
 _CLEAR = 0.1
 # Places in the stop are stored as (s + 1.5) / 3, to be positive.
 STOP_OFFSET, STOP_SCALE = 1.5, 3.0
@@ -44,7 +44,7 @@ class HalfGrid:
     weight: np.ndarray
 
     def bounds(self):
-        """Return where the pattern stands, up to where rims cut it.
+        """Return the bounds of the pattern inside all rims.
 
         Returns
         -------
@@ -172,7 +172,7 @@ def _deposited(x, y, wide_x, wide_y, layers, size):
 def _laid(x, y, wide_x, wide_y, layers, size):
     columns, left = _shares(x, wide_x)
     rows, low = _shares(y, wide_y)
-    # A margin on all sides takes what falls outside.
+    # A margin on all sides takes the light that falls outside.
     stride = size + 2
     columns, rows = (np.clip(first, -1, size) + 1 for first in (columns, rows))
     corner = rows * stride + columns

@@ -38,7 +38,7 @@ class Rim:
     members: int = 1
 
     def __post_init__(self):
-        """Refuse rims that no lens has."""
+        """Check that radius and members are valid."""
         if not (np.isfinite(self.radius) and self.radius > 0.0 and np.isfinite(self.shift)):
             raise InputError(
                 f"vignetting rim with radius {self.radius:g} and shift {self.shift:g}:"
@@ -76,7 +76,7 @@ def cat_eye(strength, half_field_tangent, members=1):
 
 
 def transmission(rims, points, field, width=0.0):
-    """Share of light that the rims let through at places of the pupil.
+    """Transmittance of the rims at places of the pupil.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Tables of a real lens: where the light of a point goes, traced once."""
+"""Tables of a traced lens: bokeh profile of axial points, and the pupil over the field."""

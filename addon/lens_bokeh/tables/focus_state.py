@@ -23,13 +23,13 @@ from .ray_map_tracing import (
     without_idle_rims,
 )
 
-# States of a lens with a focus group: planes of focus then are right to a millionth of a mm.
+# States of a lens with a focus group: planes of focus are then exact to a millionth of a mm.
 GROUP_STATES = 9
-# As near as a group is followed, focal lengths before H: half life size.
+# Nearest focus of a focus group, focal lengths before H: half life size.
 _NEAREST_FOCUS = 3.0
-# How many times longer or shorter the focal length may become.
+# Largest factor by which the focal length may change with focus.
 _SAME_LENS = 1.5
-# Of the search for the nearest focus, and for a distance from a principal plane that moves.
+# Steps of the search for the nearest focus, and for a distance from a moving principal plane.
 _STEPS = 24
 
 
@@ -201,7 +201,7 @@ def _reach(configuration, focus_group):
             efl = first_order(focused(configuration, _distance(nearness), focus_group)).efl
         except PrescriptionError:
             return False
-        # Where a group turns the lens into another one, its numbers are not smooth any more.
+        # Where the focal length changes too much, first-order values are not smooth any more.
         return order.efl / _SAME_LENS < efl < order.efl * _SAME_LENS
 
     # Beyond a gap a group may focus again, but that is another motion.

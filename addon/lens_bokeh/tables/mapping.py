@@ -33,9 +33,9 @@ import numpy as np
 from ...errors import FocusError
 from .profile import REFERENCE_DISTANCE, row_of_fan
 
-# Rays of a row. A pattern of 1024 rings shows nothing of a finer fan.
+# Rays of a row: a finer fan changes nothing in a pattern of 1024 rings.
 _RAYS = 1025
-# The least aberration blur that rows are spread by, mm: smaller than any pixel.
+# Least c0, mm: smaller than any pixel.
 _LEAST_BLUR = 1.0e-4
 
 
@@ -67,7 +67,7 @@ class FrameTable:
     w_range: tuple[float, float]
 
     def row_position(self, object_distance):
-        """Where the pattern of an object stands, as a shader finds it.
+        """Texture coordinate and scale of an object's pattern, as a shader computes them.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The bokeh profile of a lens: what the renderer reads of it at run time, and its 2D table.
+"""The bokeh profile of a lens: patterns of axial points, and the paper's 2D table (methods 12).
 
 The paper stores one table, the pattern of a point at 1000 mm over image distance and radius, and
 maps focus and object depth to its rows by equal circles of confusion. That leaves out how
@@ -38,8 +38,7 @@ TABLE_ROWS = 1024
 TABLE_RADII = 1024
 # The paper's reference object, before the first principal plane.
 REFERENCE_DISTANCE = 1000.0
-# Rays between axis and rim when rows are laid out: each cuts an edge or a fold by less than a
-# thousandth of its pattern.
+# Rays between axis and rim of a row: edges and folds are then exact to a thousandth of the pattern.
 _ROW_RAYS = 1025
 # A pattern smaller than this, mm, is a point: far below any pixel and any wavelength.
 SMALLEST_EXTENT = 1.0e-9
@@ -98,7 +97,7 @@ class LensProfile:
         return state_at(self.nearness, self.states, distance)
 
     def stop_fraction(self, f_number):
-        """How far the stop is open, 0 to 1.
+        """Radius of the stop at an f-number over that wide open, 0 to 1.
 
         Parameters
         ----------

@@ -17,7 +17,7 @@ from .spline import spline_matrix
 
 _SEARCH_GRID = 49
 _GRID = 97
-# The search for a chief ray: parts that an interval is divided into, until it is 1e-14 radians.
+# The search for a chief ray: parts of an interval in each step, until it is 1e-14 radians.
 _CHIEF_PARTS, _CHIEF_STEPS = 64, 8
 
 
@@ -248,7 +248,7 @@ def _beam(tables, angle, distance, f_number, wavelength, given=None):
 def _rays(tables, angle, distance, box, grid, wavelength):
     """Rays through a regular grid in the plane of the pupil, and what the tables say of them."""
     if grid % 2 and abs(box[0] + box[1]) < 1e-9 * abs(box[1]):
-        # The picture of a lens of revolution is its own mirror image.
+        # Mirror symmetry of a lens of revolution: half of the columns are looked up.
         half = _columns(tables, angle, distance, box, grid, wavelength, grid // 2)
         x, v, values, solid = (
             np.concatenate([part[:, :0:-1] * sign, part], axis=1)
@@ -309,7 +309,7 @@ def _open_part(x, v, values, scale):
 
 
 def _pupil_along(tables, angle):
-    """Where on the chief ray the pupil stands: neighbouring chief rays meet there, mm."""
+    """Place of the pupil along the chief ray, mm: where neighbouring chief rays meet."""
     step = tables.curve_step
     low = max(angle - step, 0.0)
     rise = tables.curves_at(angle + step)[2] - tables.curves_at(low)[2]

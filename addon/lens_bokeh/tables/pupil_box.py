@@ -1,4 +1,4 @@
-"""Where the rays of a field angle enter that get through a lens.
+"""The box of a field's entrance pupil: where the rays that get through a lens enter.
 
 A beam of direction ``d = (0, sin a, cos a)`` is described by the places where its rays cross the
 plane through the vertex of surface 1 and square to d: x, and v along ``(0, cos a, -sin a)``, in mm.

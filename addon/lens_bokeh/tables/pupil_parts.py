@@ -1,4 +1,4 @@
-"""Pupil tables as named pictures and words, for files.
+"""Serialisation of pupil tables: named pictures and text attributes, for files.
 
 Every picture has shape (height, width, channels), float32: the fields of a table stand one above
 the other, the first one at row 0.

@@ -44,7 +44,7 @@ CHANNELS = (
 )
 # How the rays of another wavelength differ.
 CHROMATIC_CHANNELS = CHANNELS[:4]
-# Rims that cut are told apart, as each is a smooth function where their smallest has kinks.
+# Most rims with a channel of their own: each is a smooth function, but their minimum has kinks.
 RIMS = slice(6, 10)
 _RIMS_APART = 3
 CURVES = ("image_height", "half_x", "centre_v", "half_v")
@@ -119,7 +119,7 @@ class PupilTables:
         return np.einsum("t...,t...c->...c", weights, self.curves[taps])
 
     def look_up(self, angle, x, v, wavelength=0):
-        """Tell what the lens does to rays.
+        """Look up where rays land, where they pass the stop, and their clearances of the rims.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Energy of a fan of rays in rings round the axis, exact for the rays given.
+"""Energy of a fan of rays in rings round the axis, exact for piecewise linear fans.
 
 Rays from the axis to the rim of the pupil cross a plane at signed heights; between two neighbours
 lies the energy of their annulus of the pupil, ``pi (g_2^2 - g_1^2)``. Between them, height and g

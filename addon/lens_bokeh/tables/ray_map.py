@@ -1,11 +1,10 @@
-"""Where the rays of axial points go behind a lens: the ray map.
+"""The ray map: heights and slopes behind a lens of the rays of axial points.
 
-The image of an axial point is made of rays that lie in planes through the axis. Behind the lens
-they are straight lines, told by a height and a slope. Which ray it is, is told by its height p in
-the paraxial entrance pupil as a share s of the *reach* P(V), a height that no ray beyond gets
-through. (The height in the stop would not tell rays apart: in fast lenses it turns back before the
-pupil ends.) The object is told by its *vergence* V, 1 / distance to the entrance pupil; 0 at
-infinity.
+The image of an axial point is made of meridional rays. Behind the lens they are straight lines,
+given by a height and a slope. A ray is identified by its height p in the paraxial entrance pupil,
+as a share s of the *reach* P(V), beyond which no ray gets through. (The height in the stop would
+not be unique: in fast lenses it turns back before the pupil ends.) The object is given by its
+*vergence* V, 1 / distance to the entrance pupil; 0 at infinity.
 
 Near the axis height and slope are ``p (c0 + c1 V)``. The map stores these two coefficients apart
 and, on a grid over wavelength, V and s, only what the real ray adds to them. The aberrations are
@@ -28,7 +27,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-# Rays between which the edges of the pupil are looked for.
+# Rays between which the edges of the pupil are bracketed.
 _EDGE_RAYS = 513
 HEIGHT, SLOPE, ENERGY, STOP = range(4)
 

@@ -1,9 +1,9 @@
-"""Tracing the ray map of a lens: see `ray_map` for what it tells.
+"""Tracing the ray map of a lens: see `ray_map` for its contents.
 
 For each object a fan of meridional rays first finds how far the real pupil reaches; the reach of
 the map is a parabola over vergence that holds all of them. Rims do not end the rays of the map, so
-that it stays smooth where another rim than the stop limits the pupil. Where rays fail the map goes
-on as a parabola, and nothing reads it there.
+that it stays smooth where another rim than the stop limits the pupil. Where rays fail the map is
+extrapolated as a parabola, which is never read.
 """
 
 from dataclasses import replace
@@ -23,13 +23,13 @@ VERGENCES = 17
 # The search for the pupil's end: paraxial radii searched, rays, and rays between the last that
 # passes and the first that does not.
 _SEARCH_RADII, _SEARCH_RAYS, _SEARCH_STEPS = 2.2, 192, 16
-# By how much the map reaches beyond the last ray that passes, so that rims lie inside of it.
+# Factor by which the map reaches beyond the last ray that passes, so that rims lie inside of it.
 _MARGIN = 1.01
-# Fewer rays than this say nothing about a lens.
+# Least rays that must get through for a map.
 _LEAST_RAYS = 8
 # Share of the pupil by which an edge may move when a rim is left out.
 _SAME_EDGE = 1.0e-4
-# A limit that no share reaches.
+# A limit above any share: no limit.
 NO_LIMIT = 1.25
 
 
@@ -135,7 +135,7 @@ def pupil_reach(lenses, wavelengths_nm, vergences):
 
 
 def without_idle_rims(maps):
-    """Leave out the rims without which the pupil is the same.
+    """Drop the rims that do not limit the pupil.
 
     Parameters
     ----------

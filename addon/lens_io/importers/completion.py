@@ -1,4 +1,4 @@
-"""The draft of a lens to a prescription: values that the file does not tell are computed.
+"""Completion of a draft to a prescription: values that the file lacks are computed.
 
 First-order values come from paraxial optics at the reference wavelength (the aperture's at the
 wavelength of the file), rims and fields from traced rays. The notes of the lens say what was
@@ -28,7 +28,7 @@ _SURFACE_PATH = re.compile(r"surface\[(\d+)\]")
 
 @dataclass(frozen=True)
 class _Stand:
-    """A lens as it stands at one position, and what the file tells of it there."""
+    """A lens at one zoom position, and the values that the file has for it."""
 
     lens: Configuration
     told: DraftPosition

@@ -1,4 +1,4 @@
-"""What traced rays tell of a lens whose file does not: clear radii, fields and coverage."""
+"""Clear radii, fields and coverage of a lens, by traced rays, where its file lacks them."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ...optics.surfaces import sag
 # than on the axis. At the corners that their makers give, thirty lenses of published prescriptions
 # let 12 to 99 % through, half of them 30 to 57 %; the quarter lies 0 to 8 degrees further out.
 COVERED_SHARE = 0.25
-# Beyond this, in degrees, no rectilinear lens and few others see.
+# Largest half field that is searched, degrees: no rectilinear lens sees farther.
 WIDEST_FIELD = 89.0
 # Chief rays between which fields are interpolated (to 1e-4 degrees), and the steepest at the stop.
 _CHIEF_RAYS, _STEEPEST = 2001, np.radians(80.0)

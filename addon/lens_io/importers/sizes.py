@@ -1,4 +1,4 @@
-"""Sizes that the file of a lens does not tell: stop, rims, field."""
+"""Sizes that the file of a lens lacks: stop, rims, field."""
 
 import math
 
@@ -8,7 +8,7 @@ from ...optics.paraxial import first_order
 from ...optics.surfaces import sag
 from .rims import COVERED_SHARE, beam_radii, coverage, fields_of_heights
 
-# Stands for a rim that is not known yet, mm: so small that every ray through it is paraxial.
+# Placeholder of an unknown rim, mm: so small that every ray through it is paraxial.
 UNKNOWN_RIM = 1.0e-6
 # The stop's own rim may be this much smaller than the aperture asks for before the notes say so.
 _RIM_TOLERANCE = 0.03
@@ -22,7 +22,7 @@ _HALVINGS = 40
 
 
 class FileValueError(PrescriptionError):
-    """A value that neither the file nor the user tells.
+    """A value is missing in the file and in the options.
 
     Parameters
     ----------

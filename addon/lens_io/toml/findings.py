@@ -1,4 +1,4 @@
-"""What a reader finds in a lens file: errors and warnings, each with a code."""
+"""Findings: errors and warnings about a lens file, each with a code."""
 
 from dataclasses import dataclass
 

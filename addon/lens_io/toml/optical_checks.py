@@ -1,4 +1,4 @@
-"""What is checked by tracing a lens rather than by reading its file (E16, E24, E25, W01 to W06).
+"""Checks that need first-order values or traced rays (E16, E24, E25, W01 to W06).
 
 First-order values are those at the reference wavelength; in a lens with cylinders those of the
 meridian y are compared with the nominal ones.
@@ -279,7 +279,7 @@ def _check_field(position, findings):
 
 
 def light_passes(configuration, field_deg):
-    """Tell whether light from infinity gets through a lens at a field angle.
+    """Return whether light from infinity gets through a lens at a field angle.
 
     Parameters
     ----------

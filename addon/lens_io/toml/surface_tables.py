@@ -30,7 +30,7 @@ NOT_NEGATIVE = Range(0.0)
 
 @dataclass
 class SurfaceTables:
-    """What the `[[surface]]` tables of a file say, as far as it can be known.
+    """The surfaces of a file, as far as its `[[surface]]` tables are valid.
 
     Parameters
     ----------

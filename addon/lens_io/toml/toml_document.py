@@ -1,4 +1,4 @@
-"""The bytes of a lens file to the values of a TOML 1.0 document.
+"""Parsing of a lens file: bytes to the values of a TOML 1.0 document.
 
 What a lens file needs is small and flat. Documents built to exhaust the parser (arrays in arrays
 without end, keys of thousands of parts, numbers of thousands of digits) are refused before or by

@@ -148,7 +148,7 @@ def differ(a, b):
 
 
 def _numbered(first):
-    """Number the runs of an array that holds the first entry of each entry's run."""
+    """Return numbers of runs, from an array that holds the first entry of each entry's run."""
     leads = np.zeros(len(first), bool)
     leads[first] = True
     return (np.cumsum(leads, dtype=np.int32) - 1)[first]

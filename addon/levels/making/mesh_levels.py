@@ -300,7 +300,7 @@ def _without_gaps(numbers):
 
 
 def _sides(triangles, places, merged):
-    """Number the sides of seams at merging places: the vertices that triangles connect there.
+    """Return numbers of the sides of seams at merging places: vertices that triangles connect.
 
     Parameters
     ----------

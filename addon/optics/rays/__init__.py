@@ -1,1 +1,1 @@
-"""Rays through a lens, and what bundles of them tell."""
+"""Ray tracing through a lens: trace, aiming, pupils, vignetting, aberrations."""

@@ -1,7 +1,7 @@
-"""What a lens makes of parallel light: foci along the axis, across the field, spots, distortion.
+"""Aberrations at infinity focus: longitudinal, field curvature, astigmatism, distortion, spots.
 
-All of it comes from real rays at infinity focus. Positions along the axis are in mm behind the
-paraxial focus of the reference wavelength. What a lens lets no ray to is left out, never invented.
+All of it comes from real rays. Positions along the axis are in mm behind the paraxial focus of the
+reference wavelength. Fields and heights without a ray that gets through are left out.
 """
 
 import math
@@ -19,15 +19,15 @@ from .trace import Rays, trace
 # Distance of neighbouring rays, in entrance pupil radii: near enough for a derivative, far enough
 # for its digits.
 _NEIGHBOUR = 1.0e-4
-# Flatter against the axis, two rays have no focus worth telling.
+# Least difference of slopes of two rays that have a focus.
 _LEAST_SLOPE = 1.0e-12
-# Planes among which the best one is looked for, and how often it is looked for more closely.
+# Planes of the search for the best focus, and number of its refinements.
 _FOCUS_PLANES, _FOCUS_SEARCHES = 81, 3
 
 
 @dataclass(frozen=True)
 class AxialFocus:
-    """Where rays parallel to the axis cross it.
+    """Longitudinal aberration: where rays parallel to the axis cross it.
 
     Parameters
     ----------

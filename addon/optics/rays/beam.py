@@ -1,4 +1,4 @@
-"""The rays that one object point sends to a lens, told by two coordinates.
+"""Beams: the rays from one object point to a lens, by two coordinates.
 
 Coordinates (u, v) in mm lie in a plane through the vertex of surface 1, across the beam's axis,
 which points from the object to that vertex: u along the first, v along the second of two unit

@@ -17,10 +17,10 @@ from .aiming import chief_ray
 from .beam import Beam
 from .trace import Rays, trace
 
-# Grid that looks for the pupil, and how often it is laid again over what it found.
+# Rays along a side of the grid that searches the pupil, and number of its refinements.
 SEARCH_GRID = 65
 SEARCHES = 4
-# It has found the pupil when the box no longer shrinks by more than this.
+# Relative change of the box below which the search ends.
 SHRINKS = 0.8
 # Steps from the centre of a pupil to its edge, and halvings of the last one: to rounding, or to
 # what a box with a margin needs.
@@ -81,7 +81,7 @@ class PupilOutline:
 
 
 def without_rims(configuration):
-    """Return the lens with all rims but the stop's out of the way.
+    """Return the lens without clipping by any rim but the stop's.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def as_beam(source):
 
 
 def passing(configuration, beam, coordinates, wavelength_nm=REFERENCE_WAVELENGTH_NM):
-    """Tell which rays of a beam get through the lens.
+    """Return which rays of a beam get through the lens.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ def stop_outline(
     wavelength_nm=REFERENCE_WAVELENGTH_NM,
     halvings=HALVINGS,
 ):
-    """Find the edge of the stop as the object sees it, all other rims out of the way.
+    """Find the edge of the stop as the object sees it, without clipping by any other rim.
 
     Rays far outside the rims can find another way to the stop; they do not belong to the edge
     that is seen from the chief ray.
@@ -270,7 +270,7 @@ def pupil_box(configuration, beam, wavelength_nm=REFERENCE_WAVELENGTH_NM):
 
 
 def is_open(configuration, source, wavelength_nm=REFERENCE_WAVELENGTH_NM):
-    """Tell whether any light gets through the lens.
+    """Return whether any light gets through the lens.
 
     Parameters
     ----------
@@ -319,9 +319,8 @@ def grid_of(box, cells):
 
 
 def _places(configuration, beam, wavelength_nm):
-    """Boxes in which what gets through may be."""
-    # A small pupil could slip through a grid over surface 1, so it is also looked for where the
-    # stop appears.
+    """Return boxes in which rays that get through may be."""
+    # A grid over surface 1 could miss a small pupil, so it is also searched where the stop appears.
     stop = stop_outline(configuration, beam, 32, wavelength_nm, FEW_HALVINGS)
     if len(stop.points):
         yield _widened(stop.box, 0.1)
@@ -364,7 +363,7 @@ def _search(configuration, beam, box, wavelength_nm):
 
 
 def _edge(configuration, beam, centre, reach, directions, wavelength_nm, halvings=HALVINGS):
-    """First place in each direction from an open centre that is not open."""
+    """Return the first blocked place in each direction from an open centre."""
     turn = np.linspace(0.0, 2.0 * np.pi, directions, endpoint=False)
     way = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
 

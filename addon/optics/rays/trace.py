@@ -4,8 +4,8 @@ Rays meet the surfaces in their order and are refracted by Snell's law in vector
 normal N towards +z, d the unit direction times the index n, and `C = d . N`,
 `d' = d + (sign(C) sqrt(n'^2 - n^2 + C^2) - C) N`. Reflected light is not followed.
 
-Positions are in mm from the vertex of surface 1. A ray that fails is data: it tells how and where,
-and its numbers are finite.
+Positions are in mm from the vertex of surface 1. A ray that fails is data, not an error: its status
+says how and where, and its numbers are finite.
 """
 
 from dataclasses import dataclass
@@ -21,13 +21,13 @@ from ..surfaces import FAR, Shape, within_reach
 
 # Rays at a time: the working arrays stay in a core's second-level cache.
 CHUNK = 8192
-# While more than this share of a chunk is on its way, ended rays are carried along: that costs less
-# than to take the others out.
+# While more than this share of a chunk is being traced, ended rays are carried along: that costs
+# less than compacting the arrays.
 WORTH_KEEPING = 0.7
 
 
 class RayStatus(IntEnum):
-    """How a ray fared."""
+    """Result of tracing a ray."""
 
     PASSED = 0
     BLOCKED = 1  # outside a rim or the stop
@@ -56,7 +56,7 @@ class Rays:
     directions: np.ndarray
 
     def __post_init__(self):
-        """Refuse what cannot be traced."""
+        """Check that the rays can be traced."""
         for name in ("origins", "directions"):
             values = np.asarray(getattr(self, name), dtype=float)
             if values.ndim != 2 or values.shape[1] != 3:
@@ -70,7 +70,7 @@ class Rays:
             )
 
     def __len__(self):
-        """How many rays there are."""
+        """Return the number of rays."""
         return len(self.origins)
 
 
@@ -140,7 +140,7 @@ class TracedRays:
 
 @dataclass(frozen=True)
 class _Step:
-    """A surface as rays meet it."""
+    """A surface, prepared for tracing."""
 
     number: int
     shape: Shape
@@ -292,7 +292,7 @@ class _Chunk:
         self.end(step, (RayStatus.MISSED, lost))
 
     def end(self, step, *fates):
-        """Write down rays that go no further, each fate with its mask, and go on without them."""
+        """Record rays that end, each status with its mask, and go on without them."""
         gone = []
         for status, chosen in fates:
             places = self.places(chosen)
@@ -307,7 +307,7 @@ class _Chunk:
             self.retire(np.concatenate(gone))
 
     def retire(self, places):
-        """Leave rays where they do no harm, or all that have ended behind if they are many."""
+        """Park ended rays, or compact the chunk if they are many."""
         alive = np.ones(self.bundle.count, dtype=bool) if self.alive is None else self.alive
         alive[places] = False
         if np.count_nonzero(alive) < WORTH_KEEPING * len(alive):
@@ -360,7 +360,7 @@ class _Chunk:
             self.hits[order, missed] = self.hits[order - 1, missed]
 
     def refract(self, step):
-        """Turn the rays at a surface; end those that are totally reflected."""
+        """Refract the rays at a surface; end those that are totally reflected."""
         if step.before == step.behind:
             return
         bundle = self.bundle

@@ -1,4 +1,4 @@
-"""How much of a beam gets through the lens at a field angle."""
+"""Vignetting: the share of a beam that gets through the lens at a field angle."""
 
 from dataclasses import dataclass
 
@@ -10,13 +10,13 @@ from .beam import Beam
 from .pupil import grid_of, is_open, passing, pupil_box, stop_outline, without_rims
 from .trace import Rays, trace
 
-# Field angles beyond this are not looked at: lens files go up to 90 degrees.
+# Largest field angle that is searched, degrees: lens files go up to 90.
 LARGEST_FIELD_DEG = 89.9
 
 
 @dataclass(frozen=True)
 class Vignetting:
-    """What a lens lets through of the light of an object at infinity.
+    """Light of an object at infinity that gets through a lens, at one field angle.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Background work of the user interface: started from panels, finished in the main thread."""
+"""Background jobs of the user interface: started from panels, finished in the main thread."""
 
 import threading
 import traceback
@@ -9,20 +9,20 @@ from bpy.app.handlers import persistent
 from ...errors import AplanatError
 from .job_queue import JobQueue
 
-# How often results are looked for, and for how long an ending waits for the thread, in seconds.
+# Seconds between looks for results, and longest wait for the thread when Blender ends.
 _INTERVAL = 0.15
 _PATIENCE = 10.0
 
 _queue = JobQueue()
 _errors = {}
-# Set by the user; nothing is begun until it is cleared.
+# Set when the user stops the jobs; no job is begun until it is cleared.
 _stopped = threading.Event()
 
 
 def submit(key, label, work, receive, urgent=False, group=None):
-    """Have work done in the background, unless it was asked for already.
+    """Submit a job to the background, unless it was submitted already.
 
-    Nothing is done in a Blender without windows.
+    Does nothing in a Blender without windows.
 
     Parameters
     ----------
@@ -34,9 +34,9 @@ def submit(key, label, work, receive, urgent=False, group=None):
     receive : callable
         ``receive(result)``, in the main thread.
     urgent : bool
-        Before all that wait.
+        Goes before all waiting jobs.
     group : hashable
-        Takes the place of the jobs of its group that wait.
+        Replaces the waiting jobs of its group.
     """
     if bpy.app.background or _stopped.is_set() or key in _errors:
         return
@@ -50,7 +50,7 @@ def submit(key, label, work, receive, urgent=False, group=None):
 
 
 def progress():
-    """Return how far the work is: a `Progress`, or None if there is none."""
+    """Return the progress of all jobs, or None if there are none."""
     return _queue.progress()
 
 
@@ -60,26 +60,26 @@ def error_of(key):
 
 
 def resume():
-    """Let jobs that failed or were stopped be asked for again."""
+    """Allow jobs that failed or were stopped to be submitted again."""
     _errors.clear()
     _stopped.clear()
     _redraw()
 
 
 def stop():
-    """Stop everything until `resume`."""
+    """Stop all jobs until `resume`."""
     _stopped.set()
     cancel()
     _redraw()
 
 
 def is_stopped():
-    """Whether the user stopped the work."""
+    """Whether the user stopped the jobs."""
     return _stopped.is_set()
 
 
 def cancel():
-    """Stop everything; what is still needed is asked for again when it is drawn."""
+    """Cancel all jobs; panels submit what they still need when they are drawn."""
     _queue.cancel()
 
 
@@ -130,7 +130,7 @@ def _draw_in_status_bar(header, _context):
 
 
 def register():
-    """Have work stop when another file is loaded; show its progress in the status bar."""
+    """Stop the jobs when another file is loaded; show their progress in the status bar."""
     bpy.app.handlers.load_pre.append(_stop_before_load)
     bpy.types.STATUSBAR_HT_header.append(_draw_in_status_bar)
 

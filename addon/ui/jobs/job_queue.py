@@ -1,4 +1,4 @@
-"""Work in the background: one thread, one job at a time, results fetched by the caller.
+"""A queue of background jobs: one thread, one job at a time, results fetched by the caller.
 
 A job is a function of numpy and files only; it never touches Blender. The thread ends when nothing
 is left to do.
@@ -24,7 +24,7 @@ class Job:
         ``work(progress, cancelled)``: tells its share done by ``progress(0..1)``, ends soon, with
         any result or error, when ``cancelled()`` is true.
     group : hashable
-        Of the jobs of a group that wait only the last one is wanted; None: each for itself.
+        Of the waiting jobs of a group only the last is kept; None: no group.
     """
 
     key: Hashable
@@ -40,7 +40,7 @@ class Job:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What became of a job.
+    """The outcome of a job.
 
     Parameters
     ----------
@@ -57,14 +57,14 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Progress:
-    """How far the work is.
+    """Progress of the queue.
 
     Parameters
     ----------
     label : str
         Of the current job.
     share : float
-        Of everything asked for since the queue was last empty, 0 to 1.
+        Share done of all jobs since the queue was last empty, 0 to 1.
     left : int
         Jobs that are not done.
     """
@@ -86,7 +86,7 @@ class JobQueue:
         self._thread = None
 
     def submit(self, key, label, work, urgent=False, group=None):
-        """Ask for a job, unless it is waiting or at work.
+        """Submit a job, unless it is waiting or running.
 
         Parameters
         ----------
@@ -95,9 +95,9 @@ class JobQueue:
         work : callable
             See `Job`.
         urgent : bool
-            Before all that wait; one that waits already goes to the front.
+            Goes before all waiting jobs; a waiting one moves to the front.
         group : hashable
-            Takes the place of those of its group that wait.
+            Replaces the waiting jobs of its group.
         """
         with self._lock:
             current = self._current
@@ -121,7 +121,7 @@ class JobQueue:
                 self._thread.start()
 
     def progress(self):
-        """Return how far the work is.
+        """Return the progress of the queue.
 
         Returns
         -------
@@ -137,7 +137,7 @@ class JobQueue:
             return Progress(current.label, share, left)
 
     def fetch(self):
-        """Return what was done since the last call; of cancelled jobs nothing.
+        """Return the outcomes since the last call, without cancelled jobs.
 
         Returns
         -------
@@ -148,7 +148,7 @@ class JobQueue:
             return outcomes
 
     def cancel(self):
-        """Forget what waits, and tell the job at work to end."""
+        """Drop the waiting jobs, and tell the running one to end."""
         with self._lock:
             self._waiting.clear()
             self._outcomes = []

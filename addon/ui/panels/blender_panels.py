@@ -1,7 +1,7 @@
 """Blender's own panels that are shown while Aplanat is the render engine.
 
 A panel names the engines it is for in `COMPAT_ENGINES`. Those for the generic engine
-``BLENDER_RENDER`` fit, except for what Aplanat has no use for; a few of EEVEE's fit too.
+``BLENDER_RENDER`` fit, except for those of features that Aplanat lacks; a few of EEVEE's fit too.
 """
 
 import bpy

@@ -14,7 +14,7 @@ from .sentences import draw_alert, draw_sentences, letters_across
 
 # In units of Blender's buttons.
 _DISC_SCALE = 5.0
-# What became of a source: in words, and Blender's sign of about the colour of its marks.
+# Fates of a source: label, and the icon of Blender nearest to the colour of its marks.
 LEGEND = {
     "SHARP": ("Sharp: the lens samples draw it", "STRIP_COLOR_09"),
     "OUTSIDE": ("Disc outside the picture", "STRIP_COLOR_07"),
@@ -54,7 +54,7 @@ class APLANAT_CAMERA_PT_bokeh(_BokehPanel, bpy.types.Panel):
         self.layout.prop(context.camera.aplanat.bokeh, "use", text="")
 
     def draw(self, context):
-        """Draw what is a highlight, what became of them, and what is not as the settings ask."""
+        """Draw the settings, the counts of highlights by fate, and warnings."""
         settings, column = self.begin(context)
         light = column.column(align=True)
         light.prop(settings, "threshold")
@@ -80,7 +80,7 @@ def _draw_counts(column, scene, letters):
 
 
 def counts_as_lines(counts):
-    """Return what became of a picture's highlights, for people.
+    """Return the counts of a picture's highlights by fate, as lines of text.
 
     Parameters
     ----------
@@ -124,13 +124,13 @@ def _draw_notes(column, context, letters):
         draw_sentences(column, text, letters, icon="INFO")
     lens, _ = read_real_lens(camera)
     _, problems = describe_bokeh(camera, lens, corner_tangent(camera, context.scene))
-    # What only drawing tells is that of the last picture.
+    # Warnings that only drawing finds are those of the last picture.
     for problem in (*problems, *outcome.last_problems(context.scene)):
         draw_alert(column, f"{problem[0].upper()}{problem[1:]}.", letters)
 
 
 class APLANAT_CAMERA_PT_bokeh_search(_BokehPanel, bpy.types.Panel):
-    """How highlights are found, and what hides them."""
+    """Settings of the search for highlights, and of their visibility."""
 
     bl_label = "Search and Visibility"
     bl_parent_id = "APLANAT_CAMERA_PT_bokeh"
@@ -266,7 +266,7 @@ class APLANAT_CAMERA_PT_bokeh_rings(_AppearancePanel, bpy.types.Panel):
 
 
 class APLANAT_CAMERA_PT_bokeh_debug(_BokehPanel, bpy.types.Panel):
-    """Which sources there are, and what became of them."""
+    """Debug view: marks of sources and their fates."""
 
     bl_label = "Debug View"
     bl_parent_id = "APLANAT_CAMERA_PT_bokeh"

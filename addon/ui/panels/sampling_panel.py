@@ -92,7 +92,7 @@ class APLANAT_RENDER_PT_sampling_advanced(EnginePanel, bpy.types.Panel):
 
 
 def sampling_as_lines(report):
-    """Return how far the sampling of a picture came, for people.
+    """Return the error and samples of a picture, as lines of text.
 
     Parameters
     ----------

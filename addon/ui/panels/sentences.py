@@ -1,4 +1,4 @@
-"""Sentences in panels: Blender's labels have one line and are cut off at its end."""
+"""Word wrapping of sentences in panels: Blender's labels have one line and are cut off."""
 
 import textwrap
 

@@ -1,4 +1,4 @@
-"""Presets of what discs look like: the shipped ones, and those a user saves."""
+"""Presets of the bokeh's appearance: the shipped ones, and those a user saves."""
 
 import bpy
 from bl_operators.presets import AddPresetBase

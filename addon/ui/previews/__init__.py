@@ -1,1 +1,1 @@
-"""Pictures in panels."""
+"""Preview pictures in panels."""

@@ -11,11 +11,11 @@ from ...lens_bokeh.look.iris_mask import texel_centres
 from ...lens_bokeh.look.sprite import sprite
 
 _SIZE = 96
-# Of the brightest even disc, as displayed.
+# Displayed brightness of an even disc.
 _GREY = 0.55
 
 _collection = None
-# What the pictures of a camera were made of.
+# Inputs of the pictures of each camera, to see whether they have changed.
 _shown = {}
 
 
@@ -88,7 +88,7 @@ def disc_pictures(appearance, corner):
 
 @lru_cache(maxsize=8)
 def _speckles(grain, ratio, extent):
-    """Return what grain and dust let through: once for all discs, without finer places."""
+    """Return the transmittance of grain and dust, drawn once for all discs."""
     if grain is None:
         return np.ones((_SIZE, _SIZE))
     return transmission(grain, texel_centres(_SIZE, extent) * (ratio, 1.0))

@@ -1,1 +1,1 @@
-"""What is stored in Blender files."""
+"""Property groups: the settings that are stored in Blender files."""

@@ -1,4 +1,4 @@
-"""Bokeh of a camera: what is stored."""
+"""Bokeh settings of a camera."""
 
 import bpy
 from bpy.props import (

@@ -1,4 +1,4 @@
-"""Chromatic aberration of a camera: what is stored, and what each lens remembers of it."""
+"""Chromatic aberration settings of a camera, and those remembered for each lens."""
 
 import bpy
 from bpy.props import (

@@ -1,4 +1,4 @@
-"""What a camera remembers of its settings for each real lens that it has had."""
+"""Settings that a camera remembers for each real lens that it has had."""
 
 import json
 
@@ -40,9 +40,9 @@ def set_values(group, names, values):
 
 
 def remember(camera_settings, which, read, write):
-    """Keep settings for the lens that was chosen before; bring back those of the present one.
+    """Store the settings for the previous lens, and restore those of the present one.
 
-    A lens that was not used yet takes over what is set.
+    A lens that was not used before takes over the present settings.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What Aplanat adds to Blender's data-blocks: one property group each."""
+"""Property groups that Aplanat adds to Blender's data-blocks, one each."""
 
 import bpy
 from bpy.props import (

@@ -1,1 +1,1 @@
-"""What all importers share: text, glasses, options, and the draft of a lens."""
+"""Shared parts of all importers: text, glasses, options, and the draft of a lens."""

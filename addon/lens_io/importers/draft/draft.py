@@ -1,4 +1,4 @@
-"""What an importer has read, before the missing values are computed."""
+"""The draft of a lens: what an importer has read, before missing values are computed."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -53,7 +53,7 @@ class DraftSurface:
 
 @dataclass(frozen=True)
 class Opening:
-    """How a file tells the aperture.
+    """The aperture as a file specifies it.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Opening:
 
 @dataclass(frozen=True)
 class Field:
-    """How a file tells the field: the largest value of its list.
+    """The field as a file specifies it: the largest value of its list.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the user decides where a foreign lens file leaves something open."""
+"""Options of an import: the user's choices where a foreign lens file is ambiguous."""
 
 import math
 import re
@@ -52,7 +52,7 @@ class ImportOptions:
     glasses: Mapping = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self):
-        """Refuse values that mean nothing."""
+        """Check that all options have a meaning."""
         _check_word("thickness", self.thickness, ("before", "after"))
         _check_word("radii", self.radii, ("radius", "curvature"))
         if self.stop is not None and (isinstance(self.stop, bool) or self.stop < 1):

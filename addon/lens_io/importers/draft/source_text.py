@@ -1,4 +1,4 @@
-"""The bytes of a foreign lens file to numbered lines, and its words to numbers.
+"""Text of foreign lens files: bytes to numbered lines, words to numbers.
 
 Files of lens programs are UTF-16 with a byte-order mark, UTF-8, or 8-bit text (Latin-1). Numbers
 are plain ASCII decimals; nan, infinities and numbers beyond the range of a double are refused.
@@ -230,7 +230,7 @@ class Refusals:
 
 
 class PassedOver:
-    """Collects what was read past, grouped by keyword."""
+    """Collects the parts of a file that a lens description cannot hold, by keyword."""
 
     def __init__(self):
         self._lines = {}
