@@ -15,7 +15,7 @@ from addon.device import geometry, shader_variants
 from addon.device.shaders import ShaderInfo, compile_shader, dispatch
 from addon.device.targets import Targets, TargetSpec
 from addon.device.uniforms import uniform_buffer
-from addon.passes.surface import data, environment_bake, surface, surface_code
+from addon.passes.surface import data, environment_bake, surface, surface_code, surface_target
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 
 _MODULES = [
@@ -36,12 +36,12 @@ def surface_targets():
     """Every target of surfaces, as modules hold them and as the pipeline changes them."""
     for module in _MODULES:
         for name, value in vars(module).items():
-            if isinstance(value, surface.SurfaceTarget):
+            if isinstance(value, surface_target.SurfaceTarget):
                 yield f"{module.__name__}.{name}", value
-    for target in (surface.COLOR, surface.COLOR_AND_MATTES):
+    for target in (surface_target.COLOR, surface_target.COLOR_AND_MATTES):
         for splits, disperses in ((True, False), (False, True), (True, True)):
-            made = surface.without_highlights(target) if splits else target
-            made = surface.in_wavelengths(made) if disperses else made
+            made = surface_target.without_highlights(target) if splits else target
+            made = surface_target.in_wavelengths(made) if disperses else made
             yield f"color {splits=} {disperses=}", made
     for number in range(3):
         for names in combinations(("Vector", "Detail"), number):

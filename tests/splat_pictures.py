@@ -6,7 +6,7 @@ import numpy as np
 
 from addon.lens_bokeh.look.appearance import Appearance
 from addon.sampling.iris import Iris
-from addon.snapshot.scene import BokehSettings
+from addon.snapshot.camera import BokehSettings
 
 FOCUS = 2.0
 
@@ -93,7 +93,7 @@ def splatted(plan, depth, chief=(0.0, 0.0), light=(1.0, 1.0, 1.0), window=None, 
 def library_lens(lens_id, f_number=None):
     """Return `LensSettings` of a lens that comes with Aplanat."""
     from addon.lens_io.lens_shelf import LensShelf
-    from addon.snapshot.scene import LensSettings
+    from addon.snapshot.camera import LensSettings
 
     prescription = LensShelf([]).find(lens_id).lens.prescription
     configuration = prescription.configuration(None)

@@ -138,7 +138,7 @@ def pupil_tables(
         As for `profile`.
     """
     from ..lens_bokeh.tables.pupil_parts import LAYOUT, pack, unpack
-    from ..lens_bokeh.tables.pupil_tables import build_pupil_tables
+    from ..lens_bokeh.tables.pupil_tracing import build_pupil_tables
 
     configuration = prescription.configuration(label)
     options = {} if wavelengths_nm is None else {"wavelengths_nm": tuple(wavelengths_nm)}

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..snapshot.scene import MeshSnapshot
-from .making.level_collapses import weld
+from ..snapshot.content import MeshSnapshot
+from .making.level_surface import weld
 from .making.mesh_levels import replay, seam_edges, simplify
 
 # Least triangles of a mesh that is cached on disk: smaller ones are simplified as fast as read.

@@ -63,7 +63,7 @@ def accumulate_focus(fullscreen, mattes, weights):
     ----------
     fullscreen : GPUBatch
     mattes : GPUTexture
-        Second target of `passes.surface.surface.COLOR_AND_MATTES`, as large as the sample.
+        Second target of `passes.surface.surface_target.COLOR_AND_MATTES`, as large as the sample.
     weights : ndarray of shape (2, k)
     """
     _add(fullscreen, _FOCUS, mattes, weights)

@@ -17,7 +17,7 @@ from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from ..sampling.tile_control import TILE
 from .accumulate import padded
 
-# Channel of the second target of `passes.surface.surface.COLOR_AND_MATTES` that holds the id.
+# Channel of the second target of `surface_target.COLOR_AND_MATTES` that holds the id.
 CHANNELS = {"CryptoObject": 0, "CryptoMaterial": 1}
 
 _GROUP = 8

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..snapshot.changes import Change, compare_content, same_instances
+from ..snapshot.content import InstanceGroup, InstanceTable, SceneContent
 from ..snapshot.cryptomatte import cryptomatte_id
-from ..snapshot.scene import InstanceGroup, InstanceTable, SceneContent, SceneSnapshot
+from ..snapshot.scene import SceneSnapshot
 from ..snapshot.surface_graph import attributes_read
 from .camera.camera import read_camera
 from .camera.drawn_curves import is_curve_group

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import InputError
-from ..snapshot.scene import Film, Sampling
+from ..snapshot.film import Film, Sampling
 
 # 16384 squared: the largest texture of today's graphics devices; 4 GB a target.
 MAX_PIXELS = 2**28

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..snapshot.scene import Camera, Film
+from ..snapshot.camera import Camera
+from ..snapshot.film import Film
 from .camera.camera import evaluated_camera, read_optics
 from .settings import filter_size
 

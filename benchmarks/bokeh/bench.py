@@ -21,6 +21,7 @@ Of built scenes:
 
 import math
 import os
+from statistics import median
 
 import numpy as np
 
@@ -33,13 +34,12 @@ from ..benches.curve import Curve, samples_to_reach
 from ..benches.peers import peers
 from ..benches.scenes import check_folder, find_cases, open_scene, save_picture
 from ..referees.picture_metrics import compare, read_picture, srgb
-from .charts import EDGE_DEPTH, LAMP_DEPTH, half_hidden, many_highlights
+from .built_scenes import RESOLUTION, ROUNDS, focus_pull, scaling
 from .frames import BokehScene
 from .lens import lenses
 from .lines import line
 from .pan import pan
 
-_RESOLUTION = (480, 270)
 # Enough that what is left of the difference is not noise of the blur.
 _SAMPLES, _SUBSAMPLES = 128, 4
 _TRUTH = 16384
@@ -47,11 +47,6 @@ _WANTED = 0.985
 _LADDER = ((16, 4), (24, 4), (32, 4), (48, 4), (64, 4), (96, 4), (128, 4), (192, 4), (256, 4))
 # Of plain accumulation; beyond the last one the curve is extended.
 _MARKS = (64, 128, 256, 512, 1024, 2048)
-_ROUNDS = 3
-_NUMBERS = (1000, 10000, 100000)
-_PULL_FRAMES = 8
-_PULL_RESOLUTION = (240, 135)
-_PULL_TRUTH = 4096
 
 
 def bench_bokeh(arguments, console):
@@ -93,7 +88,7 @@ class _Study:
 
     def open(self, case):
         """Return the scene of a case with its snapshot read, and its reference or None."""
-        scene = open_scene(case, self.arguments.resolution or _RESOLUTION)
+        scene = open_scene(case, self.arguments.resolution or RESOLUTION)
         file = case.references.get("lens")
         return BokehScene(scene), read_picture(file) if file else None
 
@@ -155,7 +150,7 @@ class _Study:
             for model in ("POINT", "CLUSTERED"):
                 snapshot = self.splatted(bench, model=model)
                 label = f"{case.name}, {model.lower()}"
-                frames[model] = [self.draw(bench, snapshot, label) for _ in range(_ROUNDS)]
+                frames[model] = [self.draw(bench, snapshot, label) for _ in range(ROUNDS)]
         finally:
             bench.close()
         point, clustered = frames["POINT"][0], frames["CLUSTERED"][0]
@@ -163,7 +158,7 @@ class _Study:
         found = point.highlights["found"] - point.highlights["culled_size"]
         times = {
             model: {
-                step: _middle([frame.seconds.get(step, 0.0) for frame in drawn])
+                step: median([frame.seconds.get(step, 0.0) for frame in drawn])
                 for step in ("search", "merge", "visibility", "splat", "bokeh")
             }
             for model, drawn in frames.items()
@@ -266,7 +261,7 @@ class _Study:
             if not reached:
                 needed = _extended(samples, ssim)
             ratios, frames = [], []
-            for _ in range(_ROUNDS):
+            for _ in range(ROUNDS):
                 frames.append(bench.draw(snapshot).seconds)
                 part = max(8, round(frames[-1] / (seconds[-1] / samples[-1])))
                 each = bench.draw(plain, part).stages["draw"] / part
@@ -278,22 +273,22 @@ class _Study:
             "load_average": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
             "tried": tried,
             "reached": tried[-1][-1] >= _WANTED,
-            "frame_seconds": _middle(frames),
+            "frame_seconds": median(frames),
             "accumulation": {
                 "samples": samples,
                 "seconds": seconds,
                 "ssim_srgb": ssim,
                 "samples_to_equal": needed,
                 "extended": not reached,
-                "seconds_to_equal": _middle(ratios) * _middle(frames),
+                "seconds_to_equal": median(ratios) * median(frames),
             },
             "ratios": ratios,
-            "speedup": _middle(ratios),
+            "speedup": median(ratios),
         }
 
     def peers(self, case):
         """Compare with other engines as good."""
-        scene = open_scene(case, self.arguments.resolution or _RESOLUTION)
+        scene = open_scene(case, self.arguments.resolution or RESOLUTION)
         found = peers(scene, case, self.arguments, self.console, _WANTED)
         return {"measure": "peers", "engines": found["peers"], "threads": found["threads"]}
 
@@ -301,68 +296,6 @@ class _Study:
         """Measure flicker of the bokeh in a slow pan."""
         scene = open_scene(case, self.arguments.resolution or (240, 135))
         return {"measure": "pan", **pan(scene, case.name, self)}
-
-    def scaling(self):
-        """Time the bokeh of more and more lamps."""
-        found = []
-        for number in _NUMBERS:
-            scene = many_highlights(self.arguments.resolution or _RESOLUTION, number)
-            bench = BokehScene(scene)
-            try:
-                snapshot = bench.splatted(4, 0)
-                drawn = [self.draw(bench, snapshot, f"{number} lamps") for _ in range(_ROUNDS + 1)][
-                    1:
-                ]
-            finally:
-                bench.close()
-            self.save(f"lamps_{number}", drawn[0].picture)
-            steps = ("bokeh", "search", "merge", "visibility", "splat")
-            found.append(
-                {
-                    "lamps": number,
-                    "highlights": drawn[0].highlights,
-                    "method": drawn[0].visibility.get("method"),
-                    "seconds": {s: _middle([f.seconds.get(s, 0.0) for f in drawn]) for s in steps},
-                }
-            )
-        times = [each["seconds"]["bokeh"] for each in found]
-        return {"measure": "scaling", "scenes": found, "growth": times[2] / times[1]}
-
-    def focus_pull(self):
-        """Compare frames of a focus pull past a half-hidden lamp with the reference method."""
-        resolution = self.arguments.resolution or _PULL_RESOLUTION
-        scene = half_hidden(resolution)
-        bench = BokehScene(scene)
-        samples = self.arguments.samples or _PULL_TRUTH
-        frames = []
-        try:
-            for number, focus in enumerate(
-                np.geomspace(EDGE_DEPTH / 1.6, 1.6 * LAMP_DEPTH, _PULL_FRAMES)
-            ):
-                scene.camera.data.dof.focus_distance = focus
-                bench.look()
-                label = f"focus pull, frame {number + 1}"
-                frame = self.draw(bench, self.splatted(bench), label)
-                truth = self.draw(bench, bench.plain(samples), label).picture
-                self.save(f"pull_{number + 1}", frame.picture)
-                self.save(f"pull_{number + 1}_truth", truth)
-                mirrored = truth[::-1, ::-1]
-                frames.append(
-                    {
-                        "focus_m": float(focus),
-                        **compare(frame.picture, truth.astype(np.float64)),
-                        # The shape is the reference's way up, if this is the worse one.
-                        "ssim_mirrored": compare(frame.picture, mirrored)["ssim_srgb"],
-                    }
-                )
-        finally:
-            bench.close()
-        return {
-            "measure": "focus-pull",
-            "samples": samples,
-            "frames": frames,
-            "least_ssim": min(frame["ssim_srgb"] for frame in frames),
-        }
 
 
 OF_SCENES = {
@@ -375,7 +308,7 @@ OF_SCENES = {
     "peers": _Study.peers,
     "pan": _Study.pan,
 }
-OF_CHARTS = {"scaling": _Study.scaling, "focus-pull": _Study.focus_pull, "lens": lenses}
+OF_CHARTS = {"scaling": scaling, "focus-pull": focus_pull, "lens": lenses}
 
 
 def _is_sum(frame):
@@ -395,7 +328,3 @@ def _extended(samples, ssim):
     if slope > -0.05:
         return math.inf
     return float(np.exp((math.log(1.0 - _WANTED) - offset) / slope))
-
-
-def _middle(values):
-    return sorted(values)[len(values) // 2]

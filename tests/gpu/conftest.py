@@ -9,19 +9,18 @@ from addon.engine.planning.plan import plan_frame
 from addon.errors import DeviceUnavailableError
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import (
-    Camera,
-    Film,
+from addon.snapshot.camera import Camera
+from addon.snapshot.content import (
     InstanceGroup,
     InstanceTable,
     MaterialSnapshot,
     MeshSnapshot,
-    Sampling,
     SceneContent,
-    SceneSnapshot,
     World,
     next_uid,
 )
+from addon.snapshot.film import Film, Sampling
+from addon.snapshot.scene import SceneSnapshot
 from addon.snapshot.surface_graph import emission_graph
 
 WORLD_COLOR = (0.125, 0.25, 0.5)

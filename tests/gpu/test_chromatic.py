@@ -11,7 +11,8 @@ from addon.sampling.equalizer import band
 from addon.sampling.field_maps import FIELD_PRESETS, FieldMap, field_corner
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import ImageSnapshot, Sampling, World, next_uid
+from addon.snapshot.content import ImageSnapshot, World, next_uid
+from addon.snapshot.film import Sampling
 from benchmarks.reference.chromatic import displaced
 
 from .conftest import LENS, make_renderer, render_snapshot, some_triangles, triangles_snapshot

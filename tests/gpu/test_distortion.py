@@ -10,7 +10,8 @@ from addon.device.targets import Targets, TargetSpec
 from addon.lens_bokeh.look.distortion import distorted, undistorted
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import BokehSettings, World
+from addon.snapshot.camera import BokehSettings
+from addon.snapshot.content import World
 from benchmarks.reference.distortion import cubic_sample, distorted_picture
 from tests.pictures import ssim
 

@@ -7,7 +7,7 @@ import pytest
 
 from addon.engine.drawing.scene_buffers import SceneBuffers
 from addon.passes.surface import environment
-from addon.snapshot.scene import ImageSnapshot, World, next_uid
+from addon.snapshot.content import ImageSnapshot, World, next_uid
 
 from .conftest import some_triangles, triangles_snapshot
 

@@ -10,7 +10,7 @@ from addon.engine.drawing.scene_buffers import SceneBuffers
 from addon.engine.frame.pipeline import FrameRenderer
 from addon.engine.planning.plan import plan_frame
 from addon.levels.making.mesh_levels import simplify
-from addon.snapshot.scene import Sampling
+from addon.snapshot.film import Sampling
 
 from .test_reuse import FOCUS, bumpy_sheet, sheets_snapshot
 

@@ -7,14 +7,14 @@ import pytest
 
 from addon.engine.planning.plan import plan_frame
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import (
+from addon.snapshot.content import (
     InstanceGroup,
     InstanceTable,
     MaterialSnapshot,
     MeshSnapshot,
-    Sampling,
     next_uid,
 )
+from addon.snapshot.film import Sampling
 from addon.snapshot.surface_graph import emission_graph
 
 from .conftest import make_renderer, triangles_snapshot

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from addon.engine.planning.plan import plan_frame, subpixels
-from addon.snapshot.scene import InstanceGroup
+from addon.snapshot.content import InstanceGroup
 
 from .conftest import LENS, make_renderer, some_triangles, triangles_snapshot
 

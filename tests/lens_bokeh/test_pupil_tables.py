@@ -13,7 +13,7 @@ from addon.lens_bokeh.look.sprite import sprite, sprite_of_beam
 from addon.lens_bokeh.tables.pupil_beam import beam_from_infinity, beam_from_point
 from addon.lens_bokeh.tables.pupil_box import beam_rays
 from addon.lens_bokeh.tables.pupil_parts import pack, unpack
-from addon.lens_bokeh.tables.pupil_tables import build_pupil_tables
+from addon.lens_bokeh.tables.pupil_tracing import build_pupil_tables
 from addon.lens_io.toml.toml_reader import read_lens
 from addon.optics.paraxial import first_order
 from addon.optics.rays.trace import trace

@@ -10,7 +10,8 @@ from addon.levels import choosing
 from addon.levels.making.level_errors import LevelErrors
 from addon.levels.making.mesh_levels import MeshLevel
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import MeshSnapshot, Sampling
+from addon.snapshot.content import MeshSnapshot
+from addon.snapshot.film import Sampling
 
 from ..engine.planning.test_plan import snapshot
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from addon.levels.making.graded_levels import MergeTree
-from addon.levels.making.level_collapses import weld
+from addon.levels.making.level_surface import weld
 from addon.levels.making.mesh_levels import replay, simplify
 
 from .test_level_invariants import mean, needles

@@ -6,7 +6,7 @@ The right values are those of the full mesh, computed here from its triangles by
 import numpy as np
 import pytest
 
-from addon.levels.making.level_collapses import weld
+from addon.levels.making.level_surface import weld
 from addon.levels.making.mesh_levels import replay, seam_edges, simplify
 
 from .test_mesh_levels import areas, assert_sound, cube_sphere, grid, mesh_of

@@ -9,7 +9,7 @@ import pytest
 from addon.levels import level_making
 from addon.levels.level_files import LevelFiles
 from addon.levels.level_making import LevelMaker
-from addon.snapshot.scene import MeshSnapshot, next_uid
+from addon.snapshot.content import MeshSnapshot, next_uid
 
 from .test_level_store import assert_same_levels, sheet
 

@@ -11,7 +11,7 @@ from addon.files.cache_folder import cache_folder
 from addon.levels import level_making
 from addon.levels.level_files import LevelFiles
 from addon.levels.level_store import LevelStore
-from addon.snapshot.scene import MeshSnapshot, next_uid
+from addon.snapshot.content import MeshSnapshot, next_uid
 
 
 def sheet(count, name="sheet", lift=0.05):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from addon.levels.making.mesh_levels import replay, simplify
-from addon.snapshot.scene import MeshSnapshot, next_uid
+from addon.snapshot.content import MeshSnapshot, next_uid
 
 
 def mesh_of(positions, triangles, slots=None, **attributes):

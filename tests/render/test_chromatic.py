@@ -11,9 +11,8 @@ from addon.errors import DeviceUnavailableError
 from addon.sampling.chromatic import RGB_WAVELENGTHS_NM
 from addon.sampling.equalizer import band
 from addon.sampling.field_maps import FieldMap
-from benchmarks.benches.chromatic import (
-    EVEN,
-    SCENE_AXIAL,
+from benchmarks.benches.chromatic import EVEN, SCENE_AXIAL
+from benchmarks.benches.chromatic_measures import (
     aberration,
     centroid_errors,
     count_maxima,

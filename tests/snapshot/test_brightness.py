@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from addon.snapshot.brightness import brightest, emits, mirrors
-from addon.snapshot.scene import (
+from addon.snapshot.content import (
     ImageSnapshot,
     InstanceGroup,
     InstanceTable,

@@ -4,21 +4,20 @@ import numpy as np
 import pytest
 
 from addon.sampling.thin_lens import ThinLens
+from addon.snapshot.camera import Camera
 from addon.snapshot.changes import Change, compare, compare_content
-from addon.snapshot.scene import (
-    Camera,
-    Film,
+from addon.snapshot.content import (
     ImageSnapshot,
     InstanceGroup,
     InstanceTable,
     Light,
     MaterialSnapshot,
     MeshSnapshot,
-    Sampling,
     SceneContent,
-    SceneSnapshot,
     World,
 )
+from addon.snapshot.film import Film, Sampling
+from addon.snapshot.scene import SceneSnapshot
 from addon.snapshot.surface_graph import SurfaceGraph
 
 

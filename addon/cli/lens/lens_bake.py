@@ -11,7 +11,7 @@ from ...errors import InputError
 from ...files.whole_file import check_writable, removed_on_signals
 from ...lens_bokeh.tables.profile import make_profile, profile_table
 from ...lens_bokeh.tables.pupil_parts import pack
-from ...lens_bokeh.tables.pupil_tables import build_pupil_tables
+from ...lens_bokeh.tables.pupil_tracing import build_pupil_tables
 from ...lens_io.profile_cache import content_hash
 from ...lens_io.profile_file import StoredProfile, save_profile
 from ...optics.glass import C_LINE_NM, F_LINE_NM, REFERENCE_WAVELENGTH_NM

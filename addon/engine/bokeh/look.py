@@ -26,7 +26,7 @@ from ...lens_bokeh.look.splat_profile import (
     rows_of_edge,
     rows_of_lens,
 )
-from ...lens_bokeh.tables.pupil_tables import build_pupil_tables
+from ...lens_bokeh.tables.pupil_tracing import build_pupil_tables
 from ...optics.focus import focused
 from ...passes.bokeh.splat import MOST_RIMS, SPLAT_PARAMS
 from .lens_profiles import lens_profile, lens_pupil

@@ -57,7 +57,7 @@ class SceneDrawing:
     content : SceneContent
     buffers : SceneBuffers
         Updated to it.
-    target : passes.surface.surface.SurfaceTarget
+    target : passes.surface.surface_target.SurfaceTarget
     graded : dict
         Graded meshes of earlier frames; see `GradedDrawings`.
 
@@ -112,7 +112,7 @@ class SceneDrawing:
         wavelengths : callable, optional
             From a sample, or None for the reference wavelength, to its
             `passes.surface.chromatic.ChromaticSample`; for a target of
-            `passes.surface.surface.in_wavelengths`.
+            `passes.surface.surface_target.in_wavelengths`.
         highlights : GPUUniformBuf or None
             `HighlightParams`, for a target that splits light.
         part : tuple of 4 int, optional
@@ -330,7 +330,7 @@ class SceneDrawing:
 
         Parameters
         ----------
-        target : passes.surface.surface.SurfaceTarget
+        target : passes.surface.surface_target.SurfaceTarget
         wanted : set of (int, int) or None
             See `passes.surface.surface.build_draws`.
 

@@ -11,7 +11,7 @@ from ...device import geometry, keeping, readback
 from ...device.targets import Targets, TargetSpec
 from ...device.uniforms import uniform_buffer
 from ...passes import background, cryptomatte
-from ...passes.surface import chromatic, surface
+from ...passes.surface import chromatic, surface_target
 from ..bokeh.stage import BokehStage, highlight_buffer
 from ..drawing.scene_drawing import DrawingCounts, SceneDrawing
 from ..drawing.view_resources import chromatic_resources, view_params
@@ -76,13 +76,13 @@ class FrameRenderer(ReadableFrame):
         self._tiles = TileSampling(plan, self._fullscreen, leader) if plan.automatic else None
         self._cryptomattes = render_passes.cryptomatte_kinds(plan.passes)
         self._mattes = bool(render_passes.made_by(plan.passes, "MATTE", "CRYPTOMATTE"))
-        target = surface.COLOR_AND_MATTES if self._mattes else surface.COLOR
+        target = surface_target.COLOR_AND_MATTES if self._mattes else surface_target.COLOR
         self._highlights = None
         if plan.bokeh:
-            target = surface.without_highlights(target)
+            target = surface_target.without_highlights(target)
             self._highlights = highlight_buffer(plan.bokeh)
         if plan.chromatic:
-            target = surface.in_wavelengths(target)
+            target = surface_target.in_wavelengths(target)
         levels = self._buffers.levels_version
         if (snapshot.content, target, levels) != (self._content, self._target, self._levels):
             self._content, self._target, self._levels = snapshot.content, target, levels

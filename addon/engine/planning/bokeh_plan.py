@@ -14,7 +14,7 @@ from ...sampling.highlights import highlight_share, least_coc
 from ...sampling.iris import Iris
 from ...sampling.pixel_filter import filter_density
 from ...snapshot.brightness import brightest, mirrors
-from ...snapshot.scene import BokehSettings, LensSettings
+from ...snapshot.camera import BokehSettings, LensSettings
 from ...snapshot.surface_graph import Constant
 from .bokeh_colors import BokehColors, plan_colors
 from .bokeh_search import (

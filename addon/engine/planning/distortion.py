@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .bokeh_plan import filter_width
-from .chromatic import field_of_raster, picture_radius
+from .field_table import field_of_raster, picture_radius
 
 # Most pixels of the raster along one of the picture: four times the work.
 _FINEST = 2.0

@@ -14,8 +14,8 @@ the blur. Displacements by a level, of textures above all, must be small in the 
 
 import numpy as np
 
-from ...snapshot.scene import MeshSnapshot, next_uid
-from .level_collapses import weld
+from ...snapshot.content import MeshSnapshot, next_uid
+from .level_surface import weld
 from .mesh_levels import slots_of, surviving
 
 # Largest difference of a vertex colour from its neighbours where triangles are as large as the

@@ -15,10 +15,10 @@ Journal 79, 1974: steps of a fit that keep the sign and the total.
 
 import numpy as np
 
-from .level_collapses import facets
 from .level_errors import ErrorMeter, LevelErrors, edge_length, moved_by_pairs
 from .level_parts import mixed
 from .level_projection import vertex_areas
+from .level_surface import facets
 
 # Steps of conjugate gradients, preconditioned by the vertices' areas; they converge to a hundredth
 # of the values' deviation.

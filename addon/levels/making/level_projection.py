@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .level_collapses import differ, stable_order
+from .level_surface import differ, stable_order
 
 # Pairs of a point and a triangle that are processed at once; they fit into a cache.
 _BLOCK = 1 << 15

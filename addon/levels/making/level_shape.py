@@ -12,7 +12,7 @@ and the area inside borders as what simplification preserves.
 
 import numpy as np
 
-from .level_collapses import borders, connected, facets
+from .level_surface import borders, connected, facets
 
 # Largest correction of a place, in square roots of the area round it. Usual corrections are far
 # smaller; this keeps crumpled triangles from being turned inside out.

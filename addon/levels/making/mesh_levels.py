@@ -15,12 +15,13 @@ from functools import partial
 
 import numpy as np
 
-from ...snapshot.scene import MeshSnapshot, next_uid
+from ...snapshot.content import MeshSnapshot, next_uid
 from .level_attributes import carry
-from .level_collapses import Halving, Surface, connected, decimate, differ, stable_order, weld
+from .level_collapses import Halving, decimate
 from .level_errors import LevelErrors
 from .level_seams import following_seams, seam_edges
 from .level_step import Step
+from .level_surface import Surface, connected, differ, stable_order, weld
 
 __all__ = [
     "Halving",

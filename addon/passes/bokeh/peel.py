@@ -12,10 +12,10 @@ Everitt, *Interactive order-independent transparency*, NVIDIA 2001.
 from dataclasses import replace
 
 from ...device import state
-from ..surface import surface
+from ..surface import surface, surface_target
 from . import highlights
 
-OCCLUDERS = surface.SurfaceTarget(
+OCCLUDERS = surface_target.SurfaceTarget(
     "passes/bokeh/peel_frag.glsl",
     (("VEC4", "out_color"),),
     samplers=(("FLOAT_2D", "front_tx"),),
@@ -23,11 +23,11 @@ OCCLUDERS = surface.SurfaceTarget(
     shades=False,
 )
 OPAQUE = replace(OCCLUDERS, outputs=(), samplers=(), defines=())
-HIGHLIGHTS = surface.SurfaceTarget(
+HIGHLIGHTS = surface_target.SurfaceTarget(
     "passes/bokeh/peel_frag.glsl",
     (),
     # Without this define (surfaces whose light is never splatted) only depth is written.
-    defines=(surface.SPLIT,),
+    defines=(surface_target.SPLIT,),
     samplers=highlights.COUNT_SAMPLERS,
     images=highlights.APPEND_IMAGES + highlights.COUNT_IMAGES,
     push_constants=highlights.APPEND_CONSTANTS,

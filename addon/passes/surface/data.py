@@ -10,7 +10,7 @@ import numpy as np
 
 from ...device.uniform_block import UniformStruct
 from ...device.uniforms import uniform_buffer
-from . import surface
+from . import surface, surface_target
 
 DATA_PARAMS = UniformStruct("shared/data_params.glsl", "DataParams")
 
@@ -30,7 +30,7 @@ PLACES = {
     "Detail": ("detail", 0, 3),
 }
 
-_STILL = surface.SurfaceTarget(
+_STILL = surface_target.SurfaceTarget(
     "passes/surface/data_frag.glsl",
     tuple(("VEC4", f"out_{name}") for name in _GEOMETRY),
     attributes=("normal",),

@@ -4,14 +4,15 @@ One shader a shape of node tree and set of mesh attributes; draws are sorted by 
 material, so that a frame changes state as rarely as it can.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from ...device import shader_source, state
 from ...device.geometry import attribute_identifier, attribute_type
 from ...device.shaders import ShaderInfo, compile_shader
 from ...device.uniform_block import UniformStruct
 from ...device.uniforms import bind_resource
-from . import chromatic, environment, surface_code
+from . import environment, surface_code
+from .surface_target import COLOR, whole
 
 # Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and the
 # reflectance table of GGX lobes.
@@ -27,101 +28,6 @@ _LIBRARIES = (
     "lib/surface/vector_lib.glsl",
     "passes/surface/surface_lighting.glsl",
 )
-
-
-@dataclass(frozen=True)
-class SurfaceTarget:
-    """What the surfaces are drawn into: the colour picture, data passes, ids.
-
-    Parameters
-    ----------
-    fragment : str
-        Entry point below ``gpu_shaders/``; it may call ``surface_closure()``.
-    outputs : tuple of (str, str)
-        Type and name by colour slot.
-    varyings : tuple of (str, str)
-        Outputs of its vertex shader besides the usual ones.
-    attributes : tuple of str
-        Mesh attributes that it reads itself, such as ``"normal"``, where the mesh has them.
-    defines : tuple of str
-    structs : str
-        Declarations of its own uniform blocks.
-    uniforms, samplers : tuple of (str, str)
-        The target's own, bound once a shader through `draw_sample`'s `bindings`.
-    images : tuple of tuples
-        The target's own, as in `device.shaders.ShaderInfo`, bound as samplers are.
-    push_constants : tuple of (str, str)
-        The target's own.
-    values : tuple of (str, str)
-        Defines with a value.
-    names_material : bool
-        Its fragment shader reads the push constant `material_id`.
-    shades : bool
-        It calls ``surface_closure()`` for every surface, not only for transparent ones.
-    splits : bool
-        It splits light at the highlight threshold; reads ``highlight_buf``.
-    seen : bool
-        It is drawn through the lens: reads ``view_buf``, `lens_sample` and `sample_index`.
-    vertex : str
-        Its vertex shader below ``gpu_shaders/``; it must call ``forward_attributes()``.
-    """
-
-    fragment: str
-    outputs: tuple[tuple[str, str], ...]
-    varyings: tuple[tuple[str, str], ...] = ()
-    attributes: tuple[str, ...] = ()
-    defines: tuple[str, ...] = ()
-    structs: str = ""
-    uniforms: tuple[tuple[str, str], ...] = ()
-    samplers: tuple[tuple[str, str], ...] = ()
-    images: tuple[tuple, ...] = ()
-    push_constants: tuple[tuple[str, str], ...] = ()
-    values: tuple[tuple[str, str], ...] = ()
-    names_material: bool = False
-    shades: bool = True
-    splits: bool = False
-    seen: bool = True
-    vertex: str = "passes/surface/surface_vert.glsl"
-
-
-COLOR = SurfaceTarget("passes/surface/surface_frag.glsl", (("VEC4", "out_color"),))
-
-# The same, with a second target from which Focus Matte and Cryptomattes are accumulated.
-COLOR_AND_MATTES = SurfaceTarget(
-    "passes/surface/surface_frag.glsl",
-    (("VEC4", "out_color"), ("VEC4", "out_mattes")),
-    defines=("MATTES",),
-    names_material=True,
-)
-
-
-# The define of a target that splits light at the highlight threshold.
-SPLIT = "HIGHLIGHTS"
-
-
-def without_highlights(target):
-    """Return a target of the colour picture from which the splatted light is left out."""
-    return replace(target, splits=True, defines=(*target.defines, SPLIT))
-
-
-def _whole(target):
-    """Return the target for a material whose light is never splatted."""
-    if not target.splits:
-        return target
-    defines = tuple(name for name in target.defines if name != SPLIT)
-    return replace(target, splits=False, defines=defines)
-
-
-def in_wavelengths(target):
-    """Return a target whose surfaces are drawn at one wavelength a lens sample."""
-    return replace(
-        target,
-        defines=(*target.defines, *(name for name, _ in chromatic.DEFINES)),
-        structs=target.structs + chromatic.CHROMATIC_PARAMS.source,
-        uniforms=(*target.uniforms, *chromatic.UNIFORMS),
-        samplers=(*target.samplers, *chromatic.SAMPLERS),
-        push_constants=(*target.push_constants, *chromatic.PUSH_CONSTANTS),
-    )
 
 
 @dataclass(frozen=True)
@@ -187,7 +93,7 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
     """
     if holdout:
         # A holdout has no light to split.
-        target = _whole(target)
+        target = whole(target)
     attributes = [("VEC3", "pos")]
     varyings = [("VEC3", "world_position"), ("FLAT INT", "instance_row"), *target.varyings]
     forward = []
@@ -339,7 +245,7 @@ def _code_and_shader(material, mesh, holdout, target, glow):
     code = surface_code.generate(material.graph, mesh.attributes)
     if glow and (holdout or not code.glows):
         return code, None
-    drawn = target if material.highlights else _whole(target)
+    drawn = target if material.highlights else whole(target)
     deforms = mesh.motion is not None
     info = surface_info(drawn, code, mesh.attributes, holdout, deforms, glow)
     return code, compile_shader(info)

@@ -13,7 +13,7 @@ Jeong et al., TVCG 2020, section 4.2.
 
 from ...device import shader_source, state
 from ...device.shaders import ShaderInfo, compile_shader
-from ..surface import surface
+from ..surface import surface_target
 from .cones import CLUSTER_CORNERS, CLUSTER_DEFINES
 from .culling import TILE_LAYOUT, VISIBILITY_PARAMS
 from .prefix_sums import COLUMNS
@@ -47,7 +47,7 @@ _RASTER = ShaderInfo(
 )
 
 # Transparent surfaces, drawn with their materials.
-TARGET = surface.SurfaceTarget(
+TARGET = surface_target.SurfaceTarget(
     "passes/visibility/visibility_surface_frag.glsl",
     (("VEC4", "out_mask"),),
     varyings=(("FLAT VEC3", "v_tile"),),

@@ -15,7 +15,7 @@ from ...lens_bokeh.look.onion import OnionRings
 from ...lens_bokeh.look.vignetting_model import cat_eye
 from ...optics.rays.aberrations import field_curves
 from ...sampling.spectrum import rgb_weights, spectrum_wavelengths
-from ...snapshot.scene import BokehSettings
+from ...snapshot.camera import BokehSettings
 from ..images.images import ImageReader
 
 # Least number of blades; with fewer the iris is round, as in Cycles.

@@ -7,7 +7,7 @@ import numpy as np
 from ...errors import CameraError, FocusError
 from ...sampling.iris import Iris
 from ...sampling.thin_lens import ThinLens, aperture_radius
-from ...snapshot.scene import Camera
+from ...snapshot.camera import Camera
 from .bokeh import corner_tangent, read_bokeh
 from .chromatic import read_chromatic
 from .lenses import read_real_lens

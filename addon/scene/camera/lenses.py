@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 
 from ...lens_io.lens_shelf import LensShelf
-from ...snapshot.scene import LensSettings
+from ...snapshot.camera import LensSettings
 
 _EXTENSIONS = "bl_ext."
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...snapshot.scene import MeshSnapshot, next_uid
+from ...snapshot.content import MeshSnapshot, next_uid
 from .vertex_split import VertexSplit, split_all, split_vertices
 
 # By the attribute's type: member of its elements that holds the value, and number of components.

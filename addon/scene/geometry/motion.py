@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...snapshot.scene import next_uid
+from ...snapshot.content import next_uid
 from ..camera.camera import read_camera
 from .instances import place
 from .meshes import read_moved_positions

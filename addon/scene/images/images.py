@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from ...snapshot.scene import ImageSnapshot, next_uid
+from ...snapshot.content import ImageSnapshot, next_uid
 from . import color_spaces
 from .image_pixels import encode, load_file, read_pixels, reduced
 

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from ...snapshot.scene import Light
+from ...snapshot.content import Light
 from ..nodes.node_tree import source_of
 from ..nodes.tree_reader import constant, constant_number, numbers_of
 

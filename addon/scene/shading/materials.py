@@ -1,7 +1,7 @@
 """Reads Blender's materials into `MaterialSnapshot`."""
 
+from ...snapshot.content import MaterialSnapshot, next_uid
 from ...snapshot.cryptomatte import cryptomatte_id
-from ...snapshot.scene import MaterialSnapshot, next_uid
 from ...snapshot.surface_graph import DEFAULT_GRAPH, Constant, Link, ShaderNode, SurfaceGraph
 from ..images.images import ImageReader
 from ..nodes import material_nodes, value_nodes

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...snapshot.scene import World
+from ...snapshot.content import World
 from ...snapshot.surface_graph import LARGEST_RADIANCE, MISSING_IMAGE_COLOR, Constant, Link
 from ..images import color_spaces
 from ..nodes import material_nodes, value_nodes

@@ -1,7 +1,7 @@
 """Which highlights a frame merges."""
 
 from addon.engine.bokeh.clusters import POINT_BUDGET, similarity_of
-from addon.snapshot.scene import BokehSettings
+from addon.snapshot.camera import BokehSettings
 
 
 def test_points_are_left_alone_up_to_a_budget():

@@ -8,7 +8,7 @@ from addon.engine.drawing import culling
 from addon.engine.planning.plan import plan_frame
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import InstanceGroup, InstanceTable, SceneContent
+from addon.snapshot.content import InstanceGroup, InstanceTable, SceneContent
 from benchmarks.reference.rasterize import displace
 
 from ..planning.test_plan import snapshot

@@ -10,7 +10,7 @@ from addon.engine.planning.plan import plan_frame
 from addon.sampling.highlights import highlight_share
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import BokehSettings
+from addon.snapshot.camera import BokehSettings
 from tests.gpu.conftest import triangles_snapshot
 
 LENS = ThinLens(0.1, 3.0, Iris())

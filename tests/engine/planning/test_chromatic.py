@@ -7,13 +7,13 @@ import pytest
 
 from addon.engine.drawing import culling
 from addon.engine.drawing.shared_drawings import raster_rectangle
-from addon.engine.planning.chromatic import diamond_angles, diamond_turn, field_of_raster
+from addon.engine.planning.field_table import diamond_angles, diamond_turn, field_of_raster
 from addon.engine.planning.plan import plan_frame
 from addon.levels.choosing import choose_levels, coc_ends, extents
 from addon.sampling.chromatic import ChromaticAberration, Dispersion
 from addon.sampling.field_maps import FIELD_PRESETS, FieldMap, field_corner
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import Sampling
+from addon.snapshot.film import Sampling
 from benchmarks.reference.chromatic import displaced
 
 from .test_plan import HEIGHT, WIDTH, snapshot

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from addon.engine.planning.distortion import plan_distortion
 from addon.engine.planning.plan import plan_frame, region_projection
 from addon.lens_bokeh.look.distortion import undistorted
-from addon.snapshot.scene import BokehSettings
+from addon.snapshot.camera import BokehSettings
 from tests.gpu.conftest import some_triangles, triangles_snapshot
 
 WIDTH, HEIGHT = 120, 80

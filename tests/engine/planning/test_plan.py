@@ -9,7 +9,10 @@ from hypothesis import strategies as st
 
 from addon.engine.planning.plan import plan_frame, region_projection, sharp_radius
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import Camera, Film, InstanceTable, Sampling, SceneContent, SceneSnapshot
+from addon.snapshot.camera import Camera
+from addon.snapshot.content import InstanceTable, SceneContent
+from addon.snapshot.film import Film, Sampling
+from addon.snapshot.scene import SceneSnapshot
 
 WIDTH, HEIGHT = 160, 90
 

@@ -8,7 +8,8 @@ import pytest
 from addon.engine.planning.plan import extended, plan_frame
 from addon.engine.planning.quality import largest_coc
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import InstanceGroup, InstanceTable, MeshSnapshot, Sampling, next_uid
+from addon.snapshot.content import InstanceGroup, InstanceTable, MeshSnapshot, next_uid
+from addon.snapshot.film import Sampling
 
 from .test_plan import snapshot
 

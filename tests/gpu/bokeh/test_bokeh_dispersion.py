@@ -13,13 +13,14 @@ from addon.sampling.field_maps import FieldMap
 from addon.sampling.highlights import highlight_share
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import ImageSnapshot, Sampling, World, next_uid
+from addon.snapshot.content import ImageSnapshot, World, next_uid
+from addon.snapshot.film import Sampling
 from tests.pictures import save_side_by_side, ssim
 from tests.splat_pictures import library_lens
 
 from ..conftest import WORLD_COLOR, make_renderer, render_snapshot, triangles_snapshot
 from ..test_chromatic import LEVEL, STRONG, with_chromatic
-from .test_bokeh import LAMPS, LENS, LIGHTS, PASSES, energy, lamp, with_bokeh
+from .bokeh_scenes import LAMPS, LENS, LIGHTS, PASSES, energy, lamp, with_bokeh
 
 pytestmark = pytest.mark.usefixtures("gpu_context")
 

@@ -8,7 +8,7 @@ import pytest
 from addon.engine.planning.plan import plan_frame
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import BokehSettings
+from addon.snapshot.camera import BokehSettings
 from tests.splat_pictures import library_lens
 
 from ..conftest import make_renderer, triangles_snapshot

@@ -8,7 +8,7 @@ import pytest
 from addon.engine.planning.plan import plan_frame
 
 from ..conftest import render_snapshot
-from .test_bokeh import energy
+from .bokeh_scenes import energy
 from .test_lens_views import glossy_ball
 
 pytestmark = pytest.mark.usefixtures("gpu_context")

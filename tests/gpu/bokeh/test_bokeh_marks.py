@@ -15,7 +15,7 @@ from addon.passes.surface import surface
 from benchmarks.reference import bokeh_marks as twin
 
 from ..conftest import make_renderer, render_snapshot, triangles_snapshot
-from .test_bokeh import HEIGHT, LENS, WIDTH, lamp, with_bokeh
+from .bokeh_scenes import HEIGHT, LENS, WIDTH, lamp, with_bokeh
 
 pytestmark = pytest.mark.usefixtures("gpu_context")
 

@@ -7,7 +7,7 @@ import pytest
 
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import BokehSettings
+from addon.snapshot.camera import BokehSettings
 
 from ..conftest import render_snapshot, triangles_snapshot
 

@@ -13,7 +13,7 @@ from addon.engine.visibility.stage import BokehVisibility, SceneOccluders
 from addon.passes.bokeh.highlights import COLUMNS
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import BokehSettings
+from addon.snapshot.camera import BokehSettings
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 from benchmarks.reference.visibility import lens_places, seen
 

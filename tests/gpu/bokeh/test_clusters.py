@@ -13,7 +13,7 @@ from addon.passes.bokeh.clusters import Similarity
 from addon.passes.bokeh.highlights import COLUMNS
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import BokehSettings
+from addon.snapshot.camera import BokehSettings
 from benchmarks.reference import clusters as twin
 
 from ..conftest import make_renderer, triangles_snapshot

@@ -6,25 +6,24 @@ import pytest
 from addon.lens_bokeh.look.iris_mask import BladedIris
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
-from addon.snapshot.scene import (
-    BokehSettings,
-    Camera,
-    Film,
+from addon.snapshot.camera import BokehSettings, Camera
+from addon.snapshot.content import (
     InstanceGroup,
     InstanceTable,
     Light,
     MaterialSnapshot,
     MeshSnapshot,
-    Sampling,
     SceneContent,
-    SceneSnapshot,
     World,
     next_uid,
 )
+from addon.snapshot.film import Film, Sampling
+from addon.snapshot.scene import SceneSnapshot
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 
 from ..conftest import perspective, render_snapshot
-from .test_bokeh import energy, splatted
+from .bokeh_scenes import energy
+from .test_bokeh_passes import splatted
 
 pytestmark = pytest.mark.usefixtures("gpu_context")
 

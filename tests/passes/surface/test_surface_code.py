@@ -6,7 +6,7 @@ import pytest
 from addon.passes.surface import surface_code
 from addon.passes.surface.environment import ggx_table
 from addon.passes.surface.light_table import light_texels
-from addon.snapshot.scene import Light
+from addon.snapshot.content import Light
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph, emission_graph
 
 

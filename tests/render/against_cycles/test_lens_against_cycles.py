@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.bokeh.lens import FIELDS, compare_lens, has_osl, lens_chart
+from benchmarks.bokeh.lens import FIELDS, compare_lens, has_osl
+from benchmarks.bokeh.lens_chart import lens_chart
 from benchmarks.referees.osl_lens import osl_lens, shader_source
 from tests.pictures import render_cycles, save_side_by_side
 

@@ -11,8 +11,9 @@ from addon.scene.camera.bokeh import corner_tangent
 from addon.scene.camera.camera import read_camera
 from addon.scene.extract import SceneExtractor
 from addon.scene.settings import read_passes, read_sampling
+from addon.snapshot.camera import BokehSettings
 from addon.snapshot.changes import same_camera
-from addon.snapshot.scene import BokehSettings, Film
+from addon.snapshot.film import Film
 from tests import scene_builders as scenes
 
 FILM = Film(96, 64, (0, 0, 96, 64))

@@ -5,7 +5,7 @@ import pytest
 
 from addon.errors import CameraError
 from addon.scene.camera.camera import read_camera
-from addon.snapshot.scene import Film
+from addon.snapshot.film import Film
 
 FILM = Film(96, 64, (0, 0, 96, 64))
 

@@ -15,7 +15,7 @@ from addon.scene.camera.drawn_curves import EQUALIZER, SAMPLES, curve_values
 from addon.scene.extract import SceneExtractor
 from addon.scene.view import read_view
 from addon.snapshot.changes import Change, compare
-from addon.snapshot.scene import Film
+from addon.snapshot.film import Film
 from addon.ui.operators.chromatic_curves import set_points
 
 FILM = Film(96, 64, (0, 0, 96, 64))

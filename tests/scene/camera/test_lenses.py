@@ -8,7 +8,7 @@ from addon.scene.camera.camera import read_camera, sensor_diagonal
 from addon.scene.camera.lenses import read_real_lens, shelf, user_folder
 from addon.scene.extract import SceneExtractor
 from addon.snapshot.changes import Change, compare, same_camera
-from addon.snapshot.scene import Film
+from addon.snapshot.film import Film
 
 FILM = Film(96, 64, (0, 0, 96, 64))
 

@@ -11,7 +11,7 @@ from addon.scene.extract import SceneExtractor
 from addon.scene.images import images
 from addon.scene.images.image_pixels import encode_srgb, reduced, without_infinite
 from addon.scene.images.images import ImageReader
-from addon.snapshot.scene import decode_srgb
+from addon.snapshot.content import decode_srgb
 from tests import scene_builders as scenes
 from tests.surface_scenes import Tree, image, random_pixels
 

@@ -11,45 +11,25 @@ from ....optics.glass import AIR, REFERENCE_WAVELENGTH_NM
 from ..draft.draft import Draft, DraftSurface, Field, Opening
 from ..draft.media import UnknownGlassError, codev_glass
 from ..draft.source_text import clean, number, radius_of, whole_number
+from .codev_keywords import (
+    APERTURES,
+    COEFFICIENTS,
+    EDITS,
+    ENDLESS,
+    FARTHEST,
+    FIELDS,
+    LABEL,
+    LENS_WORDS,
+    MIRRORS,
+    OFF_AXIS,
+    OTHER_SHAPES,
+    SOLVED,
+    SOLVES,
+    UNITS_MM,
+)
 from .codev_text import commands
 
 FORMAT_NAME = "CODE V sequence"
-UNITS_MM = {"M": 1.0, "C": 10.0, "I": 25.4}
-# Farther than this, in the file's unit, an object is at infinity: the program writes 1e10 or more.
-_FARTHEST = 1.0e9
-_APERTURES = {
-    "EPD": "entrance pupil",
-    "FNO": "working f-number",
-    "NA": "image NA",
-    "NAO": "object NA",
-}
-# Words for a distance without end, as other programs write them into sequences.
-_ENDLESS = {"INF", "INFINITY"}
-# In a surface, a curvature or thickness may be solved for a ray or picked up; the program keeps the
-# value that it found in the S line.
-_SOLVED = {"CUY", "RDY", "THI"}
-_SOLVE_WORDS = "UMY UCY UMX UCX HMY HCY HMX HCX IMY ICY IPY APY ASY PIK CRP SYM"
-_SOLVES = set(_SOLVE_WORDS.split())
-_FIELDS = {
-    "AN": "angle",
-    "IM": "image height",
-    "RI": "real image height",
-    "OB": "object height",
-}
-# a4, a6 ... a20.
-_COEFFICIENTS = {letter: order for letter, order in zip("ABCDEFGHJ", range(4, 22, 2), strict=True)}
-_MIRRORS = {"REFL", "RFL", "TIR"}
-_OFF_AXIS = {"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE", "DAR", "BEN", "REV", "RET", "ADX", "ADY"}
-_SHAPE_WORDS = """
-    AAS ARY CUX CYL DIF DOE FRE GRO GRS GRT HCT HOE KNS LMD MOD NSS ODD QBF QCN RDX SPL SPN SPS
-    SPX THR TOR UDS XTO XZP YTO ZRN ELX ELY REX REY
-"""
-_OTHER_SHAPES = set(_SHAPE_WORDS.split())
-# A lens that is changed after it was written down.
-_EDITS = {"SCA", "FLY", "INS", "DEL", "COP", "RDY", "CUY", "THI", "GLA", "INV"}
-# A label of an aperture, such as L'rim'.
-_LABEL = re.compile(r"[Ll]'[^']*'")
-_LENS_WORDS = {"LEN", "TITLE", "DIM", "RDM", "WL", "REF", "SO", "S", "SI", "GO"}
 
 
 def looks_like(lines):
@@ -69,7 +49,7 @@ def looks_like(lines):
         for part in text.split(";")
         if part.strip()
     }
-    return "S" in firsts and bool(firsts & (_LENS_WORDS - {"S"}))
+    return "S" in firsts and bool(firsts & (LENS_WORDS - {"S"}))
 
 
 def read(lines, options):
@@ -121,22 +101,22 @@ class _Reader:
             self.draft.passed_over.add("PRV glasses", line)
         elif keyword in ("SO", "S", "SI"):
             self._begin_surface(command)
-        elif keyword in _MIRRORS or (keyword == "RMD" and _has(words, _MIRRORS)):
+        elif keyword in MIRRORS or (keyword == "RMD" and _has(words, MIRRORS)):
             refuse("I02", line, f"{command.text} is a mirror; light must go on towards +z")
-        elif keyword in _OFF_AXIS:
+        elif keyword in OFF_AXIS:
             refuse("I03", line, f"{command.text}: tilts and decentres are not supported")
-        elif keyword in _OTHER_SHAPES:
+        elif keyword in OTHER_SHAPES:
             refuse("I04", line, f"{command.text}: this surface or rim is no figure of revolution")
         elif self._is_solve(command):
             self.draft.passed_over.add(
                 f"solve {clean(' '.join(words[:2]))[:20]}: the value of the S line holds",
                 line,
             )
-        elif keyword in _EDITS:
+        elif keyword in EDITS:
             refuse("I04", line, f"{command.text}: changes of a lens after its S lines are not read")
-        elif keyword[:1] in ("X", "Y") and keyword[1:] in _FIELDS:
+        elif keyword[:1] in ("X", "Y") and keyword[1:] in FIELDS:
             self.fields[keyword[1:], keyword[0]] = self._numbers(command)
-        elif keyword in _APERTURES:
+        elif keyword in APERTURES:
             self.aperture = (keyword, self._one(command), line)
         elif not self._take_lens_word(command) and not self._take_surface_word(command):
             self.draft.passed_over.add(clean(keyword)[:20], line)
@@ -145,9 +125,9 @@ class _Reader:
         words = command.words
         return (
             self.surface is not None
-            and command.keyword in _SOLVED
+            and command.keyword in SOLVED
             and len(words) > 1
-            and words[1].upper() in _SOLVES
+            and words[1].upper() in SOLVES
         )
 
     def _take_lens_word(self, command):
@@ -198,7 +178,7 @@ class _Reader:
 
     def _take_surface_word(self, command):
         keyword, words = command.keyword, command.words
-        known = {"STO", "CIR", "CON", "ASP", "SPH", "K", *_COEFFICIENTS}
+        known = {"STO", "CIR", "CON", "ASP", "SPH", "K", *COEFFICIENTS}
         if keyword not in known:
             return False
         if self.surface is None:
@@ -227,7 +207,7 @@ class _Reader:
 
     def _read_rim(self, command):
         # A qualifier says what the circle is (clear aperture unless told), a label names it.
-        words = [word.upper() for word in command.words[1:] if not _LABEL.fullmatch(word)]
+        words = [word.upper() for word in command.words[1:] if not LABEL.fullmatch(word)]
         surface = self.surface
         if words and re.fullmatch(r"S\d{1,9}", words[0]):
             surface = self._surface_named(command, words.pop(0))
@@ -251,10 +231,10 @@ class _Reader:
         return self.draft.surfaces[named - 1]
 
     def _read_coefficient(self, command):
-        order = _COEFFICIENTS[command.keyword]
+        order = COEFFICIENTS[command.keyword]
         value = self._one(command)
         if value:
-            self.surface.asphere[order] = _scaled(value, self.scale, 1 - order)
+            self.surface.asphere[order] = value * self.scale ** (1 - order)
 
     def _begin_surface(self, command):
         keyword, words, line = command.keyword, command.words, command.line
@@ -269,7 +249,7 @@ class _Reader:
         self.surface = DraftSurface(line, len(self.draft.surfaces) + 1, thickness=thickness)
         self._set_shape(shape, line)
         glass = words[3] if len(words) > 3 else "AIR"
-        if glass.upper() in _MIRRORS:
+        if glass.upper() in MIRRORS:
             self.draft.refusals.add("I02", line, f"{command.text} is a mirror")
         elif keyword == "S":
             self.surface.glass = self._glass(glass, line)
@@ -278,7 +258,7 @@ class _Reader:
         if keyword == "S":
             self.draft.surfaces.append(self.surface)
         elif keyword == "SO":
-            far = abs(thickness) >= _FARTHEST * self.scale
+            far = abs(thickness) >= FARTHEST * self.scale
             self.draft.object_distance = math.inf if far else thickness
         else:
             self.image_line = line
@@ -327,7 +307,7 @@ class _Reader:
     @staticmethod
     def _is_endless(command, position):
         words = command.words
-        return position < len(words) and words[position].upper().lstrip("+-") in _ENDLESS
+        return position < len(words) and words[position].upper().lstrip("+-") in ENDLESS
 
     def _number_at(self, command, position):
         word = command.words[position] if position < len(command.words) else "0"
@@ -387,7 +367,7 @@ class _Reader:
         keyword, value, line = self.aperture
         if value <= 0.0:
             self.draft.refusals.add("I07", line, f"{keyword} {value:g} must be above 0")
-        kind = _APERTURES[keyword]
+        kind = APERTURES[keyword]
         scale = self.scale if kind == "entrance pupil" else 1.0
         return Opening(kind, value * scale, self._wavelength())
 
@@ -400,7 +380,7 @@ class _Reader:
         return self.wavelengths[number_of - 1] if inside else REFERENCE_WAVELENGTH_NM
 
     def _field(self):
-        for ending, kind in _FIELDS.items():
+        for ending, kind in FIELDS.items():
             across = self.fields.get((ending, "X"), [])
             along = self.fields.get((ending, "Y"), [])
             length = max(len(across), len(along))
@@ -418,7 +398,3 @@ class _Reader:
 
 def _has(words, wanted):
     return any(word.upper() in wanted for word in words[1:])
-
-
-def _scaled(value, scale, power):
-    return value * scale**power

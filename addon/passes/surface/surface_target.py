@@ -1,0 +1,97 @@
+"""What surfaces are drawn into, and how shaders differ by it."""
+
+from dataclasses import dataclass, replace
+
+from . import chromatic
+
+
+@dataclass(frozen=True)
+class SurfaceTarget:
+    """What the surfaces are drawn into: the colour picture, data passes, ids.
+
+    Parameters
+    ----------
+    fragment : str
+        Entry point below ``gpu_shaders/``; it may call ``surface_closure()``.
+    outputs : tuple of (str, str)
+        Type and name by colour slot.
+    varyings : tuple of (str, str)
+        Outputs of its vertex shader besides the usual ones.
+    attributes : tuple of str
+        Mesh attributes that it reads itself, such as ``"normal"``, where the mesh has them.
+    defines : tuple of str
+    structs : str
+        Declarations of its own uniform blocks.
+    uniforms, samplers : tuple of (str, str)
+        The target's own, bound once a shader through `draw_sample`'s `bindings`.
+    images : tuple of tuples
+        The target's own, as in `device.shaders.ShaderInfo`, bound as samplers are.
+    push_constants : tuple of (str, str)
+        The target's own.
+    values : tuple of (str, str)
+        Defines with a value.
+    names_material : bool
+        Its fragment shader reads the push constant `material_id`.
+    shades : bool
+        It calls ``surface_closure()`` for every surface, not only for transparent ones.
+    splits : bool
+        It splits light at the highlight threshold; reads ``highlight_buf``.
+    seen : bool
+        It is drawn through the lens: reads ``view_buf``, `lens_sample` and `sample_index`.
+    vertex : str
+        Its vertex shader below ``gpu_shaders/``; it must call ``forward_attributes()``.
+    """
+
+    fragment: str
+    outputs: tuple[tuple[str, str], ...]
+    varyings: tuple[tuple[str, str], ...] = ()
+    attributes: tuple[str, ...] = ()
+    defines: tuple[str, ...] = ()
+    structs: str = ""
+    uniforms: tuple[tuple[str, str], ...] = ()
+    samplers: tuple[tuple[str, str], ...] = ()
+    images: tuple[tuple, ...] = ()
+    push_constants: tuple[tuple[str, str], ...] = ()
+    values: tuple[tuple[str, str], ...] = ()
+    names_material: bool = False
+    shades: bool = True
+    splits: bool = False
+    seen: bool = True
+    vertex: str = "passes/surface/surface_vert.glsl"
+
+
+COLOR = SurfaceTarget("passes/surface/surface_frag.glsl", (("VEC4", "out_color"),))
+# The same, with a second target from which Focus Matte and Cryptomattes are accumulated.
+COLOR_AND_MATTES = SurfaceTarget(
+    "passes/surface/surface_frag.glsl",
+    (("VEC4", "out_color"), ("VEC4", "out_mattes")),
+    defines=("MATTES",),
+    names_material=True,
+)
+# The define of a target that splits light at the highlight threshold.
+SPLIT = "HIGHLIGHTS"
+
+
+def without_highlights(target):
+    """Return a target of the colour picture from which the splatted light is left out."""
+    return replace(target, splits=True, defines=(*target.defines, SPLIT))
+
+
+def whole(target):
+    """Return the target for a material whose light is never splatted."""
+    if not target.splits:
+        return target
+    defines = tuple(name for name in target.defines if name != SPLIT)
+    return replace(target, splits=False, defines=defines)
+
+
+def in_wavelengths(target):
+    """Return a target whose surfaces are drawn at one wavelength a lens sample."""
+    return replace(
+        target,
+        defines=(*target.defines, *(name for name, _ in chromatic.DEFINES)),
+        structs=target.structs + chromatic.CHROMATIC_PARAMS.source,
+        uniforms=(*target.uniforms, *chromatic.UNIFORMS),
+        samplers=(*target.samplers, *chromatic.SAMPLERS),
+        push_constants=(*target.push_constants, *chromatic.PUSH_CONSTANTS),
+    )
