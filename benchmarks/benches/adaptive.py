@@ -39,7 +39,7 @@ _ROUNDS = 5
 
 
 def bench_adaptive(arguments, console):
-    """Carry out `aplanat bench --method adaptive`; parameters and result as `bench.bench`."""
+    """Carry out `bench --method adaptive`; parameters and result as `reference_method.bench`."""
     with removed_on_signals():
         if arguments.output:
             check_writable(arguments.output)

@@ -55,7 +55,7 @@ _COST_SAMPLES = 48
 
 
 def bench_chromatic(arguments, console):
-    """Carry out `aplanat bench --chromatic`; parameters and result as `bench.bench`."""
+    """Carry out `aplanat bench --chromatic`; parameters and result as `reference_method.bench`."""
     with removed_on_signals():
         if arguments.output:
             check_writable(arguments.output)

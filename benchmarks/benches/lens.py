@@ -22,7 +22,7 @@ _RUNS = 3
 
 
 def bench_lenses(arguments, console):
-    """Carry out `aplanat bench --lens`; parameters and result as `bench.bench`."""
+    """Carry out `aplanat bench --lens`; parameters and result as `reference_method.bench`."""
     with removed_on_signals():
         if arguments.output:
             check_writable(arguments.output)

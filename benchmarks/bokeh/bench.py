@@ -16,7 +16,7 @@ Of built scenes:
 
 - ``scaling``: 1000, 10000 and 100000 small lamps.
 - ``focus-pull``: the focus moves past a half-hidden lamp and what hides it.
-- ``lens``: lamps through real lenses against Cycles tracing the same lenses (`bench_bokeh_lens`).
+- ``lens``: lamps through real lenses, against Cycles tracing them (`benchmarks.bokeh.lens`).
 """
 
 import math
@@ -50,7 +50,7 @@ _MARKS = (64, 128, 256, 512, 1024, 2048)
 
 
 def bench_bokeh(arguments, console):
-    """Carry out `aplanat bench --bokeh`; parameters and result as `bench.bench`."""
+    """Carry out `aplanat bench --bokeh`; parameters and result as `reference_method.bench`."""
     with removed_on_signals():
         if arguments.output:
             check_writable(arguments.output)

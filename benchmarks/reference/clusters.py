@@ -1,4 +1,4 @@
-"""Numpy twin of the merging of highlights (passes.clusters)."""
+"""Numpy twin of the merging of highlights (`passes.bokeh.clusters`)."""
 
 import numpy as np
 

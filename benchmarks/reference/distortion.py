@@ -12,7 +12,7 @@ def distorted_picture(raster, distortion):
     Parameters
     ----------
     raster : ndarray of shape (H, W, channels)
-    distortion : engine.distortion.DistortionPlan
+    distortion : engine.planning.distortion.DistortionPlan
 
     Returns
     -------
