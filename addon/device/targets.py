@@ -126,7 +126,7 @@ class Targets:
         self._framebuffers.clear()
 
     def release(self):
-        """Give the textures back to the device."""
+        """Release the textures."""
         self._framebuffers.clear()
         self.textures.clear()
         self.bytes = 0

@@ -24,7 +24,7 @@ class Claims:
         return self
 
     def __exit__(self, *_):
-        """Give back what is still claimed."""
+        """Remove the claimed files that are still empty."""
         self.give_back(list(self._paths))
 
     def take(self, paths):

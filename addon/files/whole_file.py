@@ -180,7 +180,7 @@ class _NamedFile:
 
 
 def remember_file(path):
-    """Have SIGINT and SIGTERM remove a file, if it is empty or has the ending ``.part``."""
+    """Remove a file on SIGINT and SIGTERM, if it is empty or has the ending ``.part``."""
     _unfinished.add(str(path))
 
 
@@ -190,7 +190,7 @@ def forget_file(path):
 
 
 def remember_folder(path):
-    """Have SIGINT and SIGTERM remove a folder with all that is in it."""
+    """Remove a folder with all that is in it on SIGINT and SIGTERM."""
     _unfinished_folders.add(str(path))
 
 

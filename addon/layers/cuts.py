@@ -1,4 +1,4 @@
-"""Where depth layers are cut: at equal steps of the signed circle of confusion (methods 7)."""
+"""Depths at which layers are cut: equal steps of the signed circle of confusion (methods 7)."""
 
 import numpy as np
 

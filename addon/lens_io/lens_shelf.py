@@ -48,7 +48,7 @@ class ShelvedLens:
 
 @dataclass(frozen=True)
 class Reloaded:
-    """What `LensShelf.reload` found.
+    """Changes that `LensShelf.reload` found.
 
     Parameters
     ----------

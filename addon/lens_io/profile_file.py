@@ -42,7 +42,7 @@ _NOT_CHECKED = {"name", "type", "channelOrder", "checksum"}
 
 @dataclass(frozen=True)
 class StoredProfile:
-    """What a profile file holds.
+    """The contents of a profile file.
 
     Parameters
     ----------

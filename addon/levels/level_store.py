@@ -162,7 +162,7 @@ class LevelStore:
         return self._job is not None and self._job.client is client
 
     def _enqueue(self, client):
-        """Have made what a client wants and lacks."""
+        """Queue the missing levels of a client, and start the thread."""
         client.enqueue(self._made, self._job.mesh.uid if self._is_made_for(client) else None)
         if client.queue and self._thread is None and not self._stopping:
             self._thread = threading.Thread(target=self._run, name="aplanat-levels", daemon=True)

@@ -211,7 +211,7 @@ def first_order(configuration, wavelength_nm=REFERENCE_WAVELENGTH_NM, meridian="
 
 
 def image_distance(configuration, object_to_first_vertex, wavelength_nm=REFERENCE_WAVELENGTH_NM):
-    """Where the paraxial image of an axial point lies.
+    """Distance of the paraxial image of an axial point.
 
     Parameters
     ----------

@@ -66,7 +66,7 @@ def normal(surface, x, y):
 
 
 def intersect(surface, points, directions):
-    """Where rays meet a surface whose vertex is the origin.
+    """Intersections of rays with a surface whose vertex is the origin.
 
     Parameters
     ----------

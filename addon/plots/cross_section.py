@@ -147,7 +147,7 @@ def ray_paths(configuration, field_deg, count, meridian="y"):
 
 
 def sensor_plane(configuration):
-    """Where the image of infinity is drawn.
+    """Plane in which the image of infinity is drawn.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ class SceneExtractor:
         self._sources = None
 
     def note_updates(self, depsgraph):
-        """Take note of what Blender says changed since the last evaluation.
+        """Note the changes that Blender reports since the last evaluation.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The camera of one frame as frozen values: where it stands, its lens, how it draws highlights."""
+"""The camera of one frame as frozen values: view, projection, lens, bokeh settings."""
 
 from dataclasses import dataclass, field
 
@@ -45,7 +45,7 @@ class LensSettings:
 
 @dataclass(frozen=True)
 class BokehSettings:
-    """How highlights are drawn apart from the rest of the picture (methods 9 to 13).
+    """Bokeh settings: search, merging, visibility and look of highlights (methods 9 to 13).
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class BokehSettings:
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """Where the picture is taken from.
+    """The camera: view, projection, thin and real lens, chromatic aberration, bokeh.
 
     Parameters
     ----------

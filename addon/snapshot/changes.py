@@ -1,4 +1,4 @@
-"""What differs between two snapshots, found by comparing them."""
+"""Differences between two snapshots, found by comparing them."""
 
 from enum import Flag, auto
 

@@ -1,4 +1,4 @@
-"""What stands in front of the camera, as frozen values: meshes, images, materials, lights, world.
+"""The content of a scene as frozen values: meshes, images, materials, instances, lights, world.
 
 Lengths are in Blender units, which the engine takes as metres as Cycles does; matrices act on
 column vectors; images have their first row at the bottom, as in Blender. Every array is

@@ -1,4 +1,4 @@
-"""The raster of one frame and how it is sampled, as frozen values."""
+"""Film and sampling settings of one frame, as frozen values."""
 
 from dataclasses import dataclass
 
@@ -30,7 +30,7 @@ class Film:
 
 @dataclass(frozen=True)
 class Sampling:
-    """How the frame is sampled.
+    """Sampling settings: method, numbers of samples, noise threshold, levels of detail.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ class FileOutputs:
         return self
 
     def __exit__(self, *_):
-        """Give the nodes their folders back."""
+        """Restore the folders of the nodes."""
         for node, (folder, name) in zip(self._nodes, self._before, strict=True):
             node.directory, node.file_name = folder, name
 

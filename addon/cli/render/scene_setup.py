@@ -161,7 +161,7 @@ def _use_camera(scene, name):
 
 
 def use_lens(camera, word):
-    """Give a camera a lens of the library or of a file; a file is known to this process only.
+    """Set a camera's lens, from the library or a file; a file is added for this process only.
 
     Parameters
     ----------

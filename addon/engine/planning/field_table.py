@@ -1,4 +1,4 @@
-"""Where in the lens' field the places of a raster lie, and the field maps tabulated over it."""
+"""Coordinates of a raster in the lens' field, and the field maps tabulated over the field."""
 
 import numpy as np
 

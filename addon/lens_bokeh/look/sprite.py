@@ -155,7 +155,7 @@ def _density_of_row(row, radius):
 
 
 def edge_landing(edge, pupil):
-    """Where rays land in a disc under third-order spherical aberration.
+    """Radii at which rays land in a disc under third-order spherical aberration.
 
     Parameters
     ----------

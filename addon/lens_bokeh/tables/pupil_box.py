@@ -56,7 +56,7 @@ def beam_rays(angle, x, v):
 
 
 def clearances(configuration, hits, rims=()):
-    """How far rays stay inside the rims, relative to each rim's radius.
+    """Clearances of rays inside the rims, relative to each rim's radius.
 
     Parameters
     ----------

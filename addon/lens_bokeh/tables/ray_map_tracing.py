@@ -306,7 +306,7 @@ class _Fan:
 
 
 def _leading(good):
-    """How many of each row are true before the first that is not."""
+    """Number of leading true values of each row."""
     return np.argmin(np.c_[good, np.zeros(len(good), bool)], axis=1)
 
 

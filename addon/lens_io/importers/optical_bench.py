@@ -41,7 +41,7 @@ _SAME_RADIUS = 1.0e-3
 
 
 def looks_like(lines):
-    """Tell whether there is a section of lens data.
+    """Return whether there is a section of lens data.
 
     Parameters
     ----------

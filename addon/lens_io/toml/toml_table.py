@@ -62,7 +62,7 @@ class Findings:
 
 @dataclass(frozen=True)
 class Range:
-    """Which numbers a key allows.
+    """The range of numbers that a key allows.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Range:
         return not (value > self.high or (self.below and value == self.high))
 
     def __str__(self):
-        """Say in words what is allowed."""
+        """Return the range in words."""
         if self.high == math.inf:
             return f"greater than {self.low:g}" if self.above else f"{self.low:g} or more"
         low = f"greater than {self.low:g}" if self.above else f"at least {self.low:g}"

@@ -1,4 +1,4 @@
-"""A mesh as places that vertices share, and triangles between them: borders, parts, normals."""
+"""The welded surface of a mesh: places that vertices share, triangles, borders, parts, normals."""
 
 from functools import cached_property
 

@@ -224,7 +224,7 @@ def _projected(angle, projection):
 
 
 def _crossing(heights, slopes):
-    """How far behind the plane of their heights two rays are equally high."""
+    """Distance behind the plane of their heights at which two rays cross."""
     difference = slopes[0] - slopes[1]
     if abs(difference) < _LEAST_SLOPE:
         return None

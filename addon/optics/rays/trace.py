@@ -112,7 +112,7 @@ class TracedRays:
         return self.status == RayStatus.PASSED
 
     def at_plane(self, z):
-        """Where the rays cross a plane across the axis.
+        """Points at which the rays cross a plane perpendicular to the axis.
 
         Parameters
         ----------

@@ -138,7 +138,7 @@ def _soften_info(layered):
 
 @dataclass(frozen=True)
 class Similarity:
-    """How similar highlights are merged.
+    """Bounds of similarity within which highlights are merged.
 
     Parameters
     ----------

@@ -172,7 +172,7 @@ class TexelCounts:
         return (("hits_img", self.hits), ("areas_tx", self.areas if counting else self._none))
 
     def release(self):
-        """Give the textures back to the device."""
+        """Release the textures."""
         self._targets.release()
 
 
@@ -238,7 +238,7 @@ class FragmentLists:
         return number, np.argwhere(shines)[:, ::-1]
 
     def release(self):
-        """Give the textures back to the device."""
+        """Release the textures."""
         self.targets.release()
 
 

@@ -24,7 +24,7 @@ _RING_PIECES = 64
 
 @dataclass(frozen=True)
 class Marks:
-    """Which marks are drawn.
+    """Shape and colour of the marks.
 
     Parameters
     ----------

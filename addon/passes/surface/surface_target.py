@@ -1,4 +1,4 @@
-"""What surfaces are drawn into, and how shaders differ by it."""
+"""The kinds of render targets of surfaces, each with its variant of the surface shaders."""
 
 from dataclasses import dataclass, replace
 
@@ -7,7 +7,7 @@ from . import chromatic
 
 @dataclass(frozen=True)
 class SurfaceTarget:
-    """What the surfaces are drawn into: the colour picture, data passes, ids.
+    """A kind of render target of surfaces: the colour picture, data passes, ids, highlights.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ class MeshSource:
 
     @contextmanager
     def opened(self, depsgraph):
-        """Give the mesh with all its elements, valid inside a `with` block."""
+        """Yield the mesh with all its elements, valid inside a `with` block."""
         if self.wrapped_by is None:
             yield self.mesh
             return

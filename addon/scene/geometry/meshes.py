@@ -25,7 +25,7 @@ _COLOR_TYPES = set(_VALUE_MEMBERS) - _UV_TYPES
 
 @dataclass(frozen=True, eq=False)
 class MeshReading:
-    """What was read of a mesh.
+    """A mesh as it was read.
 
     Parameters
     ----------

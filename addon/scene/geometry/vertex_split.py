@@ -17,7 +17,7 @@ _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 
 @dataclass(frozen=True, eq=False)
 class VertexSplit:
-    """Which vertices a mesh has after splitting.
+    """The vertices of a mesh after splitting.
 
     Parameters
     ----------

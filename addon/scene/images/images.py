@@ -82,7 +82,7 @@ class ImageReader:
         self.report = []
 
     def note_change(self, session_uid):
-        """Take note that an image's pixels changed, as Blender tells of painted ones.
+        """Note that an image's pixels have changed, as Blender reports of painted ones.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""What can be done with the drawn curves of a camera."""
+"""Operators on the drawn curves of a camera's chromatic aberration."""
 
 import bpy
 from bpy.props import EnumProperty
@@ -44,7 +44,7 @@ class APLANAT_OT_equalizer_preset(CameraOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, _context, properties):
-        """Tell what this button does."""
+        """Return the tooltip of this button."""
         return f"Which wavelengths count: {EQUALIZER_PRESETS[properties.preset][0]}"
 
     def execute(self, context):

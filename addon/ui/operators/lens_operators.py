@@ -1,4 +1,4 @@
-"""What can be done with the lens of a camera, and with the library of lenses."""
+"""Operators on the lens of a camera and on the library of lenses."""
 
 import math
 
@@ -37,7 +37,7 @@ def camera_of(context):
 
 
 def refresh_cameras(lens_ids=None):
-    """Have viewports look again at the cameras that use certain lenses.
+    """Make viewports update the cameras that use certain lenses.
 
     Parameters
     ----------

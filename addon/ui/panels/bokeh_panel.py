@@ -149,7 +149,7 @@ class APLANAT_CAMERA_PT_bokeh_search(_BokehPanel, bpy.types.Panel):
 
 
 class APLANAT_CAMERA_PT_bokeh_appearance(_BokehPanel, bpy.types.Panel):
-    """What a disc looks like."""
+    """Appearance of the discs."""
 
     bl_label = "Appearance"
     bl_parent_id = "APLANAT_CAMERA_PT_bokeh"
@@ -209,7 +209,7 @@ class _AppearancePanel(_BokehPanel):
 
 
 class APLANAT_CAMERA_PT_bokeh_field(_AppearancePanel, bpy.types.Panel):
-    """What changes towards the corners of the picture."""
+    """Optical vignetting (cat's eyes) and distortion."""
 
     bl_label = "Vignetting and Distortion"
 

@@ -34,7 +34,7 @@ class _ChromaticPanel(EnginePanel):
 
 
 class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, bpy.types.Panel):
-    """How colours part."""
+    """Strength, glass and mode of the chromatic aberration."""
 
     bl_label = "Chromatic Aberration"
     bl_options = {"DEFAULT_CLOSED"}
@@ -119,7 +119,7 @@ class _FieldMapPanel(_ChromaticPanel):
 
 
 class APLANAT_CAMERA_PT_chromatic_axial(_FieldMapPanel, bpy.types.Panel):
-    """Where in the picture the axial aberration is."""
+    """Field map of the axial aberration."""
 
     bl_label = "Axial Field Map"
     which = "axial"
@@ -127,7 +127,7 @@ class APLANAT_CAMERA_PT_chromatic_axial(_FieldMapPanel, bpy.types.Panel):
 
 
 class APLANAT_CAMERA_PT_chromatic_lateral(_FieldMapPanel, bpy.types.Panel):
-    """Where in the picture the lateral aberration is."""
+    """Field map of the lateral aberration."""
 
     bl_label = "Lateral Field Map"
     which = "lateral"
@@ -135,7 +135,7 @@ class APLANAT_CAMERA_PT_chromatic_lateral(_FieldMapPanel, bpy.types.Panel):
 
 
 class APLANAT_CAMERA_PT_chromatic_equalizer(_ChromaticPanel, bpy.types.Panel):
-    """How much each wavelength counts."""
+    """Spectral equalizer: the weight of each wavelength."""
 
     bl_label = "Spectral Equalizer"
     bl_parent_id = "APLANAT_CAMERA_PT_chromatic"

@@ -31,7 +31,7 @@ _MOST_FINDINGS = 8
 
 
 class APLANAT_MT_lens(bpy.types.Menu):
-    """What can be done with lens files."""
+    """Menu of operators on lens files."""
 
     bl_label = "Lens File"
 
@@ -55,7 +55,7 @@ class _LensPanel(EnginePanel):
 
 
 class APLANAT_CAMERA_PT_lens(_LensPanel, bpy.types.Panel):
-    """Which lens takes the picture."""
+    """The real lens of the camera: chooser, zoom position, focal length, f-stop."""
 
     bl_label = "Real Lens"
     bl_parent_id = "DATA_PT_lens"
@@ -163,7 +163,7 @@ def _draw_work(column):
 
 
 class APLANAT_CAMERA_PT_lens_bokeh(_LensPanel, bpy.types.Panel):
-    """What points of light look like through the lens."""
+    """Picture of the lens' bokeh over depth and field."""
 
     bl_label = "Bokeh"
     bl_parent_id = "APLANAT_CAMERA_PT_lens"
@@ -195,7 +195,7 @@ class APLANAT_CAMERA_PT_lens_bokeh(_LensPanel, bpy.types.Panel):
 
 
 class APLANAT_CAMERA_PT_lens_facts(_LensPanel, bpy.types.Panel):
-    """What the lens is."""
+    """Facts of the lens: design, source, figures."""
 
     bl_label = "Facts"
     bl_parent_id = "APLANAT_CAMERA_PT_lens"
@@ -275,7 +275,7 @@ def _draw_fact(column, name, value, letters):
 
 
 def _draw_clamp(panel, context):
-    """Tell in Blender's Aperture panel, too, where the f-stop is set."""
+    """Show in Blender's Aperture panel that the lens limits the f-stop."""
     if context.engine not in EnginePanel.COMPAT_ENGINES:
         return
     camera = context.camera

@@ -29,7 +29,7 @@ class EnginePanel:
 
 
 class APLANAT_RENDER_PT_level_of_detail(EnginePanel, bpy.types.Panel):
-    """How blurred objects are simplified."""
+    """Level of detail of blurred objects."""
 
     bl_label = "Level of Detail"
     bl_context = "render"
@@ -61,7 +61,7 @@ class APLANAT_RENDER_PT_level_of_detail(EnginePanel, bpy.types.Panel):
 
 
 class APLANAT_RENDER_PT_film(EnginePanel, bpy.types.Panel):
-    """What the picture is taken on."""
+    """Film: transparency."""
 
     bl_label = "Film"
     bl_context = "render"
@@ -73,7 +73,7 @@ class APLANAT_RENDER_PT_film(EnginePanel, bpy.types.Panel):
 
 
 class APLANAT_RENDER_PT_performance(EnginePanel, bpy.types.Panel):
-    """What has no influence on the picture."""
+    """Performance: settings without influence on the picture."""
 
     bl_label = "Performance"
     bl_context = "render"
@@ -180,7 +180,7 @@ class APLANAT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
 
 
 class APLANAT_MATERIAL_PT_settings(EnginePanel, bpy.types.Panel):
-    """What a material has beside its surface."""
+    """Settings of a material besides its surface."""
 
     bl_label = "Settings"
     bl_context = "material"
@@ -213,7 +213,7 @@ class APLANAT_LIGHT_PT_bokeh(EnginePanel, bpy.types.Panel):
 
 
 class APLANAT_WORLD_PT_whites(EnginePanel, bpy.types.Panel):
-    """How bright the whites of the world's image are."""
+    """Amplify Whites: the brightness of clipped whites of the world's image."""
 
     bl_label = "Whites"
     bl_context = "world"

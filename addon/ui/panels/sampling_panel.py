@@ -9,7 +9,7 @@ from .sentences import draw_sentences, letters_across
 
 
 class APLANAT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
-    """How the lens and the pixels are sampled."""
+    """Sampling: method, presets."""
 
     bl_label = "Sampling"
     bl_context = "render"
@@ -67,7 +67,7 @@ class APLANAT_RENDER_PT_sampling_render(_SamplesPanel, bpy.types.Panel):
 
 
 class APLANAT_RENDER_PT_sampling_advanced(EnginePanel, bpy.types.Panel):
-    """What both have in common."""
+    """Sampling settings that viewport and final render share."""
 
     bl_label = "Advanced"
     bl_context = "render"

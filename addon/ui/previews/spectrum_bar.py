@@ -20,7 +20,7 @@ _colors = []
 
 
 def ask_for_colors():
-    """Have the colours of the spectrum made, which takes a second or two, unless they are there."""
+    """Compute the colours of the spectrum in the background, once: it takes a second or two."""
     if not _colors:
         background.submit(
             "spectrum bar",

@@ -16,7 +16,7 @@ _SHARED = {"override": OVERRIDABLE, "update": setting_changed}
 
 
 class AplanatBokehSettings(bpy.types.PropertyGroup):
-    """How a camera's highlights are drawn."""
+    """Bokeh settings of a camera."""
 
     use: BoolProperty(
         name="Bokeh",

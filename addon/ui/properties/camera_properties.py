@@ -1,4 +1,4 @@
-"""What Aplanat adds to a camera: real lens and zoom position, chromatic aberration, bokeh."""
+"""Settings of a camera: real lens and zoom position, chromatic aberration, bokeh."""
 
 import bpy
 from bpy.props import EnumProperty, PointerProperty, StringProperty

@@ -75,7 +75,7 @@ def _atom_property(which, stage):
 
 
 class AplanatChromaticSettings(bpy.types.PropertyGroup):
-    """How colors part in a camera."""
+    """Chromatic aberration settings of a camera."""
 
     use: BoolProperty(
         name="Chromatic Aberration",

@@ -20,7 +20,7 @@ MAX_SAMPLES = 65536
 
 
 class AplanatSceneSettings(bpy.types.PropertyGroup):
-    """How a scene is sampled."""
+    """Sampling, level of detail and performance settings of a scene."""
 
     method: EnumProperty(
         name="Method",
@@ -282,7 +282,7 @@ _HIGHLIGHTS = (
 
 
 class AplanatMaterialSettings(bpy.types.PropertyGroup):
-    """What only Aplanat knows of a material."""
+    """Settings of a material: whether its light may be a highlight."""
 
     highlights: EnumProperty(
         name="Highlights",
@@ -296,7 +296,7 @@ class AplanatMaterialSettings(bpy.types.PropertyGroup):
 
 
 class AplanatLightSettings(bpy.types.PropertyGroup):
-    """What only Aplanat knows of a light."""
+    """Settings of a light: whether its reflections may be highlights."""
 
     highlights: EnumProperty(
         name="Highlights",
@@ -310,7 +310,7 @@ class AplanatLightSettings(bpy.types.PropertyGroup):
 
 
 class AplanatWorldSettings(bpy.types.PropertyGroup):
-    """What only Aplanat knows of a world."""
+    """Settings of a world: Amplify Whites."""
 
     amplification: FloatProperty(
         name="Amplify Whites",

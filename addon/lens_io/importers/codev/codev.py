@@ -33,7 +33,7 @@ FORMAT_NAME = "CODE V sequence"
 
 
 def looks_like(lines):
-    """Tell whether there are surfaces as CODE V writes them.
+    """Return whether there are surfaces as CODE V writes them.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ _READ_WORDS = {"MODE", "UNIT", "NAME", "NOTE", "WAVM", "PWAV", "FTYP", "GCAT", "
 
 
 def looks_like(lines):
-    """Tell whether there are SURF blocks as Zemax writes them.
+    """Return whether there are SURF blocks as Zemax writes them.
 
     Parameters
     ----------
