@@ -225,7 +225,7 @@ class SceneExtractor:
                 or (for_motion and known.reading.split is None)
             ):
                 with source.opened(depsgraph) as mesh:
-                    reading = read_mesh(mesh, keys, source.owner, source.base)
+                    reading = read_mesh(mesh, keys, source.owner, source.base, source.carried)
                 equal = _take_equal(earlier, reading.snapshot)
                 split = reading.split if for_motion else None
                 reading = replace(reading, snapshot=equal, split=split)

@@ -139,6 +139,8 @@ def _graph_bound(graph, mesh, images, reflected):
             bound = max(of(inputs["Shader"]), of(inputs["Shader_001"]))
         elif node.kind == "add_shader":
             bound = of(inputs["Shader"]) + of(inputs["Shader_001"])
+        elif node.kind == "generated":
+            bound = mesh.peaks.get("generated", 0.0)
         elif node.kind in {"color_attribute", "attribute"}:
             bound = _attribute_bound(mesh, node.setting("name"))
         elif node.kind == "image_texture" and not node.setting("associated"):

@@ -39,8 +39,9 @@ class MeshSnapshot:
     slots : tuple of (int, int, int)
         Material slot, first triangle, number of triangles.
     attributes : dict of str to ndarray
-        float32 of shape (V, k): ``"normal"`` (k = 3), ``"uv:NAME"`` (2), ``"color:NAME"`` (4, scene
-        linear). An empty NAME is the active one.
+        float32 of shape (V, k): ``"normal"`` (k = 3), ``"generated"`` (3, the generated texture
+        coordinates), ``"uv:NAME"`` (2), ``"color:NAME"`` (4, scene linear). An empty NAME is the
+        active one.
     motion : tuple of two ndarray of shape (V, 3) or None
         Positions in the previous and the next frame, where the mesh deforms.
     rest : ndarray of shape (V, 3) or None

@@ -100,15 +100,17 @@ def attributes_read(graph):
     Returns
     -------
     frozenset of str
-        ``"normal"``, ``"uv:NAME"`` and ``"color:NAME"``; an empty NAME is the active one. A node
-        that reads an attribute of any kind by its name gives both keys; meshes need only have
-        those that exist.
+        ``"normal"``, ``"generated"``, ``"uv:NAME"`` and ``"color:NAME"``; an empty NAME is the
+        active one. A node that reads an attribute of any kind by its name gives both keys; meshes
+        need only have those that exist.
     """
     keys = set()
     for node in graph.nodes:
         name = node.setting("name")
         if node.kind in LIT_KINDS:
             keys.add("normal")
+        elif node.kind == "generated":
+            keys.add("generated")
         elif node.kind == "uv":
             keys.add(f"uv:{name}")
         elif node.kind == "color_attribute":

@@ -185,6 +185,19 @@ def test_uvs_of_every_triangle_stay_in_one_chart_across_seams():
         assert (of_corner == of_corner[:, :1]).all()
 
 
+def test_generated_coordinates_stay_where_they_are_in_the_texture_space():
+    sphere = cube_sphere()
+    attributes = {"generated": 0.5 + 0.5 * sphere.positions}
+    levels, _ = simplify(mesh_of(sphere.positions, sphere.triangles, **attributes), 300)
+    assert len(levels) >= 3
+    for level in levels:
+        inside = 0.5 + 0.5 * level.positions
+        # A texture in space shows on a level what it shows there, but for what the surface moved.
+        away = np.linalg.norm(level.attributes["generated"] - inside, axis=1)
+        edge = np.sqrt(areas(level).mean())
+        assert away.mean() < 0.2 * edge and away.max() < edge
+
+
 def test_a_seam_that_does_not_cut_the_mesh_in_two_stays_a_seam():
     # A tube: its ends of u meet, and are connected the long way round.
     def tube(u, v):

@@ -4,8 +4,8 @@ Colours and normals are a least-squares fit to the old ones over the surface: th
 projected to the new triangles, and the interpolated values fitted there. Each part keeps the mean
 of every attribute over its surface. Colours that were not negative stay so, and light stays on its
 side of the surface. The mean is kept and not the integral: fine wrinkles are lost with their area,
-but the visible surface does not get smaller. UVs are read at the place of the old triangles nearest
-to a new vertex, so that they stay inside their part of the texture.
+but the visible surface does not get smaller. Texture coordinates are read at the place of the old
+triangles nearest to a new vertex, so that they stay inside their part of the texture.
 
 References
 ----------
@@ -15,7 +15,7 @@ Journal 79, 1974: steps of a fit that keep the sign and the total.
 
 import numpy as np
 
-from .level_errors import ErrorMeter, LevelErrors, edge_length, moved_by_pairs
+from .level_errors import ErrorMeter, LevelErrors, edge_length, is_coordinate, moved_by_pairs
 from .level_parts import mixed
 from .level_projection import vertex_areas
 from .level_surface import facets
@@ -58,7 +58,7 @@ def carry(step, positions):
     result = {}
     fit, meter = _Fit(step, positions), ErrorMeter(step, positions)
     for key, old in mesh.attributes.items():
-        if key.startswith("uv:"):
+        if is_coordinate(key):
             values = fit.inside(old)
         else:
             values = fit.solve(old, direction=key == "normal")

@@ -80,6 +80,11 @@ def moved_by_pairs(step):
     return step.pair_moves / max(float(step.surface.size.sum()), 1e-300)
 
 
+def is_coordinate(key):
+    """Whether an attribute is a texture coordinate, and not a colour or a normal."""
+    return key == "generated" or key.startswith("uv:")
+
+
 class ErrorMeter:
     """Measures the errors of a level's attributes at the vertices of the level before.
 
@@ -115,7 +120,7 @@ class ErrorMeter:
         values : ndarray of shape (W, k)
         old : ndarray of shape (V, k)
         """
-        power = 1 if key.startswith("uv:") else 3
+        power = 1 if is_coordinate(key) else 3
         square = [
             self._mean_square(x, y, power) for x, y in zip(values.T[:3], old.T[:3], strict=True)
         ]
@@ -140,9 +145,10 @@ class ErrorMeter:
         return float((weight * np.square(error)).sum()) / self._total
 
     def _length_of_uv(self, uv):
-        """Return the mean length of a unit of UV on the surface."""
-        a, b, c = (uv[corner].astype(np.float64) for corner in self._triangles.T)
-        (x, y), (z, w) = (b - a).T, (c - a).T
-        covered = float(np.abs(x * w - y * z).sum()) / 2.0
-        # A mesh whose UVs cover no area has one colour of its texture.
+        """Return the mean length of a unit of a texture coordinate on the surface."""
+        solid = np.zeros((len(uv), 3))
+        solid[:, : uv.shape[1]] = uv
+        a, b, c = (solid[corner] for corner in self._triangles.T)
+        covered = float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2.0
+        # A mesh whose coordinates cover no area has one colour of its texture.
         return np.sqrt(self._surface / covered) if covered > 0.0 else 0.0

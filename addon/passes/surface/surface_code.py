@@ -13,7 +13,7 @@ from ...snapshot.surface_graph import Constant, Link
 from . import surface_nodes, surface_values
 
 _GENERATORS = surface_nodes.GENERATORS | surface_values.GENERATORS
-_ATTRIBUTE_COMPONENTS = {"normal": 3, "uv": 2, "color": 4}
+_ATTRIBUTE_COMPONENTS = {"normal": 3, "generated": 3, "uv": 2, "color": 4}
 
 
 @dataclass(frozen=True)

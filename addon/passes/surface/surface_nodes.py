@@ -115,6 +115,11 @@ def _uv(node, writer):
     return {"UV": ("vec3", f"vec3({uv}, 0.0)")}
 
 
+@generates("generated")
+def _generated(node, writer):
+    return {"Generated": ("vec3", writer.attribute("generated"))}
+
+
 @generates("color_attribute")
 def _color_attribute(node, writer):
     value = writer.attribute(f"color:{node.setting('name')}")

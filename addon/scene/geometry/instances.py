@@ -38,6 +38,10 @@ class MeshSource:
         Name of the first object that shows it.
     base : bpy.types.Mesh or None
         The mesh that the object's modifiers and shape keys start from, in the same evaluated scene.
+    carried : bool
+        Whether `mesh` has undeformed coordinates for generated texture coordinates: Blender carries
+        them through the modifiers for renders only, and only geometry nodes know what they do to
+        them.
     """
 
     key: object
@@ -45,6 +49,7 @@ class MeshSource:
     wrapped_by: object
     owner: str
     base: object = None
+    carried: bool = True
 
     @contextmanager
     def opened(self, depsgraph):
@@ -283,7 +288,9 @@ class _Reader:
             # In edit mode the mesh is in Blender's hands, not in the data-block.
             if original.type == "MESH" and not obj.data.is_editmode:
                 base = original.data.evaluated_get(self._depsgraph)
-            out.sources[number] = MeshSource(number, obj.data, wrapped_by, obj.name, base)
+            carried = not self._in_viewport or any(m.type == "NODES" for m in original.modifiers)
+            source = MeshSource(number, obj.data, wrapped_by, obj.name, base, carried)
+            out.sources[number] = source
             out.owners[number] = set()
         owners = out.owners[number]
         owners |= {original.session_uid, parent.original.session_uid}

@@ -41,7 +41,7 @@ class MeshReading:
     notes: tuple[str, ...] = ()
 
 
-def read_mesh(mesh, keys, owner, base=None):
+def read_mesh(mesh, keys, owner, base=None, carried=True):
     """Copy an evaluated mesh with the attributes that its surfaces read.
 
     Parameters
@@ -53,6 +53,8 @@ def read_mesh(mesh, keys, owner, base=None):
         Name of an object that shows the mesh, for messages.
     base : bpy.types.Mesh or None
         The mesh that modifiers and shape keys made this one from, if that is known.
+    carried : bool
+        Whether Blender has carried undeformed coordinates through the modifiers.
 
     Returns
     -------
@@ -81,6 +83,9 @@ def read_mesh(mesh, keys, owner, base=None):
         if kind == "normal":
             flat = mesh.normals_domain == "FACE"
             values, domain = _read_normals(mesh)
+        elif kind == "generated":
+            known = None if carried else base
+            values, domain = _read_generated(mesh, known, positions, corner_vertices), "POINT"
         else:
             attribute = _find_attribute(mesh, kind, name)
             if attribute is None:
@@ -102,7 +107,9 @@ def read_mesh(mesh, keys, owner, base=None):
         split = split_vertices(corner_vertices, len(positions), list(corner_values.values()))
     attributes = {key: split.of_vertices(values) for key, values in vertex_values.items()}
     attributes |= {key: split.of_corners(values) for key, values in corner_values.items()}
-    rest = _read_rest(mesh, base, positions, corner_vertices)
+    rest, _ = _read_rest(mesh, base, positions, corner_vertices)
+    if not np.isfinite(rest).all() or np.array_equal(rest, positions):
+        rest = None
     snapshot = MeshSnapshot(
         uid=next_uid(),
         name=mesh.name,
@@ -192,23 +199,35 @@ def _read_positions(mesh):
 
 
 def _read_rest(mesh, base, positions, corner_vertices):
-    """Return the rest positions of a mesh, before any deformation, or None.
+    """Return the rest positions of a mesh, before any deformation, and the mesh they belong to.
 
     They are those of the mesh that it was made from, if that has the same faces. Otherwise
     Blender may have carried undeformed coordinates through the modifiers for generated texture
     coordinates, as it does for renders; where not, it returns the deformed positions.
     """
+    rest = np.empty_like(positions)
     if base is not None and _has_faces(base, len(positions), corner_vertices):
-        rest = np.empty_like(positions)
         if len(rest):
             base.attributes["position"].data.foreach_get("vector", rest.reshape(-1))
-    else:
-        rest = np.empty_like(positions)
-        if len(rest):
-            mesh.vertices.foreach_get("undeformed_co", rest.reshape(-1))
-    if not np.isfinite(rest).all() or np.array_equal(rest, positions):
-        return None
-    return rest
+        return rest, base
+    if len(rest):
+        mesh.vertices.foreach_get("undeformed_co", rest.reshape(-1))
+    return rest, mesh
+
+
+def _read_generated(mesh, base, positions, corner_vertices):
+    """Return generated texture coordinates, shape (V, 3): the texture space spans 0 to 1.
+
+    The texture space is the bounding box of the undeformed mesh unless the artist has set
+    another one.
+    """
+    rest, owner = _read_rest(mesh, base, positions, corner_vertices)
+    middle, half = (
+        np.array(vector, np.float64) for vector in (owner.texspace_location, owner.texspace_size)
+    )
+    # In a direction without extent, as in Cycles, everything is in the middle.
+    scale = np.divide(0.5, half, out=np.zeros(3), where=half != 0.0)
+    return ((rest - middle) * scale + 0.5).astype(np.float32)
 
 
 def _has_faces(mesh, vertex_count, corner_vertices):

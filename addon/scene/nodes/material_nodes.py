@@ -188,8 +188,13 @@ def _uv_map(reader, node, groups):
 
 @reads("TEX_COORD")
 def _texture_coordinate(reader, node, groups):
-    # Only the UV output: the others are absent, which makes the reader report them.
-    return {"UV": Link(reader.add("uv"), "UV")}
+    if node.from_instancer:
+        reader.note("coordinates from the instancer are not read; those of the object are used")
+    # The other outputs are absent, which makes the reader report them.
+    return {
+        "UV": Link(reader.add("uv"), "UV"),
+        "Generated": Link(reader.add("generated"), "Generated"),
+    }
 
 
 @reads("VERTEX_COLOR")

@@ -45,6 +45,32 @@ def test_only_the_attributes_asked_for_are_read_and_nothing_is_split_without_the
     assert len(split.positions) == len(data.loops)
 
 
+def test_generated_coordinates_run_over_the_texture_space_and_split_nothing(bpy):
+    data = grid(bpy)
+    data.use_auto_texspace = False
+    # Half its extent; none along z, where everything is in the middle.
+    data.texspace_location, data.texspace_size = (1.0, 0.0, 0.0), (2.0, 1.0, 0.0)
+    read = read_mesh(data, {"generated"}, "o").snapshot
+    x, y, _ = read.positions.T
+    expected = np.stack([(x + 1.0) / 4.0, (y + 1.0) / 2.0, np.full(len(x), 0.5)], axis=1)
+    np.testing.assert_allclose(read.attributes["generated"], expected, atol=1e-6)
+    assert len(read.positions) == len(data.vertices)
+
+
+def test_where_nothing_was_carried_generated_coordinates_are_those_of_the_base(bpy):
+    base = grid(bpy)
+    deformed = base.copy()
+    scenes.set_coordinate(deformed, 5, 7.0)
+    # A viewport: Blender carries coordinates through modifiers for renders only.
+    read = read_mesh(deformed, {"generated"}, "o", base, carried=False).snapshot
+    expected = read_mesh(base, {"generated"}, "o").snapshot
+    np.testing.assert_array_equal(read.attributes["generated"], expected.attributes["generated"])
+    subdivided = grid(bpy, 4)
+    read = read_mesh(subdivided, {"generated"}, "o", base, carried=False).snapshot
+    expected = read_mesh(subdivided, {"generated"}, "o").snapshot
+    np.testing.assert_array_equal(read.attributes["generated"], expected.attributes["generated"])
+
+
 def test_smooth_normals_split_nothing_and_flat_ones_every_corner(bpy):
     data = grid(bpy)
     data.shade_smooth()
