@@ -19,8 +19,8 @@ from addon.passes.surface import data, environment_bake, surface, surface_code, 
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 
 _MODULES = [
-    importlib.import_module(f"{passes.__name__}.{found.name}")
-    for found in pkgutil.iter_modules(passes.__path__)
+    importlib.import_module(found.name)
+    for found in pkgutil.walk_packages(passes.__path__, f"{passes.__name__}.")
 ]
 
 
