@@ -306,7 +306,7 @@ class _Fan:
 
 
 def _leading(good):
-    """Number of leading true values of each row."""
+    """Return the number of leading true values of each row."""
     return np.argmin(np.c_[good, np.zeros(len(good), bool)], axis=1)
 
 
