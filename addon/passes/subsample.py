@@ -23,6 +23,7 @@ _INFO = ShaderInfo(
         ("VEC4", "sweep"),
         ("VEC2", "spread"),
         ("VEC2", "depths"),
+        ("VEC2", "jitter"),
         ("FLOAT", "cell"),
         ("FLOAT", "weight"),
         ("INT", "top"),
@@ -41,6 +42,7 @@ def blur(
     sweep,
     spread,
     depths,
+    jitter,
     cell,
     top,
     levels,
@@ -64,6 +66,8 @@ def blur(
         Largest offset of any sample along x and y, m.
     depths : sequence of 2 float
         Least and largest value that the depth buffer may have.
+    jitter : sequence of 2 float
+        From a pixel's centre to the place that the sample has of it, texels; less than half of one.
     cell : float
         Side of the part of the lens that a subsample's ray stands for, m.
     top : int
@@ -86,6 +90,7 @@ def blur(
     shader.uniform_float("sweep", tuple(sweep))
     shader.uniform_float("spread", tuple(spread))
     shader.uniform_float("depths", tuple(depths))
+    shader.uniform_float("jitter", tuple(jitter))
     shader.uniform_float("cell", cell)
     shader.uniform_float("weight", weight)
     shader.uniform_int("top", top)

@@ -34,7 +34,7 @@ def pyramid(color, depth, count):
     return levels
 
 
-def subsample_sum(levels, top, offsets, sweep, cell):
+def subsample_sum(levels, top, offsets, sweep, cell, jitter=(0.0, 0.0)):
     """Sum of a lens sample's picture and of those seen from places beside its own.
 
     Parameters
@@ -48,6 +48,8 @@ def subsample_sum(levels, top, offsets, sweep, cell):
     sweep : ndarray of shape (4,)
     cell : float
         Side of the part of the lens that a place stands for, m.
+    jitter : sequence of 2 float
+        From a pixel's centre to the place that the sample has of it, texels.
 
     Returns
     -------
@@ -60,7 +62,7 @@ def subsample_sum(levels, top, offsets, sweep, cell):
     margin = np.full(depth.shape, np.inf)
     spread = np.abs(offsets).max(axis=0)
     for y, x in np.ndindex(depth.shape):
-        in_reach, reach, sure = _depths_in_reach(levels, (y, x), spread, sweep)
+        in_reach, reach, sure = _depths_in_reach(levels, (y, x), spread, sweep, jitter)
         margin[y, x] = sure
         if reach == 0:
             total[y, x] = color[y, x] * (len(offsets) + 1)
@@ -68,7 +70,7 @@ def subsample_sum(levels, top, offsets, sweep, cell):
         total[y, x], sure = _cell_color(levels, top, (y, x), sweep, cell)
         margin[y, x] = min(margin[y, x], sure)
         for move in offsets:
-            texel, sure = seen_texel(levels, (y, x), in_reach, move, sweep)
+            texel, sure = seen_texel(levels, (y, x), in_reach, move, sweep, jitter)
             seen, sure_of_color = _cell_color(levels, top, texel, sweep, cell)
             total[y, x] += seen
             margin[y, x] = min(margin[y, x], sure, sure_of_color)
@@ -107,14 +109,15 @@ def _seen_depths(levels, a, b):
     return np.array([met[..., 0].min(), met[..., 1].max()])
 
 
-def _depths_in_reach(levels, texel, spread, sweep, approaches=3):
+def _depths_in_reach(levels, texel, spread, sweep, jitter, approaches=3):
     """Return the depths of what may come to a pixel, from how far, and the margin of none."""
     depth = levels[0][1]
     found = np.array([depth.min(), 1.0])
     texel, last = np.array(texel), np.array(depth.shape[:2]) - 1
     for i in range(approaches + 1):
-        moved = max(np.abs(sweep_px(spread, sweep, d)).max() for d in found)
-        reach = int(min(moved + 0.5, max(depth.shape)))
+        moved = np.max([np.abs(sweep_px(spread, sweep, d)) for d in found], axis=0)
+        moved = (moved + np.abs(jitter) + 0.5).max()
+        reach = int(min(moved, max(depth.shape)))
         if reach == 0 or i == approaches:
             break
         window = np.maximum(texel - reach, 0), np.minimum(texel + reach, last)
@@ -122,7 +125,7 @@ def _depths_in_reach(levels, texel, spread, sweep, approaches=3):
         if (seen == found).all():
             break
         found = seen
-    return found, reach, abs(moved - 0.5)
+    return found, reach, abs(moved - 1.0)
 
 
 def _way(center, size, move, sweep, depths):
@@ -143,7 +146,7 @@ def _way(center, size, move, sweep, depths):
     return start, along, part, ends
 
 
-def seen_texel(levels, texel, in_reach, move, sweep, stretch=1.0):
+def seen_texel(levels, texel, in_reach, move, sweep, jitter=(0.0, 0.0), stretch=1.0):
     """Find what is seen in a pixel from a place on the lens beside the sample's.
 
     Parameters
@@ -156,6 +159,8 @@ def seen_texel(levels, texel, in_reach, move, sweep, stretch=1.0):
     move : ndarray of shape (2,)
         From the sample's place on the lens to the other, m.
     sweep : ndarray of shape (4,)
+    jitter : sequence of 2 float
+        As of `subsample_sum`.
     stretch : float
         Neighbours are one surface if the move parts them by no more texels.
 
@@ -167,7 +172,7 @@ def seen_texel(levels, texel, in_reach, move, sweep, stretch=1.0):
         See `subsample_sum`.
     """
     depth = levels[0][1][..., 0]
-    center, size = np.array(texel)[::-1] + 0.5, np.array(depth.shape[::-1])
+    center, size = np.array(texel)[::-1] + 0.5 - jitter, np.array(depth.shape[::-1])
     depths = np.array(in_reach, float)
     start, along, part, ends = _way(center, size, move, sweep, depths)
     place = start + along * part[0]

@@ -4,7 +4,8 @@
 // Inputs: sample_tx, depth_tx (the sample); depths (least and largest that it may have); offsets_tx
 // (row: sample; column: place on the lens relative to the sample's, m); means_tx, ranges_tx (pyramid
 // of the sample: `top` levels of means, `levels` of ranges); sample_index, count; spread (largest
-// offset, m); cell (side of a cell of the lens, m); sweep; weight.
+// offset, m); cell (side of a cell of the lens, m); sweep; jitter (from a pixel's centre to the place that
+// the sample has of it, texels); weight.
 // CHROMATIC: as in surface_vert, and gain (of the sweep, by 1 / focus distance), tint (weights of the
 // channels).
 // Outputs: the weighted sum of the sample and its subsamples.
@@ -87,12 +88,15 @@ vec2 square_depths(ivec2 square, int level)
 // The texel that a ray sees. Each texel is a square that moves with its surface; the ray ends at the
 // nearest that comes to cover the pixel's centre. So a surface of one depth covers as many pixels as
 // it has texels, wherever it moves to, and one in focus stays as it is.
+// The colour of a texel is that at its centre plus the sample's jitter, so squares are centred there. The
+// place in the pixel that a ray sees then varies from sample to sample as its filter does, and movements
+// below a texel are blurred by their mean, not by none or by one texel.
 // As the depth goes from the least in reach to the largest, the texel that would come to the pixel runs
 // along a straight path. A texel is hit if its depth lies between those at which the path enters and
 // leaves it. Whole squares of the pyramid in front of or behind the path's depths are skipped.
 ivec2 seen_texel(ivec2 pixel, ivec2 size, vec2 move, vec2 in_reach)
 {
-  vec2 center = vec2(pixel) + 0.5;
+  vec2 center = vec2(pixel) + 0.5 - jitter;
   vec2 start = center - sweep_px(move, focused_sweep, in_reach.x);
   vec2 along = center - sweep_px(move, focused_sweep, in_reach.y) - start;
   vec2 part = vec2(0.0, 1.0);
@@ -185,8 +189,9 @@ vec2 depths_in_reach(ivec2 pixel, ivec2 size, out int reach)
   for (int i = 0; i <= APPROACHES; i++) {
     vec2 moved = max(abs(sweep_px(spread, focused_sweep, found.x)),
                      abs(sweep_px(spread, focused_sweep, found.y)));
-    // Half a texel stays within the texel.
-    reach = int(min(max(moved.x, moved.y) + 0.5, float(max(size.x, size.y))));
+    // Up to the edge of its square, the pixel's own texel is seen.
+    moved += abs(jitter) + 0.5;
+    reach = int(min(max(moved.x, moved.y), float(max(size.x, size.y))));
     if (reach == 0 || i == APPROACHES) {
       break;
     }

@@ -58,7 +58,7 @@ def test_pyramid_equals_its_twin():
                 assert np.abs(found - values).max() < 1e-6
 
 
-def blurred(color, depth, offsets, cell=0.0):
+def blurred(color, depth, offsets, cell=0.0, jitter=(0.0, 0.0)):
     """Blur a sample on the device over places on the lens."""
     height, width = depth.shape
     table = np.zeros((1, len(offsets), 4), np.float32)
@@ -74,6 +74,7 @@ def blurred(color, depth, offsets, cell=0.0):
                 sweep=SWEEP,
                 spread=np.abs(offsets).max(axis=0),
                 depths=(float(depth.min()), 1.0),
+                jitter=jitter,
                 cell=cell,
                 top=TOP,
                 levels=LEVELS,
@@ -85,21 +86,22 @@ def blurred(color, depth, offsets, cell=0.0):
 
 
 # With the wide cell, means of up to 8 texels are taken.
+@pytest.mark.parametrize("jitter", [(0.0, 0.0), (0.375, -0.21)])
 @pytest.mark.parametrize(("places", "cell"), [(1, 0.0), (5, 0.0), (4, 0.1)])
-def test_subsample_blur_equals_its_twin(places, cell):
+def test_subsample_blur_equals_its_twin(places, cell, jitter):
     rng = np.random.default_rng(7)
     depth = stepped_depth()
     color = rng.random((HEIGHT, WIDTH, 4)).astype(np.float32)
     offsets = rng.uniform(-0.02, 0.02, (places, 2)).astype(np.float32)
-    found = blurred(color, depth, offsets, cell)
+    found = blurred(color, depth, offsets, cell, jitter)
     levels = twin.pyramid(color, depth, LEVELS)
-    total, margin = twin.subsample_sum(levels, TOP, offsets, SWEEP, cell)
+    total, margin = twin.subsample_sum(levels, TOP, offsets, SWEEP, cell, jitter)
     # Where a decision hangs on less than rounding, it may turn out otherwise.
     sure = margin > 1e-4
     assert sure.mean() > 0.8
     assert np.abs(found - total)[sure].max() < 2e-5
     if cell:
-        plain, _ = twin.subsample_sum(levels, TOP, offsets, SWEEP, 0.0)
+        plain, _ = twin.subsample_sum(levels, TOP, offsets, SWEEP, 0.0, jitter)
         assert (np.abs(total - plain).max(axis=-1) > 0.1).mean() > 0.2
 
 
@@ -114,7 +116,8 @@ def test_a_bright_spot_keeps_its_light_wherever_it_moves(lamp, side):
     depth[spot], color[spot] = lamp, 1000.0
     for _ in range(8):
         offsets = rng.uniform(-0.1, 0.1, (6, 2)).astype(np.float32)
-        found = blurred(color, depth, offsets)
+        jitter = rng.uniform(-0.499, 0.499, 2)
+        found = blurred(color, depth, offsets, jitter=jitter)
         # Each place sees it whole.
         assert found[..., 0].sum() == pytest.approx(7 * 1000.0 * side**2, rel=1e-5)
 
@@ -127,10 +130,30 @@ def test_an_edge_in_focus_stays_as_it_is_beside_what_is_blurred():
     depth[sharp] = focus
     color = np.zeros((HEIGHT, WIDTH, 4), np.float32)
     color[sharp] = 1.0
-    # Neither axis has its focus exactly there: a thousandth of a texel is left.
+    # Neither axis has its focus exactly there: movements of 0.06 texels are left, less than to the
+    # edge of a square from any place that the sample has of a pixel.
     offsets = np.array([[0.02, 0.01], [-0.03, 0.02], [0.04, -0.04], [-0.01, -0.03]], np.float32)
-    found = blurred(color, depth, offsets)
+    found = blurred(color, depth, offsets, jitter=(0.43, -0.42))
     beside = slice(12, None)
     assert np.array_equal(found[:, beside], 5.0 * color[:, beside])
     # The blurred strip moves by up to 2.8 texels: it has moved.
     assert np.abs(offsets[:, 0] * (SWEEP[0] + SWEEP[2] * 0.70)).max() > 2.5
+
+
+@pytest.mark.parametrize("furthest", [0.3, 0.7, 1.6])
+def test_an_edge_that_moves_by_less_than_texels_is_blurred_by_that(furthest):
+    # Over all places in the pixel, the box filter of what is seen from each place on the lens.
+    depth = np.full((HEIGHT, WIDTH), 0.93, np.float32)
+    scale = SWEEP[0] + SWEEP[2] * 0.93
+    moves = furthest * np.array([1.0, -0.2, 0.35, 0.9])
+    offsets = np.stack([moves / scale, np.zeros(4)], axis=-1).astype(np.float32)
+    edge, columns = 18.3, np.arange(WIDTH)
+    mean = np.zeros(WIDTH)
+    places = (np.arange(32) + 0.5) / 32 - 0.5
+    for place in places:
+        color = np.zeros((HEIGHT, WIDTH, 4), np.float32)
+        color[:, columns + 0.5 + place > edge] = 1.0
+        mean += blurred(color, depth, offsets, jitter=(place, 0.0))[9, :, 0] / len(places)
+    expected = sum(np.clip(columns + 1.0 - move - edge, 0.0, 1.0) for move in (0.0, *moves))
+    # Each place is met to a thirty-second; the outermost columns continue what is not there.
+    assert np.abs(mean - expected)[3:-3].max() < 5 / 32

@@ -15,6 +15,9 @@ from ...sampling.spectral_samples import GROUP
 # Most levels of the pyramid's means: footprints wider than 64 texels are sampled too coarsely for
 # means to help.
 _MOST_LEVELS = 6
+# Largest jitter that subsamples follow, in texels: below half of one, so that a surface in focus is
+# not moved, whatever the width of the pixel filter.
+_MOST_JITTER = 0.499
 
 
 class SubsampleBlur:
@@ -77,14 +80,22 @@ class SubsampleBlur:
         """Largest distance from a pixel at which the sample's colours are read, in texels."""
         moved = max(self._coc(depth, self._spread) for depth in (self._nearest, 1.0))
         # Plus a texel on either side, and the texels of a mean of the top level.
+        moved += _MOST_JITTER
         return int(np.ceil(moved)) + 2 + (2 << self._top)
 
     def _levels_in_reach(self):
         """Return how many levels of depth ranges cover all texels that a pixel's ray may meet."""
         plan = self._plan
         reach = max(self._coc(depth, self._spread) for depth in (self._nearest, 1.0))
-        side = min(2.0 * (reach + 1.0), max(plan.width, plan.height) * plan.subpixels)
+        reach += 1.0 + _MOST_JITTER
+        side = min(2.0 * reach, max(plan.width, plan.height) * plan.subpixels)
         return int(np.ceil(np.log2(side)))
+
+    def _jitter(self, index):
+        plan = self._plan
+        texels = plan.subpixels * np.array([plan.width, plan.height])
+        # The jitter moves the picture, in clip units: the place in the pixel is opposite to it.
+        return np.clip(-0.5 * plan.jitter[index] * texels, -_MOST_JITTER, _MOST_JITTER)
 
     def limit(self, earlier):
         """Use no more levels than an earlier round, whose render targets are used.
@@ -123,6 +134,7 @@ class SubsampleBlur:
             sweep=self._sweep,
             spread=self._spread,
             depths=(self._nearest, 1.0),
+            jitter=self._jitter(index),
             cell=self._cell,
             top=self._top,
             levels=self._levels,
