@@ -153,7 +153,18 @@ def _mesh(rng, materials, depth):
         }
         if rng.random() < 0.3:
             spec["points"]["realize"] = True
+    _lighten(spec)
     return spec
+
+
+def _lighten(spec):
+    """Keep what multiplies triangles from making more of them than the time of a check is for."""
+    many = ("modifiers" in spec) + 2 * ("points" in spec)
+    most = {"ico": (5, 4, 3, 2), "grid": (40, 25, 16, 12), "sphere": (40, 25, 16, 12)}
+    if spec["shape"] in most:
+        spec["count"] = min(spec["count"], most[spec["shape"]][many])
+    if many == 3:
+        spec["points"]["subdivisions"] = 1
 
 
 def _modifier(rng):
