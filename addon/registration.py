@@ -1,7 +1,7 @@
 """Registers the Blender-facing modules, in order; unregisters them in the reverse one."""
 
 from .cli import blender_command
-from .engine import render_engine
+from .engine import render_engine, shared_resources
 from .ui.jobs import background
 from .ui.operators import (
     chromatic_curves,
@@ -23,6 +23,7 @@ from .ui.previews import bokeh_previews, chromatic_previews, lens_thumbnails
 from .ui.properties import overrides, properties
 
 _MODULES = (
+    shared_resources,
     background,
     lens_thumbnails,
     properties,

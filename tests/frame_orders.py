@@ -185,14 +185,14 @@ def render(bpy, frames, persistent=False):
     work : dict of str to int
         Levels of detail that were simplified and that came by known collapses.
     """
-    from addon.engine import outcome
+    from addon.engine.shared_resources import listen
 
     scene = bpy.context.scene
     scene.render.use_persistent_data = persistent
     hashes, work = {}, {"decimations": 0, "replays": 0}
     for frame in frames:
         scene.frame_set(frame)
-        with outcome.listen(keep_pictures=True) as heard:
+        with listen(keep_pictures=True) as heard:
             bpy.ops.render.render()
         if heard.error:
             raise heard.error

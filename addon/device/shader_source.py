@@ -19,6 +19,7 @@ _places = {}
 _INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
 
 
+# Memo of the path alone: shaders come with Aplanat.
 @cache
 def load(path):
     """Return the text of a shader file with its includes in place.
@@ -112,6 +113,7 @@ def located_lines(path):
     return _expand(path, set())
 
 
+# Memo of its arguments alone: shaders come with Aplanat.
 @cache
 def _read(root, path):
     """Return the lines of a file, each with the path that it includes or None."""

@@ -1,5 +1,7 @@
 """Textures made from arrays."""
 
+from collections import OrderedDict
+
 import numpy as np
 
 from . import census
@@ -69,3 +71,45 @@ def image_texture(image):
     texture.filter_mode(True)
     texture.extend_mode("REPEAT")
     return texture
+
+
+class TextureCache:
+    """Textures by the arrays that they are made from; the least recently used one is dropped.
+
+    Arrays are compared by identity, and must not change.
+
+    Parameters
+    ----------
+    most : int
+        Largest number of textures.
+    """
+
+    def __init__(self, most=16):
+        self._most = most
+        # The array is kept with its texture, so that no other array gets its identity.
+        self._kept = OrderedDict()
+
+    def texture(self, array, make):
+        """Return the texture of an array.
+
+        Parameters
+        ----------
+        array : ndarray
+        make : callable
+            Returns the texture of an array; the same function for all arrays of a cache.
+
+        Returns
+        -------
+        GPUTexture
+        """
+        key = id(array)
+        if key not in self._kept:
+            self._kept[key] = (array, make(array))
+            while len(self._kept) > self._most:
+                self._kept.popitem(last=False)
+        self._kept.move_to_end(key)
+        return self._kept[key][1]
+
+    def clear(self):
+        """Drop all textures."""
+        self._kept.clear()

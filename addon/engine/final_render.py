@@ -14,41 +14,29 @@ import bpy
 from ..device import context
 from ..device.shaders import compiled_count
 from ..levels.choosing import meshes_with_levels
-from ..levels.level_store import level_store
-from ..scene.extract import SceneExtractor
-from .drawing.scene_buffers import SceneBuffers
 from .frame.pipeline import FrameRenderer
 from .frame.render_passes import cryptomatte_metadata, fill_layer, render_pass
 from .gpu_thread import gpu_of_render
-from .outcome import LayerPicture, PassPicture, note_highlights, note_sampling
+from .outcome import LayerPicture, PassPicture
 from .pacing import Pacer
 from .planning.plan import plan_frame
-from .report import frame_report, without_count
+from .report import frame_report
 from .views import views_of
 
 # Seconds between updates of the shown picture, and the largest share of the time that they take.
 _SHOW_SECONDS = 0.5
 _SHOW_SHARE = 0.1
 
-# What the render in progress has reported so far, over all its frames and view layers.
-_reported = set()
 
-
-@bpy.app.handlers.persistent
-def begin_report(*_):
-    """Forget what an earlier render reported; a handler of the beginning of a render."""
-    _reported.clear()
-
-
-def render_view_layer(engine, depsgraph, heard):
+def render_view_layer(engine, depsgraph, session):
     """Render the view layer of a dependency graph into its render result.
 
     Parameters
     ----------
     engine : bpy.types.RenderEngine
     depsgraph : bpy.types.Depsgraph
-    heard : RenderOutcome
-        Gets the result: error, warnings, statistics, pictures.
+    session : RenderSession
+        Its outcome gets the result: error, warnings, statistics, pictures.
 
     Raises
     ------
@@ -58,30 +46,31 @@ def render_view_layer(engine, depsgraph, heard):
     if bpy.app.background:
         # The extractor asks for the device's limits before anything has opened a context.
         context.ensure_context()
-    extractor = SceneExtractor(
+    extractor = session.extractor(
         largest_image=context.max_texture_size(), in_main_thread=partial(_in_main_thread, engine)
     )
     for view in views_of(engine, depsgraph.scene):
         if view is not None:
             view.activate()
-        _render_view(engine, depsgraph, heard, extractor, view)
+        _render_view(engine, depsgraph, session, extractor, view)
 
 
-def _render_view(engine, depsgraph, heard, extractor, view):
+def _render_view(engine, depsgraph, session, extractor, view):
+    heard = session.outcome
     statistics = heard.statistics
     with statistics.timed("extract"):
         snapshot = extractor.extract(depsgraph, engine.frame_set, view)
-    _show_report(engine, heard, frame_report(snapshot))
+    _show_report(engine, session, frame_report(snapshot))
     heard.check_strict()
     with statistics.timed("plan"):
         plan = plan_frame(snapshot)
-    levels = _make_levels(engine, plan, snapshot, heard)
+    levels = _make_levels(engine, plan, snapshot, session)
     compiled_before = compiled_count()
     slice_seconds = depsgraph.scene.aplanat.chunk_milliseconds / 1000.0
     with gpu_of_render(engine.test_break, slice_seconds, bpy.app.background) as gpu:
         statistics.device = gpu.call(_open_device)
         with statistics.timed("upload"):
-            renderer = gpu.run(_prepare(plan, snapshot, levels, statistics))
+            renderer = gpu.run(_prepare(plan, snapshot, session, levels))
         try:
             with _result(engine, snapshot, view) as result:
                 _draw(engine, gpu, renderer, result, heard)
@@ -90,7 +79,6 @@ def _render_view(engine, depsgraph, heard, extractor, view):
             statistics.lens_samples += renderer.samples_done
             statistics.subsamples = max(statistics.subsamples, float(plan.subsample_counts.mean()))
             statistics.note_noise(renderer.sampling)
-            note_sampling(depsgraph.scene, renderer.sampling)
             statistics.subpixels = max(statistics.subpixels, plan.subpixels)
             counts = renderer.counts
             statistics.draw_calls += counts.draw_calls
@@ -98,8 +86,8 @@ def _render_view(engine, depsgraph, heard, extractor, view):
             statistics.triangles_full_detail += counts.triangles_full_detail
             statistics.sprites_drawn += counts.sprites_drawn
             statistics.sprites_copied += counts.sprites_copied
-            note_highlights(depsgraph.scene, renderer.highlights, renderer.report, renderer.fates)
-            _show_report(engine, heard, frame_report(snapshot, renderer))
+            session.note_picture(depsgraph.scene, renderer)
+            _show_report(engine, session, frame_report(snapshot, renderer))
             if renderer.highlights:
                 for name, number in vars(renderer.highlights).items():
                     statistics.highlights[name] += number
@@ -115,12 +103,9 @@ def _render_view(engine, depsgraph, heard, extractor, view):
         heard.layers.append(picture)
 
 
-def _show_report(engine, heard, lines):
-    heard.note(lines)
-    for line in lines:
-        if without_count(line) not in _reported:
-            engine.report({"WARNING"}, line)
-            _reported.add(without_count(line))
+def _show_report(engine, session, lines):
+    for line in session.report(lines):
+        engine.report({"WARNING"}, line)
 
 
 def _in_main_thread(engine, work):
@@ -134,16 +119,16 @@ def _open_device():
     return context.device_name()
 
 
-def _make_levels(engine, plan, snapshot, heard):
+def _make_levels(engine, plan, snapshot, session):
     """Return the levels of detail that the frame draws, by mesh, waiting until they are made."""
-    statistics, content = heard.statistics, snapshot.content
+    statistics, content = session.outcome.statistics, snapshot.content
     wanted = meshes_with_levels(content, plan)
     with statistics.timed("levels"):
 
         def progress(done, total):
             engine.update_stats("", f"Levels of detail: {done:,} of {total:,} triangles")
 
-        with level_store().open() as levels:
+        with session.open_levels() as levels:
             levels.request([content.meshes[uid] for uid in wanted], plan.least_triangles)
             try:
                 return levels.finish(progress, engine.test_break)
@@ -152,8 +137,8 @@ def _make_levels(engine, plan, snapshot, heard):
                 statistics.replays += levels.work.replays
 
 
-def _prepare(plan, snapshot, levels, statistics):
-    buffers = SceneBuffers()
+def _prepare(plan, snapshot, session, levels):
+    statistics, buffers = session.outcome.statistics, session.buffers()
     yield from buffers.update_steps(snapshot.content)
     for uid, meshes in levels.items():
         buffers.add_levels(uid, meshes)

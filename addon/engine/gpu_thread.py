@@ -14,6 +14,7 @@ import threading
 import time
 from concurrent.futures import Future, wait
 
+from ..device import keeping
 from ..errors import RenderCancelledError
 
 # Seconds between the checks of a waiting render whether it was stopped.
@@ -177,7 +178,7 @@ def gpu_of_render(should_stop, slice_seconds, in_background):
 
 
 def work_off_one_job():
-    """Run one slice of a waiting job; Blender's main thread calls this as a timer.
+    """Run one slice of a waiting job, or without one release what nobody needs; a timer of Blender.
 
     Returns
     -------
@@ -187,7 +188,11 @@ def work_off_one_job():
     try:
         job, work = _jobs.get_nowait()
     except queue.Empty:
-        return 0.0 if _renders else _IDLE_SECONDS
+        if _renders:
+            return 0.0
+        # What a session or a 3D view has left to the device, wherever it was dropped.
+        keeping.let_go()
+        return _IDLE_SECONDS
     if job.set_running_or_notify_cancel():
         try:
             job.set_result(work())

@@ -1,21 +1,13 @@
 """The outcome of a render: error, cancellation, warnings, statistics and pictures.
 
-`bpy.ops.render.render` answers ``{'FINISHED'}`` whatever happened inside an engine, so whoever
-starts a render and needs to know listens for its outcome::
-
-    with outcome.listen() as heard:
-        bpy.ops.render.render()
-    if heard.error: ...
-
-The engine fills `outcome.current()`, which is thrown away when nobody listens; pictures are kept
+The engine fills the outcome of the session that a render belongs to (`session.RenderSession`);
+whoever starts a render and wants to know listens (`shared_resources.listen`). Pictures are kept
 only for a listener that asked for them.
 """
 
-import threading
 import time
-from collections import OrderedDict
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -193,115 +185,3 @@ class RenderOutcome:
         """
         if self.strict and self.report:
             raise StrictError(self.report)
-
-
-@dataclass(frozen=True)
-class _PictureNote:
-    counts: dict | None = None
-    problems: tuple = ()
-    fates: dict = field(default_factory=dict)
-    sampling: object = None
-
-
-# Reports of the last picture of each scene, by the scene's session number. A lock guards them: the
-# main thread (viewports, panels) and the render thread use them.
-_notes = OrderedDict()
-_MOST_NOTES = 64
-_lock = threading.Lock()
-
-
-def note_highlights(scene, counts, problems=(), fates=None):
-    """Store the counts and fates of the highlights of a scene's picture, for the panel.
-
-    Parameters
-    ----------
-    scene : bpy.types.Scene
-    counts : HighlightCounts or None
-        None where none were searched.
-    problems : tuple of str
-        As `FrameRenderer.report` has them.
-    fates : dict of str to int or None
-        As `FrameRenderer.fates` has them.
-    """
-    counts = dict(vars(counts)) if counts else None
-    _note(scene, counts=counts, problems=problems, fates=dict(fates or {}))
-
-
-def note_sampling(scene, report):
-    """Store the sampling report of a scene's picture, for the panel.
-
-    Parameters
-    ----------
-    scene : bpy.types.Scene
-    report : SamplingReport
-    """
-    _note(scene, sampling=report)
-
-
-def _note(scene, **changes):
-    number = scene.original.session_uid
-    with _lock:
-        _notes[number] = replace(_notes.get(number, _PictureNote()), **changes)
-        _notes.move_to_end(number)
-        while len(_notes) > _MOST_NOTES:
-            _notes.popitem(last=False)
-
-
-def last_highlights(scene):
-    """Return the last highlight counts of a scene, as a dict, or None."""
-    return _note_of(scene).counts
-
-
-def last_sampling(scene):
-    """Return the last `SamplingReport` of a scene, or None."""
-    return _note_of(scene).sampling
-
-
-def last_fates(scene):
-    """Return the last numbers of a scene's sources by fate."""
-    return _note_of(scene).fates
-
-
-def last_problems(scene):
-    """Return the last warnings about a scene's bokeh."""
-    return _note_of(scene).problems
-
-
-def _note_of(scene):
-    with _lock:
-        return _notes.get(scene.original.session_uid, _PictureNote())
-
-
-_listeners = []
-
-
-@contextmanager
-def listen(keep_pictures=False, progress=None, strict=False):
-    """Receive the outcome of the renders that run inside a `with` block.
-
-    Parameters
-    ----------
-    keep_pictures : bool
-    progress : callable, optional
-    strict : bool
-        See `RenderOutcome`.
-
-    Yields
-    ------
-    RenderOutcome
-    """
-    heard = RenderOutcome(keeps_pictures=keep_pictures, progress=progress, strict=strict)
-    with _lock:
-        _listeners.append(heard)
-    try:
-        yield heard
-    finally:
-        with _lock:
-            # By identity: outcomes with equal contents compare equal.
-            _listeners[:] = [listener for listener in _listeners if listener is not heard]
-
-
-def current():
-    """Return the outcome that a render must fill: the listener's, else a fresh one."""
-    with _lock:
-        return _listeners[-1] if _listeners else RenderOutcome()

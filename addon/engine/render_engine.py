@@ -4,8 +4,9 @@ import bpy
 
 from ..errors import AplanatError, RenderCancelledError
 from ..scene.settings import read_passes
-from . import final_render, gpu_thread, outcome
+from . import final_render, gpu_thread
 from .frame import render_passes
+from .shared_resources import resources
 from .viewport import Viewport
 
 ENGINE_ID = "APLANAT"
@@ -31,9 +32,14 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph):
         """Render one view layer."""
-        heard = outcome.current()
+        session = resources().renders.current()
+        with session.in_use():
+            self._render(depsgraph, session)
+
+    def _render(self, depsgraph, session):
+        heard = session.outcome
         try:
-            final_render.render_view_layer(self, depsgraph, heard)
+            final_render.render_view_layer(self, depsgraph, session)
         except RenderCancelledError:
             heard.cancelled = True
         except AplanatError as error:
@@ -84,14 +90,12 @@ _register, _unregister = bpy.utils.register_classes_factory((AplanatRenderEngine
 def register():
     """Register the engine, and the timer by which the main thread does its GPU work."""
     _register()
-    bpy.app.handlers.render_init.append(final_render.begin_report)
     if not bpy.app.background:
         bpy.app.timers.register(gpu_thread.work_off_one_job, persistent=True)
 
 
 def unregister():
     """Undo `register`."""
-    bpy.app.handlers.render_init.remove(final_render.begin_report)
     if bpy.app.timers.is_registered(gpu_thread.work_off_one_job):
         bpy.app.timers.unregister(gpu_thread.work_off_one_job)
     _unregister()

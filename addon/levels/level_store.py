@@ -11,7 +11,6 @@ import threading
 import weakref
 from collections import deque
 from dataclasses import dataclass
-from functools import cache
 
 from ..errors import RenderCancelledError
 from ..files.cache_folder import cache_folder
@@ -365,26 +364,6 @@ class LevelHandle:
     def close(self):
         """Drop all requests; work for this handle alone is stopped."""
         self._store._remove(self._client)
-
-
-_opening = threading.Lock()
-
-
-def level_store():
-    """Return the store of this process, shared by final renders and viewports.
-
-    Returns
-    -------
-    LevelStore
-    """
-    # Two threads may be the first at once.
-    with _opening:
-        return _process_store()
-
-
-@cache
-def _process_store():
-    return LevelStore()
 
 
 def _close(reference):

@@ -128,6 +128,7 @@ def primaries_of(working_space):
     return _WORKING_SPACES.get(working_space)
 
 
+# Memo of nothing: the import of a module.
 @functools.cache
 def _colour():
     # Where scipy is not installed, colour-science says so in a warning and leaves a stand-in among
@@ -143,6 +144,7 @@ def _colour():
     return colour
 
 
+# Memo of nothing but a table of the module.
 @functools.cache
 def _observer():
     functions = _colour().MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
@@ -150,6 +152,7 @@ def _observer():
     return wavelengths, np.array(functions.values, dtype=np.float64)
 
 
+# Memo of the name alone, and of tables of the module.
 @functools.cache
 def _matrix(name):
     spaces = _colour().RGB_COLOURSPACES

@@ -9,7 +9,7 @@ from ..snapshot.content import InstanceGroup, InstanceTable, SceneContent
 from ..snapshot.cryptomatte import cryptomatte_id
 from ..snapshot.scene import SceneSnapshot
 from ..snapshot.surface_graph import attributes_read
-from .camera.camera import read_camera
+from .camera.camera import CameraSources, read_camera
 from .camera.drawn_curves import is_curve_group
 from .geometry.instances import read_instances
 from .geometry.meshes import MeshReading, read_mesh, same_content, used_slots
@@ -48,10 +48,13 @@ class SceneExtractor:
         Texels along a side that the device can hold.
     in_main_thread : callable or None
         As for `scene.images.images.ImageReader`; for an extractor that is used in another thread.
+    sources : CameraSources or None
+        Of the session; None: its own.
     """
 
-    def __init__(self, space=None, largest_image=None, in_main_thread=None):
+    def __init__(self, space=None, largest_image=None, in_main_thread=None, sources=None):
         self._space = space
+        self._camera_sources = sources or CameraSources()
         self._materials = MaterialReader(largest_image, in_main_thread)
         self._known = {}
         # Meshes read before whose source may have changed: compared with what is read next.
@@ -106,7 +109,7 @@ class SceneExtractor:
         film = read_film(scene)
         passes = read_passes(view_layer)
         snapshot = SceneSnapshot(
-            camera=read_camera(depsgraph, scene.camera, film, view),
+            camera=read_camera(depsgraph, scene.camera, film, view, self._camera_sources),
             content=self.extract_content(depsgraph, passes),
             film=film,
             sampling=read_sampling(depsgraph.scene_eval),

@@ -33,7 +33,7 @@ class View:
         return tuple(self.pixel_size * length for length in self.film.region)
 
 
-def read_view(depsgraph, space, region, region_3d, pixel_size):
+def read_view(depsgraph, space, region, region_3d, pixel_size, sources=None):
     """Read the camera and film of a 3D view.
 
     In camera view the camera's lens takes the picture; any other view is a pinhole's.
@@ -45,6 +45,8 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
     region : bpy.types.Region
     region_3d : bpy.types.RegionView3D
     pixel_size : int
+    sources : CameraSources or None
+        As `scene.camera.camera.read_camera` takes it.
 
     Returns
     -------
@@ -71,7 +73,7 @@ def read_view(depsgraph, space, region, region_3d, pixel_size):
         camera = evaluated_camera(depsgraph, space.camera)
         frame = _camera_frame(camera, scene, window @ view)
         field_radius = _field_radius(camera, scene)
-        optics = read_optics(depsgraph, camera)
+        optics = read_optics(depsgraph, camera, sources=sources)
     if through_camera:
         border = _border_in_frame(scene.render, frame)
     else:

@@ -41,6 +41,7 @@ def murmur3_32(key, seed=0):
     return value ^ (value >> 16)
 
 
+# Memo of the name alone: every frame has the same ones.
 @lru_cache(maxsize=65536)
 def cryptomatte_hash(name):
     """Return the 32 bits that stand for a name, as they are listed in a manifest.

@@ -19,6 +19,7 @@ from addon.cli.render import statistics
 from addon.cli.words.json_file import write_json
 from addon.device.context import ensure_context
 from addon.files.whole_file import check_writable, removed_on_signals
+from addon.scene.camera.camera import CameraSources
 
 from ..referees.picture_metrics import compare, read_picture
 from .curve import Curve, samples_to_reach
@@ -118,7 +119,7 @@ def _run(case, arguments, console):
         }
         found = {
             "scene": case.name,
-            "settings": statistics.settings_in_force(scene),
+            "settings": statistics.settings_in_force(scene, CameraSources()),
             "load_average": load,
             "samples": SAMPLES,
             "subsamples": SUBSAMPLES,

@@ -11,6 +11,7 @@ from addon.cli.render.render_command import heard_render
 from addon.cli.words.json_file import write_json
 from addon.device.context import ensure_context
 from addon.files.whole_file import check_writable, removed_on_signals
+from addon.scene.camera.camera import CameraSources
 
 from ..referees.picture_metrics import compare, read_picture
 from .scenes import check_folder, find_cases, open_scene, save_picture
@@ -69,7 +70,7 @@ def _run(case, arguments, console):
             scene, uses_lens and kind == "lens", samples, f"{case.name}, {kind}", console
         )
         measured[kind] = _measure(case, kind, heard, arguments)
-    settings = statistics.settings_in_force(scene)
+    settings = statistics.settings_in_force(scene, CameraSources())
     return {
         "scene": case.name,
         "settings": settings,

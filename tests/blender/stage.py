@@ -25,6 +25,11 @@ def module(name):
     return importlib.import_module(f"{ADDON}.addon.{name}")
 
 
+def shared():
+    """What the sessions of this process share."""
+    return module("engine.shared_resources").resources()
+
+
 def emissive(name, color):
     material = bpy.data.materials.new(name)
     tree = material.node_tree
@@ -242,7 +247,7 @@ def stir():
 
 def look():
     """What is told of the shared state, and what this process takes."""
-    store = module("engine.level_store").level_store()
+    store = shared().levels
     return {
         "megabytes": rss(),
         "handles": len(store._clients),
@@ -251,7 +256,7 @@ def look():
         "simplified": store.work.decimations,
         "ticks": stirred["ticks"],
         "waiting": module("engine.gpu_thread")._jobs.qsize(),
-        "listeners": len(module("engine.outcome")._listeners),
+        "listeners": shared().renders.listeners,
     }
 
 

@@ -27,7 +27,7 @@ import bpy, gpu
 import numpy as np
 
 folder, *modes = sys.argv[sys.argv.index("--") + 1 :]
-outcome = importlib.import_module("bl_ext.user_default.aplanat.addon.engine.outcome")
+shared = importlib.import_module("bl_ext.user_default.aplanat.addon.engine.shared_resources")
 scene = bpy.context.scene
 camera = scene.camera.data
 bokeh = camera.aplanat.bokeh
@@ -37,7 +37,7 @@ for mode in modes:
     name, bokeh.model, bokeh.visibility, bokeh.debug_view, camera.aplanat.lens = mode.split(",")
     camera.dof.focus_distance = 0.5 if camera.aplanat.lens else focus
     bokeh.hardness = 0.8 if bokeh.model == "CLUSTERED" else 0.0
-    with outcome.listen(keep_pictures=True) as heard:
+    with shared.listen(keep_pictures=True) as heard:
         bpy.ops.render.render()
     if heard.error:
         raise heard.error

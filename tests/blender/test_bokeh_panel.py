@@ -14,9 +14,9 @@ ADDON = "bl_ext.user_default.aplanat"
 def module(name):
     return importlib.import_module(f"{ADDON}.addon.{name}")
 
-panel = module("ui.bokeh_panel")
-previews = module("ui.bokeh_previews")
-outcome = module("engine.outcome")
+panel = module("ui.panels.bokeh_panel")
+previews = module("ui.previews.bokeh_previews")
+notes = module("engine.shared_resources").resources().notes
 
 def window():
     return bpy.context.window_manager.windows[0]
@@ -127,8 +127,9 @@ def test_drawing_the_panel_again_draws_no_discs(panel):
 
 def test_counts_and_presets_and_odd_cameras_are_drawn_without_an_error(panel):
     for change in (
-        "outcome.note_highlights(bpy.context.scene, "
-        "module('engine.bokeh_stage').HighlightCounts(found=900, clustered=400, splatted=300))",
+        "counts = module('engine.bokeh.stage').HighlightCounts\n"
+        "counts = vars(counts(found=900, clustered=400, splatted=300))\n"
+        "notes.change(bpy.context.scene, counts=counts)",
         "bokeh().model = 'CLUSTERED'",
         "bokeh().iris_image = bpy.data.images.new('black', 8, 8)",
         "bokeh().iris_image = None",

@@ -14,9 +14,9 @@ ADDON = "bl_ext.user_default.aplanat"
 def module(name):
     return importlib.import_module(f"{ADDON}.addon.{name}")
 
-panel = module("ui.chromatic_panel")
-previews = module("ui.chromatic_previews")
-bar = module("ui.spectrum_bar")
+panel = module("ui.panels.chromatic_panel")
+previews = module("ui.previews.chromatic_previews")
+bar = module("ui.previews.spectrum_bar")
 
 def window():
     return bpy.context.window_manager.windows[0]
@@ -130,7 +130,7 @@ def test_a_curve_is_dragged_with_the_mouse_and_undone(panel, tmp_path):
         "with bpy.context.temp_override(window=window()): bpy.ops.ed.undo_push(message='before')"
     )
     read = (
-        "result = list(module('scene.drawn_curves').curve_values("
+        "result = list(module('scene.camera.drawn_curves').curve_values("
         "chromatic().curves, 'Axial First'))"
     )
     before = panel.run(read)

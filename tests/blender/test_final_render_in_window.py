@@ -16,7 +16,7 @@ def tick():
     ticks.append(time.monotonic())
     return 0.01
 bpy.app.timers.register(tick, persistent=True)
-outcome = module("engine.outcome")
+listen = module("engine.shared_resources").listen
 def note(share, text):
     progress.append(share)
 def long_render(samples, **options):
@@ -43,7 +43,7 @@ def stage(opened):
 
 
 def test_progress_moves_and_the_window_answers(stage):
-    stage.run("listening = outcome.listen(progress=note); heard = listening.__enter__()")
+    stage.run("listening = listen(progress=note); heard = listening.__enter__()")
     stage.run("long_render(400)")
     stage.wait_for("'render_complete' in events", timeout=200)
     error, cancelled, samples, shares, gaps = stage.run(
@@ -97,7 +97,7 @@ def test_same_picture_from_job_and_from_script(stage, tmp_path):
 def test_error_is_told_and_the_next_render_works(stage):
     stage.run(
         "bpy.context.scene.camera.data.type = 'PANO'\n"
-        "listening = outcome.listen(); heard = listening.__enter__()\n"
+        "listening = listen(); heard = listening.__enter__()\n"
         # The job may report before the operator returns, which then raises.
         "try:\n    long_render(8)\nexcept RuntimeError as error:\n    print(error)"
     )

@@ -14,9 +14,9 @@ ADDON = "bl_ext.user_default.aplanat"
 def module(name):
     return importlib.import_module(f"{ADDON}.addon.{name}")
 
-background = module("ui.background")
-thumbnails = module("ui.lens_thumbnails")
-library = module("scene.lenses").shelf()
+background = module("ui.jobs.background")
+thumbnails = module("ui.previews.lens_thumbnails")
+library = module("engine.shared_resources").shelf()
 
 def window():
     return bpy.context.window_manager.windows[0]
@@ -105,7 +105,8 @@ def test_a_lens_is_chosen_with_the_mouse_and_undone(panel, tmp_path):
 
 def test_lenses_that_cannot_be_used_are_drawn_as_such(panel, tmp_path):
     panel.run(
-        "folder = module('scene.lenses').user_folder(); folder.mkdir(parents=True, exist_ok=True)\n"
+        "folder = module('scene.camera.lenses').user_folder()\n"
+        "folder.mkdir(parents=True, exist_ok=True)\n"
         "(folder / 'broken.toml').write_text('format = 1')\n"
         "bpy.ops.wm.aplanat_reload_lenses()"
     )

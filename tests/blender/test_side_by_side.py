@@ -55,7 +55,7 @@ def render(window):
 
 def escape(window):
     """Render, press Escape while levels of detail are made or samples drawn, and look again."""
-    window.run("module('engine.level_store').level_store().rebuild(); start_render()")
+    window.run("shared().levels.rebuild(); start_render()")
     window.wait_for("'render_pre' in events")
     for _ in range(20):
         window.xdotool("mousemove", 300, 500)
@@ -78,8 +78,8 @@ def test_a_viewport_at_work_and_final_renders_leave_each_other_alone(stage, tmp_
     render(stage)
     alone = rendered(stage, tmp_path / "alone.png")
     # By the iris' picture, which viewport and final render read at once.
-    told = "result = outcome.last_highlights(bpy.context.scene)['splatted']"
-    assert stage.run(f"outcome = module('engine.outcome'); {told}") > 0
+    told = "result = shared().notes.of(bpy.context.scene).counts['splatted']"
+    assert stage.run(told) > 0
     assert alone[..., :3].std() > 20.0
     stage.run("view(); viewports.clear(); stirred['on'] = True; area().tag_redraw()")
     stage.wait_for("stirred['ticks'] > 10 and texts()", timeout=120)
@@ -92,7 +92,7 @@ def test_a_viewport_at_work_and_final_renders_leave_each_other_alone(stage, tmp_
             cancelled += escape(stage)
         else:
             if rounds % 3 == 2:
-                stage.run("start_render(); module('engine.level_store').level_store().rebuild()")
+                stage.run("start_render(); shared().levels.rebuild()")
                 stage.wait_for("'render_complete' in events", timeout=180)
             else:
                 render(stage)

@@ -98,7 +98,7 @@ def test_viewport_at_rest_has_the_bokeh_of_the_final_render(stage, tmp_path):
         "lamp.inputs['Strength'].default_value = 40.0\n"
         "bpy.data.objects['thing4'].scale = (0.08, 0.08, 0.08)\n"
         # However quick the device is: a draft first.
-        "module('engine.pipeline')._QUICK = 0.0\n"
+        "module('engine.frame.frame_bokeh')._QUICK = 0.0\n"
         "bpy.context.scene.camera.data.aplanat.bokeh.use = True\n"
         "bpy.context.scene.aplanat.use_reference_bokeh = True\n"
         "redraw(3, lambda i: setattr(bpy.context.scene.camera.location, 'x', 0.01 * (i + 1)))\n"
@@ -115,7 +115,7 @@ def test_viewport_at_rest_has_the_bokeh_of_the_final_render(stage, tmp_path):
         timeout=200,
     )
     name = "bpy.context.scene"
-    assert stage.run(f"result = module('engine.outcome').last_highlights({name})['splatted']") > 0
+    assert stage.run(f"result = shared().notes.of({name}).counts['splatted']") > 0
     stage.run("bpy.context.scene.aplanat.use_reference_bokeh = False")
     assert similarity(shown, iio.imread(final)[..., :3]) >= 0.99
 
@@ -199,15 +199,15 @@ def test_camera_moves_upload_nothing_and_leak_nothing(stage):
             redraw(1)
             space.shading.type = "RENDERED"
             redraw(300, move)
-            scene = next(iter(module("engine.viewport")._viewed_scenes.values()))
-            content = id(scene._extractor._content)
-            uploads = dict(scene.buffers.uploads)
+            session = next(iter(shared().views.values()))
+            content = id(session._extractor._content)
+            uploads = dict(session.scene_buffers.uploads)
             first = counted.alive(), rss()
             redraw(1000, move)
             second = counted.alive(), rss()
-            same = content == id(scene._extractor._content)
-            result = [first, second, uploads == scene.buffers.uploads, same]
-            del scene
+            same = content == id(session._extractor._content)
+            result = [first, second, uploads == session.scene_buffers.uploads, same]
+            del session
         """,
         timeout=300,
     )
@@ -263,7 +263,7 @@ def test_views_of_the_same_objects_share_buffers_and_local_view_does_not(stage):
         "viewports.clear()\nwith override(): bpy.ops.screen.region_quadview()\narea().tag_redraw()"
     )
     stage.wait_for("len(viewports) == 4 and converged()", timeout=40)
-    assert stage.run("result = len(module('engine.viewport')._viewed_scenes)") == 1
+    assert stage.run("result = len(shared().views)") == 1
     stage.run(
         "with override(): bpy.ops.screen.region_quadview()\n"
         "for o in bpy.data.objects: o.select_set(o.name == 'thing2')\n"
@@ -297,11 +297,11 @@ def test_leaving_and_coming_back(stage):
     """Other shading, other engine, the add-on off and on, another scene, another file."""
     wait_until_converged(stage)
     stage.run("area().spaces.active.shading.type = 'SOLID'; redraw(1)")
-    assert stage.run("result = len(module('engine.viewport')._viewed_scenes)") == 0
+    assert stage.run("result = len(shared().views)") == 0
     stage.run("view(); redraw(1)")
     wait_until_converged(stage)
     stage.run("bpy.context.scene.render.engine = 'BLENDER_WORKBENCH'; redraw(1)")
-    assert stage.run("result = len(module('engine.viewport')._viewed_scenes)") == 0
+    assert stage.run("result = len(shared().views)") == 0
     stage.run("bpy.context.scene.render.engine = 'APLANAT'; viewports.clear()")
     wait_until_converged(stage)
     stage.run("import addon_utils; addon_utils.disable(ADDON); area().tag_redraw()")

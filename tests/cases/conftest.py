@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from addon.engine import outcome
+from addon.engine.shared_resources import listen
 
 # The builder saves nearly twenty small files, each in a second on a busy machine.
 _BUILD_SECONDS = 300
@@ -72,7 +72,7 @@ def render_default(aplanat_bpy):
         if samples is not None:
             scene.aplanat.use_target_error = False
             scene.aplanat.render_samples = samples
-        with outcome.listen(keep_pictures=True) as heard:
+        with listen(keep_pictures=True) as heard:
             aplanat_bpy.ops.render.render()
         if heard.error is not None:
             raise heard.error

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from addon.engine import outcome
+from addon.engine.shared_resources import listen
 from tests.pictures import srgb, ssim
 
 # Of the lamps: 2.5 pixels wide, so bright, in each channel.
@@ -88,7 +88,7 @@ def _render(bpy, scene, samples, method):
     own.method, own.use_target_error = method, False
     own.render_samples, own.subsamples = samples, 4
     own.pixel_filter, scene.render.filter_size = "BOX", 1.0
-    with outcome.listen(keep_pictures=True) as heard:
+    with listen(keep_pictures=True) as heard:
         bpy.ops.render.render(scene=scene.name)
     assert heard.error is None
     return heard.layers[0].passes["Combined"].pixels[::-1, :, :3]

@@ -5,6 +5,7 @@ import time
 
 import pytest
 
+from addon.device import keeping
 from addon.engine import gpu_thread
 from addon.engine.gpu_thread import MainThreadGpu, OwnThreadGpu, gpu_of_render
 from addon.errors import RenderCancelledError
@@ -112,3 +113,13 @@ def test_script_that_renders_in_the_main_thread_is_not_deadlocked():
         lambda: type(gpu_of_render(bool, 0.05, in_background=False)), main_loop=False
     )
     assert outcome == {"result": MainThreadGpu}
+
+
+def test_what_was_dropped_is_given_back_when_the_main_thread_is_idle(monkeypatch):
+    monkeypatch.setattr(keeping, "_owner", threading.get_ident())
+    monkeypatch.setattr(keeping, "_held", [])
+    dropped = keeping.keep(object())
+    needed = object()
+    held = keeping.keep(needed)
+    gpu_thread.work_off_one_job()
+    assert (dropped, held) == ([], [needed])

@@ -81,7 +81,7 @@ ROOMS = {
         *("engine.planning", "engine.drawing", "engine.visibility", "engine.bokeh"),
     ),
     "engine": (
-        *("device", "snapshot", "levels", "scene"),
+        *("device", "snapshot", "lens_io", "levels", "scene", "scene.camera"),
         *("engine.planning", "engine.drawing", "engine.bokeh", "engine.frame"),
     ),
     # What a user meets.
@@ -89,14 +89,12 @@ ROOMS = {
     "ui.previews": ("lens_bokeh.look", "plots", "scene.camera", "ui.jobs"),
     "ui.operators": (
         *("optics", "sampling", "lens_io", "lens_io.importers.draft"),
-        *("levels", "scene.camera", "ui.jobs"),
+        *("scene.camera", "engine", "ui.jobs"),
     ),
-    "ui.properties": (
-        *("sampling", "lens_io.glasses", "scene.camera", "ui.operators", "ui.previews"),
-    ),
+    "ui.properties": (*("sampling", "lens_io.glasses", "engine", "ui.operators", "ui.previews"),),
     "ui.presets": ("ui.properties",),
     "ui.panels": (
-        *("optics", "levels", "scene.camera", "engine"),
+        *("optics", "scene.camera", "engine"),
         *("ui.jobs", "ui.operators", "ui.presets", "ui.previews"),
     ),
     "ui": (),

@@ -8,7 +8,7 @@ import pytest
 
 from addon.errors import RenderCancelledError
 from addon.levels import level_making
-from addon.levels.level_store import LevelStore, level_store
+from addon.levels.level_store import LevelStore
 
 from .test_level_store import sheet
 
@@ -216,19 +216,3 @@ def test_eight_threads_ask_wait_cancel_and_rebuild_at_once(store):
     assert not failures and not any(thread.is_alive() for thread in threads)
     wait_until(lambda: not store.busy)
     assert store.progress == (0, 0)
-
-
-def test_threads_that_are_first_at_once_get_one_store(monkeypatch, tmp_path):
-    monkeypatch.setenv("APLANAT_CACHE", str(tmp_path))
-    barrier, found = threading.Barrier(8), []
-
-    def ask():
-        barrier.wait()
-        found.append(level_store())
-
-    threads = [threading.Thread(target=ask) for _ in range(8)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert len(set(map(id, found))) == 1

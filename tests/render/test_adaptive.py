@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from addon.engine import outcome
+from addon.engine.shared_resources import listen
 from tests.pictures import energy_ratio, save_side_by_side, ssim
 from tests.surface_scenes import Tree
 
@@ -28,7 +28,7 @@ def render(scene, method, samples=32, subsamples=4, **settings):
     own.pixel_filter, scene.render.filter_size = "BOX", 1.0
     for name, value in settings.items():
         setattr(own, name, value)
-    with outcome.listen(keep_pictures=True) as heard:
+    with listen(keep_pictures=True) as heard:
         bpy.ops.render.render(scene=scene.name)
     assert heard.error is None
     return heard

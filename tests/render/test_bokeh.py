@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.engine import outcome
+from addon.engine.shared_resources import listen, resources
 from benchmarks.bokeh.charts import LAMP_DEPTH, half_hidden, many_highlights
 from benchmarks.bokeh.frames import PASSES
 from tests.pictures import energy_ratio, save_side_by_side, ssim
@@ -26,7 +26,7 @@ def render(bpy, method, samples, subsamples=0):
     own.method, own.use_target_error = method, False
     own.render_samples, own.subsamples = samples, subsamples
     layer.use_pass_defocus = layer.use_pass_bokeh = True
-    with outcome.listen(keep_pictures=True) as heard:
+    with listen(keep_pictures=True) as heard:
         bpy.ops.render.render()
     assert heard.error is None
     found = heard.layers[0].passes
@@ -93,8 +93,8 @@ def test_a_lens_that_cannot_focus_so_near_leaves_the_discs_to_a_thin_lens(bpy_of
     camera.aplanat.lens = "double-gauss-50mm-f2"
     drawn, _ = render(bpy_of, "ADAPTIVE", 4)
     assert np.array_equal(drawn["Combined"], thin["Combined"])
-    (problem,) = outcome.last_problems(scene)
+    (problem,) = resources().notes.of(scene).problems
     assert "double" in problem.lower() and "focus farther away" in problem
     camera.dof.focus_distance = 6.0
     render(bpy_of, "ADAPTIVE", 4)
-    assert outcome.last_problems(scene) == ()
+    assert resources().notes.of(scene).problems == ()

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from addon.levels import level_store
+from addon.engine.shared_resources import resources
+from addon.levels.level_store import LevelStore
 from tests import frame_orders
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
@@ -30,10 +31,9 @@ def fresh(monkeypatch, tmp_path):
 
     def begin(name):
         monkeypatch.setenv("APLANAT_CACHE", str(tmp_path / name))
-        level_store._process_store.cache_clear()
+        monkeypatch.setattr(resources(), "levels", LevelStore())
 
-    yield begin
-    level_store._process_store.cache_clear()
+    return begin
 
 
 def in_process_of_its_own(blend, frames, cache):

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from addon.engine import outcome
+from addon.engine.shared_resources import listen
 from tests.pass_pictures import (
     away_from_edges,
     build_scene,
@@ -29,7 +29,7 @@ def render(scene, samples=16):
     scene.aplanat.render_samples = samples
     scene.aplanat.pixel_filter = "BOX"
     scene.render.filter_size = 1.0
-    with outcome.listen(keep_pictures=True) as heard:
+    with listen(keep_pictures=True) as heard:
         bpy.ops.render.render(scene=scene.name)
     assert heard.error is None
     return heard.layers
@@ -110,7 +110,7 @@ def test_a_wider_filter_blurs_edges_and_keeps_the_mean(scene):
     import bpy
 
     scene.render.filter_size = 4.0
-    with outcome.listen(keep_pictures=True) as heard:
+    with listen(keep_pictures=True) as heard:
         bpy.ops.render.render(scene=scene.name)
     wide = heard.layers[0].passes["Combined"].pixels
     slope = [np.abs(np.diff(picture[..., 0], axis=1)).max() for picture in (narrow, wide)]

@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from addon.engine import outcome
 from addon.engine.drawing import scene_drawing
+from addon.engine.shared_resources import listen
 from addon.levels import choosing
 from tests.pictures import energy_ratio, save_side_by_side, srgb
 from tests.surface_scenes import Tree
@@ -130,7 +130,7 @@ def render(scene, use_levels=True):
     own.render_samples, own.subsamples = SAMPLES, 0
     own.pixel_filter, scene.render.filter_size = "BOX", 1.0
     own.use_levels = use_levels
-    with outcome.listen(keep_pictures=True) as heard:
+    with listen(keep_pictures=True) as heard:
         bpy.ops.render.render(scene=scene.name)
     assert heard.error is None
     picture = heard.layers[0].passes["Combined"].pixels[::-1].copy()

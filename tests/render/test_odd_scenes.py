@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.engine import outcome
+from addon.engine.shared_resources import listen
 from addon.errors import CameraError
 from tests.scene_builders import emission
 
@@ -55,7 +55,7 @@ def render(bpy, method="ADAPTIVE", samples=None):
         scene.aplanat.use_target_error, scene.aplanat.render_samples = False, samples
     elif method == "REFERENCE":
         scene.aplanat.render_samples = 16
-    with outcome.listen(keep_pictures=True) as heard:
+    with listen(keep_pictures=True) as heard:
         bpy.ops.render.render()
     if heard.error is not None:
         raise heard.error

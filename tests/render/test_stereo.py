@@ -133,10 +133,10 @@ def test_vectors_of_an_eye_are_measured_from_its_own_place(aplanat_bpy, tmp_path
 
 
 def test_spherical_stereo_is_told(aplanat_bpy, tmp_path):
-    from addon.engine import outcome
+    from addon.engine.shared_resources import listen
 
     build(aplanat_bpy, camera_set(**{"stereo.use_spherical_stereo": True}))
     aplanat_bpy.context.scene.render.engine = "APLANAT"
-    with outcome.listen() as heard:
+    with listen() as heard:
         aplanat_bpy.ops.render.render()
     assert [line for line in heard.report if "camera 'Camera': spherical stereo" in line]

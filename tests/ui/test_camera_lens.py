@@ -4,11 +4,10 @@ import math
 
 import pytest
 
+from addon.engine.shared_resources import real_lens_of, resources
 from addon.lens_io.lens_shelf import LensShelf
 from addon.lens_io.library import SHIPPED_FOLDER
-from addon.scene.camera import lenses
 from addon.ui.operators import lens_import, lens_operators
-from addon.ui.panels import lens_panel
 from addon.ui.properties import camera_properties
 
 TESSAR, ZOOM = "tessar-50mm-f2.8", "zoom-36-69mm-f3.5"
@@ -23,14 +22,12 @@ CHANGING = (
 
 
 @pytest.fixture
-def own_folder(tmp_path, monkeypatch):
+def own_folder(tmp_path, monkeypatch, aplanat_bpy):
     """A folder of the user's, in place of the real one."""
     folder = tmp_path / "lenses"
-    library = LensShelf([folder])
-    for module in (lenses, camera_properties, lens_operators, lens_import, lens_panel):
-        monkeypatch.setattr(module, "shelf", lambda: library)
-        if hasattr(module, "user_folder"):
-            monkeypatch.setattr(module, "user_folder", lambda: folder)
+    monkeypatch.setattr(resources(), "lenses", LensShelf([folder]))
+    for module in (lens_operators, lens_import):
+        monkeypatch.setattr(module, "user_folder", lambda: folder)
     return folder
 
 
@@ -158,7 +155,7 @@ def test_the_iris_of_the_lens_is_taken_over(camera, aplanat_bpy, own_folder):
     tail = tail[tail.index("[[surface]]") :]
     own = own_folder / "many.toml"
     own.write_text(f"{head}[diaphragm]\nblades = 20\nrotation_deg = 270.0\n\n{tail}", "utf-8")
-    lens_operators.shelf().reload()
+    resources().lenses.reload()
     camera.aplanat.lens = "many"
     assert aplanat_bpy.ops.camera.aplanat_use_iris() == {"FINISHED"}
     assert camera.dof.aperture_blades == 16
@@ -175,7 +172,7 @@ def test_a_lens_file_is_imported_and_used(camera, aplanat_bpy, own_folder, share
         "FINISHED"
     }
     assert camera.aplanat.lens == used
-    assert f"{TESSAR}-2" in lens_operators.shelf().ids()
+    assert f"{TESSAR}-2" in resources().lenses.ids()
 
 
 def test_an_import_that_is_refused_says_what_to_choose(camera, aplanat_bpy, own_folder, shared):
@@ -213,9 +210,9 @@ def test_an_edited_lens_is_read_again_on_reload(camera, aplanat_bpy, own_folder)
     bpy.ops.camera.aplanat_edit_lens()
     own = own_folder / f"{TESSAR}-copy.toml"
     own.write_text(own.read_text("utf-8").replace("f_number = 2.8", "f_number = 2.9"), "utf-8")
-    assert lenses.read_real_lens(camera)[0].prescription.f_number == 2.8
+    assert real_lens_of(camera).prescription.f_number == 2.8
     assert bpy.ops.wm.aplanat_reload_lenses() == {"FINISHED"}
-    assert lenses.read_real_lens(camera)[0].prescription.f_number == 2.9
+    assert real_lens_of(camera).prescription.f_number == 2.9
 
 
 def test_only_lenses_of_ones_own_are_removed(camera, aplanat_bpy, own_folder):
@@ -227,7 +224,7 @@ def test_only_lenses_of_ones_own_are_removed(camera, aplanat_bpy, own_folder):
     assert not list(own_folder.iterdir())
     # The name stays, so that the lens can come back.
     assert camera.aplanat.lens == f"{TESSAR}-copy"
-    assert lenses.read_real_lens(camera)[0] is None
+    assert real_lens_of(camera) is None
 
 
 def test_operators_can_be_undone_and_explain_themselves():

@@ -12,7 +12,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from addon.engine import final_render
+from addon.engine import session
 
 # What values of an attribute are called in Blender, how many numbers they are, and of which kind.
 _ATTRIBUTES = {
@@ -39,12 +39,12 @@ def digests_of_scenes():
     """
     digests = []
 
-    class Recorder(final_render.SceneExtractor):
+    class Recorder(session.SceneExtractor):
         def extract(self, depsgraph, *arguments, **options):
             digests.append(digest(depsgraph))
             return super().extract(depsgraph, *arguments, **options)
 
-    with patch.object(final_render, "SceneExtractor", Recorder):
+    with patch.object(session, "SceneExtractor", Recorder):
         yield digests
 
 

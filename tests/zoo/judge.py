@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from addon.engine import outcome
+from addon.engine.shared_resources import listen
 from addon.errors import AplanatError
 
 from . import agreement
@@ -173,7 +173,7 @@ def render(scene, path=None):
         settings.color_depth = "32"
         scene.render.filepath = str(path)
         scene.render.use_file_extension = False
-    with outcome.listen(keep_pictures=True) as heard:
+    with listen(keep_pictures=True) as heard:
         try:
             bpy.ops.render.render(write_still=path is not None, scene=scene.name)
         except RuntimeError as error:

@@ -9,8 +9,8 @@ import time
 import bpy
 
 from ...device.context import ensure_context, max_texture_size
-from ...engine import outcome
 from ...engine.report import without_count
+from ...engine.shared_resources import listen, resources
 from ...errors import AplanatError, DeviceLimitError, InputError, RenderCancelledError, StrictError
 from ...files.whole_file import check_writable, removed_on_signals
 from ..words.json_file import write_json
@@ -41,7 +41,7 @@ def render(arguments, console):
     AplanatError
         If there is no picture.
     """
-    with removed_on_signals():
+    with removed_on_signals(), resources().open_session() as session:
         _check_outputs(arguments)
         scene = load_scene(arguments.scene)
         apply_options(scene, arguments)
@@ -56,7 +56,9 @@ def render(arguments, console):
                 if not files.begin(frame):
                     console.say(f"frame {frame}: left as it is; the scene's Overwrite is off")
                     continue
-                frames.append(_render_frame(scene, frame, arguments, console, warnings, files))
+                frames.append(
+                    _render_frame(scene, frame, arguments, console, warnings, files, session)
+                )
             files.publish_all()
         if arguments.strict:
             _tell_files(frames, console)
@@ -102,7 +104,7 @@ class Warnings:
             raise StrictError(self.lines)
 
 
-def heard_render(keep_pictures=False, progress=None, strict=False, frame=None):
+def heard_render(keep_pictures=False, progress=None, strict=False, frame=None, session=None):
     """Render a frame of the current scene and return its outcome.
 
     Parameters
@@ -110,11 +112,13 @@ def heard_render(keep_pictures=False, progress=None, strict=False, frame=None):
     keep_pictures : bool
     progress : callable, optional
     strict : bool
-        See `engine.outcome.listen`.
+        See `RenderOutcome`.
     frame : int, optional
         Rendered as an animation of one: Blender writes the scene's output, and File Output nodes
         number their files, as with ``blender -b -a`` and ``-f``. By default the current frame, as a
         still.
+    session : RenderSession, optional
+        Of the command that renders more than this; default: one for this render.
 
     Returns
     -------
@@ -126,7 +130,7 @@ def heard_render(keep_pictures=False, progress=None, strict=False, frame=None):
         If there is no picture.
     """
     how = {} if frame is None else {"animation": True, "frame_start": frame, "frame_end": frame}
-    with outcome.listen(keep_pictures, progress, strict) as heard:
+    with listen(keep_pictures, progress, strict, session) as heard:
         try:
             bpy.ops.render.render(**how)
         except RuntimeError as error:
@@ -178,9 +182,9 @@ def _frame_numbers(scene, arguments):
     return range(frame, frame + 1)
 
 
-def _render_frame(scene, frame, arguments, console, warnings, files):
+def _render_frame(scene, frame, arguments, console, warnings, files, session):
     start = time.perf_counter()
-    settings = statistics.settings_in_force(scene, arguments)
+    settings = statistics.settings_in_force(scene, session.sources, arguments)
 
     def run():
         try:
@@ -188,6 +192,7 @@ def _render_frame(scene, frame, arguments, console, warnings, files):
                 progress=lambda _share, text: console.progress(f"frame {frame}: {text}"),
                 strict=arguments.strict,
                 frame=frame,
+                session=session,
             )
         except StrictError as error:
             warnings.add(error.warnings)

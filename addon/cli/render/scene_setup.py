@@ -10,9 +10,10 @@ from pathlib import Path
 import bpy
 
 from ...engine.render_engine import ENGINE_ID
+from ...engine.shared_resources import shelf
 from ...errors import CameraError, FocusError, InputError
 from ...lens_io.library import Library
-from ...scene.camera.lenses import shelf, user_folder
+from ...scene.camera.lenses import user_folder
 from .sampling_arguments import apply_sampling
 
 # Upper bound of the bytes of a pixel: targets on the device, read-back, Blender's result and the

@@ -16,13 +16,15 @@ from ...scene.settings import read_passes
 from ..words.version import version
 
 
-def settings_in_force(scene, arguments=None):
+def settings_in_force(scene, sources, arguments=None):
     """Return every setting that shapes a frame.
 
     Parameters
     ----------
     scene : bpy.types.Scene
         At the frame in question.
+    sources : CameraSources
+        Of the session that renders it.
     arguments : argparse.Namespace, optional
         Of `render`.
 
@@ -36,7 +38,7 @@ def settings_in_force(scene, arguments=None):
     data = camera.data
     dof = data.dof
     focus = dof.focus_object
-    lens, _ = read_real_lens(data)
+    lens, _ = read_real_lens(data, sources.shelf)
     automatic = own.method == "ADAPTIVE" and own.use_target_error
     return {
         "method": own.method.lower(),
@@ -91,7 +93,7 @@ def settings_in_force(scene, arguments=None):
         "aperture_blades": dof.aperture_blades,
         "aperture_rotation": dof.aperture_rotation,
         "aperture_ratio": dof.aperture_ratio,
-        "bokeh": _bokeh(scene, data, lens),
+        "bokeh": _bokeh(scene, data, lens, sources.irises),
         "chromatic": _chromatic(data, lens),
         "amplify_whites": scene.world.aplanat.amplification if scene.world else 0.0,
         "view_transform": scene.view_settings.view_transform,
@@ -116,9 +118,9 @@ def _stereo(render, data):
     }
 
 
-def _bokeh(scene, data, lens):
+def _bokeh(scene, data, lens, irises):
     own = scene.aplanat
-    bokeh, _ = read_bokeh(data, lens, corner_tangent(data, scene))
+    bokeh, _ = read_bokeh(data, lens, corner_tangent(data, scene), irises)
     if bokeh is None or (own.method == "REFERENCE" and not own.use_reference_bokeh):
         return None
     look = bokeh.appearance

@@ -7,6 +7,7 @@ from pathlib import Path
 _MANIFEST = Path(__file__).resolve().parents[3] / "blender_manifest.toml"
 
 
+# Memo of a file that comes with Aplanat.
 @cache
 def version():
     """Return the version of blender_manifest.toml."""

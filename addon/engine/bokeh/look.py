@@ -7,7 +7,6 @@ All discs keep their energy: tables hold the light that a profile, rims, or an o
 tiles of a real lens' pupil take away, and the shader divides by it.
 """
 
-import atexit
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -137,7 +136,7 @@ def describe_look(plan):
     return variants, arrays, params
 
 
-def make_look(plan, field=None):
+def make_look(plan, textures, field=None):
     """Upload the textures and parameters of a frame's splats.
 
     Where the real lens cannot be traced, the discs are those of a thin lens.
@@ -146,6 +145,8 @@ def make_look(plan, field=None):
     ----------
     plan : FramePlan
         With a `bokeh`.
+    textures : TextureCache
+        Has those of earlier frames, which may do for this one.
     field : tuple of (str, GPUUniformBuf or GPUTexture) or None
         `passes.surface.chromatic.resources`, with chromatic aberration.
 
@@ -164,9 +165,9 @@ def make_look(plan, field=None):
         variants, arrays, params = describe_look(
             replace(plan, bokeh=replace(plan.bokeh, real_lens=None))
         )
-    textures = tuple((name, _texture(_Arrays(array))) for name, array in arrays.items())
+    uploaded = tuple((name, textures.texture(array, _texture)) for name, array in arrays.items())
     blocks = tuple(uniform_buffer(SPLAT_PARAMS.pack(**params, **band)) for band in _bands(plan))
-    return BokehLook(variants, textures, blocks, tuple(field or ()), report)
+    return BokehLook(variants, uploaded, blocks, tuple(field or ()), report)
 
 
 def _bands(plan):
@@ -216,19 +217,13 @@ class _Arrays:
         return hash(tuple(map(id, self.parts)))
 
 
-@lru_cache(maxsize=16)
-def _texture(arrays):
-    (array,) = arrays.parts
+def _texture(array):
     if array.ndim == 4:
         return texture_array(array, "RGBA16F")
     texture = texture_2d(array, "RGBA32F")
     texture.filter_mode(True)
     texture.extend_mode("EXTEND")
     return texture
-
-
-# When the process ends, the device is gone before Python's objects: no texture may outlive it.
-atexit.register(_texture.cache_clear)
 
 
 def _appearance(appearance, iris):
@@ -258,6 +253,8 @@ def _fresnel_scale(plan):
     return per_pixel / (plan.focus_distance if plan.orthographic else 1.0) * plan.bokeh.filter_width
 
 
+# Memos of their arguments alone, this one and those below: a picture asks for the same again and
+# again, and another client of the engine for the same as well. What they return does not change.
 @lru_cache(maxsize=4)
 def _opening(appearance, fresnel):
     """Return the layers of the opening; `fresnel`: Fresnel number of a disc of one pixel radius."""
@@ -289,22 +286,26 @@ def _mask(appearance, size, number):
     return light.reshape(size, size, -1)
 
 
+# Memo: see `_opening`.
 @lru_cache(maxsize=4)
 def _lens_rows(lens, focus_distance):
     return rows_of_lens(lens.profile(), focus_distance, lens.settings.f_number)
 
 
+# Memo: see `_opening`.
 @lru_cache(maxsize=4)
 def _profile(rows_and_opening, strength):
     rows, opening = rows_and_opening.parts
     return profile_layers(rows, opening, strength, _light_on_radii(_Arrays(opening)))
 
 
+# Memo: see `_opening`.
 @lru_cache(maxsize=4)
 def _light_on_radii(opening):
     return light_on_radii(*opening.parts)
 
 
+# Memo: see `_opening`.
 @lru_cache(maxsize=4)
 def _rims(rims, opening_and_profile, tangent):
     return splat_rims.light_left(rims, *opening_and_profile.parts, tangent)
@@ -323,6 +324,7 @@ def _add_tiles(plan, appearance, tangent, arrays, params):
     params["rows"] = (first, 1.0 / (last - first), soft * scale, settings.profile_strength)
 
 
+# Memo: see `_opening`.
 @lru_cache(maxsize=2)
 def _tiles(lens, focus_distance, tangent):
     """Return a lens' tiles at a focus, w of the first and last depth, and c0 over c at infinity."""
@@ -350,6 +352,7 @@ def _tiles(lens, focus_distance, tangent):
     return tiles, w_range, soft / abs(k0)
 
 
+# Memo: see `_opening`.
 @lru_cache(maxsize=2)
 def _beams(lens, focus, pupil, tangent, nearest):
     settings = lens.settings
@@ -362,6 +365,7 @@ def _beams(lens, focus, pupil, tangent, nearest):
     return splat_pupil.PupilBeams(tables, pupil, settings.f_number, tangent, nearest)
 
 
+# Memo: see `_opening`.
 @lru_cache(maxsize=2)
 def _tiles_left(tiles_and_opening, even):
     if even:

@@ -259,7 +259,7 @@ class BokehStage:
         rays = None
         if visibility.counts.method == "SPLAT":
             rays = (visibility.layers, visibility.opacity, visibility.states, visibility.parameters)
-        look = make_look(self._plan, self._field)
+        look = make_look(self._plan, self._buffers.look_textures, self._field)
         self.report = (*look.report, *self._told_of_merging())
         with target.bind():
             splat.splat(

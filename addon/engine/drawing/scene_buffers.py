@@ -10,7 +10,7 @@ import numpy as np
 
 from ...device.census import size_of_texture
 from ...device.geometry import MeshBuffers
-from ...device.textures import image_texture, texture_2d
+from ...device.textures import TextureCache, image_texture, texture_2d
 from ...device.uniforms import uniform_buffer
 from ...levels.making.graded_levels import MergeTree
 from ...passes.surface import environment, environment_bake, light_table
@@ -23,6 +23,11 @@ INSTANCES_PER_ROW = 256
 class SceneBuffers:
     """Device-side copies of a scene's content, updated by difference.
 
+    Parameters
+    ----------
+    look_textures : TextureCache or None
+        Of the session; None: its own.
+
     Attributes
     ----------
     meshes : dict of int to MeshBuffers
@@ -33,6 +38,8 @@ class SceneBuffers:
         Grows when levels are added.
     shapes : ShapeCache
         Meshes as occluders of highlights.
+    look_textures : TextureCache
+        Textures of the appearance of bokeh discs.
     expected_pairs : int
         Pairs of highlight and cluster of triangles in the last frame; see
         `engine.visibility.stage`.
@@ -47,7 +54,8 @@ class SceneBuffers:
         and of environments that were prefiltered so far.
     """
 
-    def __init__(self):
+    def __init__(self, look_textures=None):
+        self.look_textures = TextureCache() if look_textures is None else look_textures
         self.meshes = {}
         self.images = {}
         self.levels = {}

@@ -154,6 +154,7 @@ def _amplitude(iris, samples):
     return iris_mask(iris.amplitude(), samples)
 
 
+# Memo of the iris alone.
 @lru_cache(maxsize=2)
 def _spectrum(iris):
     # Single precision: its rounding is far below the ripple of the window.

@@ -13,6 +13,7 @@ the opening. Arrays of masks have row 0 at the bottom (y = -1 side), so that ind
 grow together.
 """
 
+import hashlib
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -115,7 +116,7 @@ class BladedIris:
 
 @dataclass(frozen=True, eq=False)
 class PictureIris:
-    """An opening given by a grey picture.
+    """An opening given by a grey picture; two of the same picture and rotation are equal.
 
     Parameters
     ----------
@@ -145,6 +146,19 @@ class PictureIris:
         if not np.isfinite(self.rotation):
             raise InputError(f"iris rotation is {self.rotation:g}; it must be a finite angle")
         object.__setattr__(self, "_grey", picture / picture.max())
+
+    def __eq__(self, other):
+        """Whether both are the same opening; each picture is looked through once only."""
+        return isinstance(other, PictureIris) and self._identity == other._identity
+
+    def __hash__(self):
+        """Hash what `__eq__` compares."""
+        return hash(self._identity)
+
+    @cached_property
+    def _identity(self):
+        picture = np.ascontiguousarray(self._grey)
+        return picture.shape, self.rotation, hashlib.sha256(picture).digest()
 
     @property
     def area(self):

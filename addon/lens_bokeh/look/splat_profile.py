@@ -221,6 +221,7 @@ def _finer(light):
     return light
 
 
+# Memo of its arguments alone: one for each layer.
 @lru_cache(maxsize=16)
 def _blur(width, reach):
     """Matrix that blurs a radial function on rings, as it is read at the texels of a layer."""

@@ -171,6 +171,7 @@ class PupilBeams:
         return float(max(widths))
 
 
+# Memo of the count alone, which is a constant.
 @cache
 def _refining(count):
     """Matrix of a spline from a grid's rays to the middles of `RAYS` cells."""

@@ -121,6 +121,7 @@ def draw_tile(grid, size, span):
     return tile + mirrored, bounds
 
 
+# Memo of its arguments alone, which are constants: one for each layer.
 @cache
 def blur_matrix(width, size, span, to_size, to_span):
     """Return the matrix that blurs the texels of a tile along an axis and samples them at others.

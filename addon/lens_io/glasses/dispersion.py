@@ -14,6 +14,7 @@ DEFAULT_GLASS = "N-BK7"
 _COUNT = 40
 
 
+# Memo of the name alone, and of the catalogue that comes with Aplanat.
 @lru_cache(maxsize=64)
 def glass_dispersion(name=DEFAULT_GLASS):
     """Return the dispersion of a single lens of a glass.
@@ -37,6 +38,7 @@ def glass_dispersion(name=DEFAULT_GLASS):
     return dispersion_of_glass(catalog_glass(name))
 
 
+# Memo of the lens alone: rays are traced for it.
 @lru_cache(maxsize=64)
 def lens_dispersion(configuration):
     """Return the dispersion of the thin lens whose focus moves over wavelength as a lens' does.

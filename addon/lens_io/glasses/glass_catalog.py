@@ -52,6 +52,7 @@ def catalog_names():
     return tuple(sorted(glass.name for glass in _glasses().values()))
 
 
+# Memo of the text alone, and of the catalogue that comes with Aplanat.
 @lru_cache(maxsize=256)
 def near_names(name):
     """Return up to three names of the catalogue that resemble a text, the nearest first.
@@ -73,6 +74,7 @@ def near_names(name):
     return tuple(known[near].name for near in get_close_matches(name.upper(), known, 3, 0.6))
 
 
+# Memo of a file that comes with Aplanat.
 @cache
 def _glasses():
     listed = json.loads(CATALOG_FILE.read_text(encoding="utf-8"))["glasses"]

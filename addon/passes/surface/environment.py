@@ -133,6 +133,7 @@ def _halve(pixels):
     return (sums / counts[..., None]).astype(np.float32)
 
 
+# Memo of its arguments alone: the same table for every scene.
 @cache
 def ggx_table(size=32, samples=512):
     """Tabulate the reflectance of a GGX lobe under white surroundings (directional albedo).

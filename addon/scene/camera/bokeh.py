@@ -1,7 +1,6 @@
 """Reads the bokeh settings of a Blender camera into `BokehSettings`."""
 
 import math
-import threading
 from functools import lru_cache
 
 import numpy as np
@@ -10,13 +9,12 @@ from ...errors import AplanatError, InputError
 from ...lens_bokeh.look.appearance import Appearance, Diffraction
 from ...lens_bokeh.look.distortion import fitted_coefficient
 from ...lens_bokeh.look.grain import Grain
-from ...lens_bokeh.look.iris_mask import BladedIris, PictureIris
+from ...lens_bokeh.look.iris_mask import BladedIris
 from ...lens_bokeh.look.onion import OnionRings
 from ...lens_bokeh.look.vignetting_model import cat_eye
 from ...optics.rays.aberrations import field_curves
 from ...sampling.spectrum import rgb_weights, spectrum_wavelengths
 from ...snapshot.camera import BokehSettings
-from ..images.images import ImageReader
 
 # Least number of blades; with fewer the iris is round, as in Cycles.
 _FEWEST_BLADES = 3
@@ -31,13 +29,9 @@ _WIDEST_FIELD = 2.0
 # Bounds of K of the division model: a barrel shows at most twice the frame, a pincushion needs at
 # most twice the pixels.
 _STRONGEST = (-0.5, 0.25)
-# Largest side of an iris image, in texels: finer than the table of the largest disc.
-_LARGEST_IRIS = 1024
-
-_iris_lock = threading.Lock()
 
 
-def read_bokeh(camera, real_lens, corner):
+def read_bokeh(camera, real_lens, corner, irises):
     """Return a camera's bokeh settings, and warnings about those that cannot be met.
 
     Parameters
@@ -48,6 +42,8 @@ def read_bokeh(camera, real_lens, corner):
         As read from the same camera.
     corner : float
         Tangent of the field angle of the picture's corner; see `corner_tangent`.
+    irises : IrisReader
+        Reads the picture of an iris.
 
     Returns
     -------
@@ -58,14 +54,14 @@ def read_bokeh(camera, real_lens, corner):
     """
     if not camera.aplanat.bokeh.use:
         return None, ()
-    return describe_bokeh(camera, real_lens, corner)
+    return describe_bokeh(camera, real_lens, corner, irises)
 
 
-def describe_bokeh(camera, real_lens, corner):
+def describe_bokeh(camera, real_lens, corner, irises):
     """Return what `read_bokeh` does, also where it is switched off."""
     settings = camera.aplanat.bokeh
     shaping = real_lens if real_lens and real_lens.shapes_bokeh else None
-    appearance, problems = _read_appearance(camera, shaping, corner)
+    appearance, problems = _read_appearance(camera, shaping, corner, irises)
     if shaping is None and real_lens and camera.dof.use_dof:
         problems += (
             f"lens '{real_lens.prescription.name}' shapes no bokeh, a thin lens does: it has"
@@ -123,9 +119,9 @@ def corner_tangent(camera, scene):
     return float(np.linalg.norm(corners[:, :2], axis=1).max())
 
 
-def _read_appearance(camera, real_lens, corner):
+def _read_appearance(camera, real_lens, corner, irises):
     settings, dof = camera.aplanat.bokeh, camera.dof
-    iris, problems = _read_iris(settings, dof)
+    iris, problems = _read_iris(settings, dof, irises)
     rims = ()
     if settings.vignetting == "ANALYTIC":
         if corner > 0.0:
@@ -166,6 +162,7 @@ def _read_appearance(camera, real_lens, corner):
     return appearance, problems
 
 
+# Memo of nothing but constants.
 @lru_cache(maxsize=1)
 def _ringing_spectrum():
     wavelengths = spectrum_wavelengths(_RINGING_WAVELENGTHS)
@@ -173,12 +170,12 @@ def _ringing_spectrum():
     return tuple(wavelengths.tolist()), tuple(map(tuple, weights.tolist()))
 
 
-def _read_iris(settings, dof):
+def _read_iris(settings, dof, irises):
     problems = ()
     if settings.iris_image is not None:
         image = settings.iris_image.original
         try:
-            picture = _picture_iris(image, dof.aperture_rotation)
+            picture = irises.read(image, dof.aperture_rotation)
         except InputError as error:
             problems = (f"iris image '{image.name}': {error}; the blades are drawn instead",)
         else:
@@ -188,56 +185,6 @@ def _read_iris(settings, dof):
     rotation = dof.aperture_rotation if blades else 0.0
     curvature = settings.blade_curvature if blades else 0.0
     return BladedIris(blades, curvature, rotation), problems
-
-
-def _picture_iris(image, rotation):
-    # The image readers are shared by viewports, panels and the render thread.
-    with _iris_lock:
-        reader = _image_reader(image.session_uid)
-        reader.begin()
-        use = reader.read(image)
-        if use is None:
-            raise InputError("it cannot be read; choose another file")
-        return _iris_of_pixels(_Pixels(use.uid, reader.images[use.uid]), rotation)
-
-
-@lru_cache(maxsize=16)
-def _image_reader(_session_uid):
-    """Return the reader of one image, which notices when the image changes."""
-    return ImageReader()
-
-
-class _Pixels:
-    """Pixels of an image, known by their number."""
-
-    def __init__(self, uid, image):
-        self.uid = uid
-        self.image = image
-
-    def __eq__(self, other):
-        return self.uid == other.uid
-
-    def __hash__(self):
-        return self.uid
-
-
-# Irises of pictures are compared by identity, so that a picture is not compared in every frame.
-@lru_cache(maxsize=16)
-def _iris_of_pixels(pixels, rotation):
-    picture = pixels.image.linear_colors().astype(np.float64)
-    return PictureIris(_reduced(picture.mean(axis=-1)), rotation)
-
-
-def _reduced(picture):
-    """Return a picture of no more than `_LARGEST_IRIS` texels a side, by means over squares."""
-    step = math.ceil(max(picture.shape) / _LARGEST_IRIS)
-    if step == 1:
-        return picture
-    height, width = (-(-length // step) * step for length in picture.shape)
-    # The margin that is added is opaque, as everything outside of the picture is.
-    padded = np.zeros((height, width))
-    padded[: picture.shape[0], : picture.shape[1]] = picture
-    return padded.reshape(height // step, step, width // step, step).mean(axis=(1, 3))
 
 
 def _read_distortion(settings, real_lens, corner):
@@ -265,6 +212,7 @@ def _read_distortion(settings, real_lens, corner):
     return drawn, problems
 
 
+# Memo of its arguments alone: chief rays are traced for it.
 @lru_cache(maxsize=64)
 def _distortion_of_lens(configuration, projection, corner):
     """Return K of a lens per square of a field angle's tangent."""

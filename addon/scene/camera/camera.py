@@ -1,19 +1,44 @@
 """Reads Blender's camera into a `Camera`: projection, thin lens, real lens, aberrations."""
 
 import math
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ...errors import CameraError, FocusError
+from ...lens_io.lens_shelf import LensShelf
 from ...sampling.iris import Iris
 from ...sampling.thin_lens import ThinLens, aperture_radius
 from ...snapshot.camera import Camera
 from .bokeh import corner_tangent, read_bokeh
 from .chromatic import read_chromatic
-from .lenses import read_real_lens
+from .irises import IrisReader
+from .lenses import read_real_lens, user_folder
 
 
-def read_camera(depsgraph, camera, film, view=None):
+def _library():
+    return LensShelf([user_folder()])
+
+
+@dataclass(frozen=True, eq=False)
+class CameraSources:
+    """Where the lens and the iris image of a camera are looked up.
+
+    Without arguments, an empty one: everything is read from files.
+
+    Parameters
+    ----------
+    shelf : LensShelf
+        Real lenses by id.
+    irises : IrisReader
+        Pictures of irises.
+    """
+
+    shelf: LensShelf = field(default_factory=_library)
+    irises: IrisReader = field(default_factory=IrisReader)
+
+
+def read_camera(depsgraph, camera, film, view=None, sources=None):
     """Return the scene's camera as Blender frames it.
 
     Parameters
@@ -23,6 +48,8 @@ def read_camera(depsgraph, camera, film, view=None):
     film : Film
     view : engine.views.View or None
         The view of a stereoscopic render, which has its own camera, or place and shift of one.
+    sources : CameraSources or None
+        None: lens and iris image are read anew.
 
     Returns
     -------
@@ -33,6 +60,29 @@ def read_camera(depsgraph, camera, film, view=None):
     CameraError
         If there is no camera or it is panoramic or custom.
     """
+    camera, world, projection = _read_pose(depsgraph, camera, film, view)
+    return Camera(
+        view=np.array(world.inverted(), np.float64),
+        projection=projection,
+        orthographic=camera.data.type == "ORTHO",
+        **read_optics(depsgraph, camera, world, sources),
+    )
+
+
+def read_pose(depsgraph, camera, film, view=None):
+    """Return view and projection of the scene's camera, without its lens.
+
+    Returns
+    -------
+    view, projection : ndarray of shape (4, 4)
+        As in `Camera`.
+    """
+    _, world, projection = _read_pose(depsgraph, camera, film, view)
+    return np.array(world.inverted(), np.float64), projection
+
+
+def _read_pose(depsgraph, camera, film, view):
+    """Return the evaluated camera, its place and its projection."""
     if camera is None:
         raise CameraError("the scene has no camera; add one or set Scene > Camera")
     if view is not None:
@@ -53,15 +103,10 @@ def read_camera(depsgraph, camera, film, view=None):
     else:
         world = view.place(camera).normalized()
         _shift(projection, data, render, film, view.shift_x(camera) - data.shift_x)
-    return Camera(
-        view=np.array(world.inverted(), np.float64),
-        projection=projection,
-        orthographic=data.type == "ORTHO",
-        **read_optics(depsgraph, camera, world),
-    )
+    return camera, world, projection
 
 
-def read_optics(depsgraph, camera, world=None):
+def read_optics(depsgraph, camera, world=None, sources=None):
     """Read a camera's lens settings, for the final render and the viewport alike.
 
     Parameters
@@ -71,6 +116,8 @@ def read_optics(depsgraph, camera, world=None):
         Evaluated.
     world : mathutils.Matrix or None
         As `focus_distance` takes it.
+    sources : CameraSources or None
+        As `read_camera` takes it.
 
     Returns
     -------
@@ -79,12 +126,13 @@ def read_optics(depsgraph, camera, world=None):
         warnings about settings that cannot be met, as lines that name the camera.
     """
     data = camera.data
-    real_lens, of_lens = read_real_lens(data)
+    sources = sources or CameraSources()
+    real_lens, of_lens = read_real_lens(data, sources.shelf)
     lens, of_focus = read_lens(depsgraph, camera, real_lens, world)
     focus = lens.focus_distance if lens else None
     chromatic, of_chromatic = read_chromatic(data, real_lens, focus)
     corner = corner_tangent(data, depsgraph.scene)
-    bokeh, of_bokeh = read_bokeh(data, real_lens, corner)
+    bokeh, of_bokeh = read_bokeh(data, real_lens, corner, sources.irises)
     problems = (*of_lens, *of_focus, *of_chromatic, *of_bokeh)
     return {
         "lens": lens,

@@ -94,11 +94,13 @@ def read_field_map(settings, which):
     return _field_map(*atoms, *curves)
 
 
+# Memos of their arguments alone: what is equal is one object, so that it is compared at once.
 _field_map = lru_cache(maxsize=64)(FieldMap)
 _aberration = lru_cache(maxsize=16)(ChromaticAberration)
 _problems = lru_cache(maxsize=64)(ChromaticAberration.problems)
 
 
+# Memo of the weights alone; see above.
 @lru_cache(maxsize=16)
 def _equalizer(weights):
     wavelengths = np.linspace(*EQUALIZER_RANGE_NM, SAMPLES)

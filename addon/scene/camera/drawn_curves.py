@@ -30,6 +30,7 @@ CURVE_NAMES = (*MAP_CURVES.values(), EQUALIZER)
 SAMPLES = CURVE_POINTS
 _MOST_KEPT = 128
 
+# A memo by the points of a curve, of which its values are a function.
 _kept = OrderedDict()
 # Viewport and final render may extract at the same time.
 _lock = Lock()

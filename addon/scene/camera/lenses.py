@@ -1,28 +1,14 @@
 """The real lens that a Blender camera names: looked up in the library, at its zoom and f-number."""
 
-from functools import cache
 from pathlib import Path
 
 import bpy
 
-from ...lens_io.lens_shelf import LensShelf
 from ...snapshot.camera import LensSettings
 
 _EXTENSIONS = "bl_ext."
 
 
-@cache
-def shelf():
-    """Return this process' library of lenses.
-
-    Returns
-    -------
-    LensShelf
-    """
-    return LensShelf([user_folder()])
-
-
-@cache
 def user_folder():
     """Return the folder of the user's own lens files; it may not be there yet.
 
@@ -40,12 +26,14 @@ def user_folder():
     return Path(bpy.utils.user_resource("DATAFILES", path="aplanat/lenses"))
 
 
-def read_real_lens(camera):
+def read_real_lens(camera, shelf):
     """Return the real lens of a camera, and warnings about settings that cannot be met.
 
     Parameters
     ----------
     camera : bpy.types.Camera
+    shelf : LensShelf
+        The library that is looked into.
 
     Returns
     -------
@@ -57,9 +45,9 @@ def read_real_lens(camera):
     wanted = camera.aplanat
     if not wanted.lens:
         return None, ()
-    found = shelf().find(wanted.lens)
+    found = shelf.find(wanted.lens)
     if found is None:
-        near = shelf().near_ids(wanted.lens)
+        near = shelf.near_ids(wanted.lens)
         hint = f" (near names: {', '.join(near)})" if near else ""
         return None, (
             f"lens '{wanted.lens}' is not in the library{hint}; import its file or choose another"

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...snapshot.content import next_uid
-from ..camera.camera import read_camera
+from ..camera.camera import read_pose
 from .instances import place
 from .meshes import read_moved_positions
 
@@ -49,7 +49,7 @@ def add_motion(snapshot, sources, depsgraph, frame_set, view=None):
     frame_set : callable
         ``frame_set(frame, subframe)``, such as a render engine's.
     view : engine.views.View or None
-        As `read_camera` takes it.
+        As `read_pose` takes it.
 
     Returns
     -------
@@ -71,8 +71,7 @@ def add_motion(snapshot, sources, depsgraph, frame_set, view=None):
                 " finite; it stands still in the Vector pass"
                 for name in lost
             ]
-            seen_from = read_camera(depsgraph, camera, snapshot.film, view)
-            poses.append((world, moved, (seen_from.view, seen_from.projection)))
+            poses.append((world, moved, read_pose(depsgraph, camera, snapshot.film, view)))
     finally:
         frame_set(frame, subframe)
     (world_before, moved_before, camera_before), (world_after, moved_after, camera_after) = poses

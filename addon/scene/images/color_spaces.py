@@ -35,6 +35,7 @@ def luminance_weights():
     return _luminance_weights(working_space())
 
 
+# Memo of the space alone: Blender's configuration is that of the process.
 @cache
 def _luminance_weights(space):
     if space == REC709:
@@ -48,6 +49,7 @@ def _luminance_weights(space):
     return tuple(float(w) for w in weights / weights.sum())
 
 
+# Memo of the name alone: what comes with this Blender.
 @cache
 def bundled_module(name):
     """Import one of the packages that come with Blender.
@@ -82,6 +84,7 @@ def bundled_module(name):
         sys.path.remove(folder)
 
 
+# Memo of the two names alone: Blender's configuration is that of the process.
 @cache
 def _processor(source, target):
     import bpy

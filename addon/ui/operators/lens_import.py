@@ -6,9 +6,10 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
+from ...engine.shared_resources import shelf
 from ...errors import AplanatError
 from ...lens_io import user_lenses
-from ...scene.camera.lenses import shelf, user_folder
+from ...scene.camera.lenses import user_folder
 from .lens_operators import camera_of
 
 # How messages of the importers name an option, and how the side panel of the dialog does.

@@ -5,10 +5,11 @@ import math
 import bpy
 from bpy.props import BoolProperty, StringProperty
 
+from ...engine.shared_resources import real_lens_of, shelf
 from ...errors import AplanatError
 from ...lens_io import user_lenses
 from ...optics.lens_facts import lens_facts
-from ...scene.camera.lenses import read_real_lens, shelf, user_folder
+from ...scene.camera.lenses import user_folder
 from ..jobs import background
 from .text_editor import show_text
 
@@ -72,7 +73,7 @@ class _LensOperator(CameraOperator):
         """Whether the camera has a lens that can be used."""
         if not super().poll(context):
             return False
-        lens, _ = read_real_lens(camera_of(context))
+        lens = real_lens_of(camera_of(context))
         if lens is None:
             cls.poll_message_set("The camera has no real lens that can be used")
             return False
@@ -108,7 +109,7 @@ class APLANAT_OT_use_focal_length(_LensOperator, bpy.types.Operator):
     def execute(self, context):
         """Set the focal length."""
         camera = camera_of(context)
-        lens, _ = read_real_lens(camera)
+        lens = real_lens_of(camera)
         camera.lens = lens_facts(lens.prescription, lens.label).focal_length
         self.report({"INFO"}, f"The camera's focal length is {camera.lens:.4g} mm")
         return {"FINISHED"}
@@ -127,7 +128,7 @@ class APLANAT_OT_match_zoom(_LensOperator, bpy.types.Operator):
         """Whether the lens is a zoom lens."""
         if not super().poll(context):
             return False
-        lens, _ = read_real_lens(camera_of(context))
+        lens = real_lens_of(camera_of(context))
         if lens.label is None:
             cls.poll_message_set("The lens is not a zoom lens")
             return False
@@ -136,7 +137,7 @@ class APLANAT_OT_match_zoom(_LensOperator, bpy.types.Operator):
     def execute(self, context):
         """Set the zoom position."""
         camera = camera_of(context)
-        lens, _ = read_real_lens(camera)
+        lens = real_lens_of(camera)
         prescription = lens.prescription
         camera.aplanat.zoom_label = min(
             prescription.labels,
@@ -158,7 +159,7 @@ class APLANAT_OT_use_iris(_LensOperator, bpy.types.Operator):
     def execute(self, context):
         """Set blades and rotation."""
         camera = camera_of(context)
-        lens, _ = read_real_lens(camera)
+        lens = real_lens_of(camera)
         iris = lens.prescription.diaphragm
         dof = camera.dof
         dof.aperture_blades = min(iris.blades, _MOST_BLADES)

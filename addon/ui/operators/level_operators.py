@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...levels.level_store import level_store
+from ...engine.shared_resources import resources
 
 
 class APLANAT_OT_rebuild_levels(bpy.types.Operator):
@@ -14,7 +14,7 @@ class APLANAT_OT_rebuild_levels(bpy.types.Operator):
 
     def execute(self, context):
         """Rebuild, and have every view drawn again."""
-        level_store().rebuild()
+        resources().levels.rebuild()
         for window in context.window_manager.windows:
             for area in window.screen.areas:
                 area.tag_redraw()

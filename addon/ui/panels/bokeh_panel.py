@@ -4,9 +4,8 @@ import math
 
 import bpy
 
-from ...engine import outcome
+from ...engine.shared_resources import real_lens_of, resources
 from ...scene.camera.bokeh import corner_tangent, describe_bokeh
-from ...scene.camera.lenses import read_real_lens
 from ..presets.bokeh_presets import APLANAT_PT_bokeh_presets
 from ..previews import bokeh_previews
 from .panels import EnginePanel
@@ -72,7 +71,7 @@ class APLANAT_CAMERA_PT_bokeh(_BokehPanel, bpy.types.Panel):
 
 
 def _draw_counts(column, scene, letters):
-    counts = outcome.last_highlights(scene)
+    counts = resources().notes.of(scene).counts
     if counts is None:
         return
     for i, line in enumerate(counts_as_lines(counts)):
@@ -85,7 +84,7 @@ def counts_as_lines(counts):
     Parameters
     ----------
     counts : dict of str to int
-        As `engine.outcome.last_highlights` returns it.
+        Of a `PictureNote`.
 
     Returns
     -------
@@ -122,11 +121,14 @@ def _draw_notes(column, context, letters):
     elif sampling.method == "REFERENCE" and not sampling.use_reference_bokeh:
         text = "The reference method samples highlights as everything else."
         draw_sentences(column, text, letters, icon="INFO")
-    lens, _ = read_real_lens(camera)
-    _, problems = describe_bokeh(camera, lens, corner_tangent(camera, context.scene))
+    _, problems = _described(camera, real_lens_of(camera), corner_tangent(camera, context.scene))
     # Warnings that only drawing finds are those of the last picture.
-    for problem in (*problems, *outcome.last_problems(context.scene)):
+    for problem in (*problems, *resources().notes.of(context.scene).problems):
         draw_alert(column, f"{problem[0].upper()}{problem[1:]}.", letters)
+
+
+def _described(camera, lens, tangent):
+    return describe_bokeh(camera, lens, tangent, resources().panels.sources.irises)
 
 
 class APLANAT_CAMERA_PT_bokeh_search(_BokehPanel, bpy.types.Panel):
@@ -162,7 +164,7 @@ class APLANAT_CAMERA_PT_bokeh_appearance(_BokehPanel, bpy.types.Panel):
         """Draw discs, and what shapes all of them."""
         settings, column = self.begin(context)
         camera = context.camera
-        lens, _ = read_real_lens(camera)
+        lens = real_lens_of(camera)
         if lens is not None and not lens.shapes_bokeh:
             lens = None
         self._draw_discs(context, column, lens)
@@ -182,7 +184,7 @@ class APLANAT_CAMERA_PT_bokeh_appearance(_BokehPanel, bpy.types.Panel):
     def _draw_discs(self, context, column, lens):
         camera = context.camera
         tangent = corner_tangent(camera, context.scene)
-        bokeh, _ = describe_bokeh(camera, lens, tangent)
+        bokeh, _ = _described(camera, lens, tangent)
         render = context.scene.render
         width = render.resolution_x * render.pixel_aspect_x
         height = render.resolution_y * render.pixel_aspect_y
@@ -278,7 +280,7 @@ class APLANAT_CAMERA_PT_bokeh_debug(_BokehPanel, bpy.types.Panel):
         column.prop(settings, "debug_view")
         if settings.debug_view != "VISIBILITY":
             return
-        numbers = outcome.last_fates(context.scene)
+        numbers = resources().notes.of(context.scene).fates
         legend = column.column(align=True)
         for fate, (text, icon) in LEGEND.items():
             row = legend.split(factor=0.75)

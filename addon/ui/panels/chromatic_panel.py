@@ -2,9 +2,9 @@
 
 import bpy
 
+from ...engine.shared_resources import real_lens_of
 from ...scene.camera.chromatic import describe_chromatic, read_field_map
 from ...scene.camera.drawn_curves import EQUALIZER, MAP_CURVES, find_mapping
-from ...scene.camera.lenses import read_real_lens
 from ..operators.chromatic_operators import APLANAT_OT_make_curves
 from ..presets.chromatic_presets import APLANAT_PT_chromatic_presets
 from ..previews import chromatic_previews
@@ -68,7 +68,7 @@ class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, bpy.types.Panel):
     def _draw_notes(self, context, column):
         camera = context.camera
         letters = letters_across(context)
-        lens, _ = read_real_lens(camera)
+        lens = real_lens_of(camera)
         dof = camera.dof
         # How far away an object is, only drawing tells.
         known = dof.use_dof and dof.focus_object is None and dof.focus_distance > 0.0

@@ -4,9 +4,9 @@ import math
 
 import bpy
 
+from ...engine.shared_resources import real_lens_of, shelf
 from ...optics.lens_facts import lens_facts
 from ...scene.camera.camera import sensor_diagonal
-from ...scene.camera.lenses import read_real_lens, shelf
 from ..jobs import background
 from ..operators.lens_import import APLANAT_OT_import_lens
 from ..operators.lens_operators import (
@@ -125,7 +125,7 @@ def _draw_findings(column, found, letters):
 
 
 def _draw_use(column, camera, letters):
-    lens, _ = read_real_lens(camera)
+    lens = real_lens_of(camera)
     settings = camera.aplanat
     facts = lens_facts(lens.prescription, lens.label)
     if lens.label is not None:
@@ -172,12 +172,12 @@ class APLANAT_CAMERA_PT_lens_bokeh(_LensPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context):
         """Whether the camera has a lens that can be used."""
-        return super().poll(context) and read_real_lens(context.camera)[0] is not None
+        return super().poll(context) and real_lens_of(context.camera) is not None
 
     def draw(self, context):
         """Draw the picture, which is made in the background."""
         camera = context.camera
-        lens, _ = read_real_lens(camera)
+        lens = real_lens_of(camera)
         column = self.layout.column(align=True)
         letters = letters_across(context)
         icon = lens_thumbnails.bokeh_icon_id(camera, lens)
@@ -203,12 +203,12 @@ class APLANAT_CAMERA_PT_lens_facts(_LensPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context):
         """Whether the camera has a lens that can be used."""
-        return super().poll(context) and read_real_lens(context.camera)[0] is not None
+        return super().poll(context) and real_lens_of(context.camera) is not None
 
     def draw(self, context):
         """Draw facts and warnings."""
         camera = context.camera
-        lens, _ = read_real_lens(camera)
+        lens = real_lens_of(camera)
         letters = letters_across(context)
         column = self.layout.column(align=True)
         for name, value in _facts(lens, camera, context.scene):
@@ -279,7 +279,7 @@ def _draw_clamp(panel, context):
     if context.engine not in EnginePanel.COMPAT_ENGINES:
         return
     camera = context.camera
-    lens, _ = read_real_lens(camera)
+    lens = real_lens_of(camera)
     if lens and lens.limits(camera.dof.aperture_fstop):
         panel.layout.label(text=f"The lens opens to f/{lens.f_number:.3g}", icon="INFO")
 

@@ -3,7 +3,7 @@
 import bpy
 
 from ...engine.render_engine import ENGINE_ID
-from ...levels.level_store import level_store
+from ...engine.shared_resources import resources
 from ..operators.level_operators import APLANAT_OT_rebuild_levels
 
 _GEOMETRY = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
@@ -51,7 +51,7 @@ class APLANAT_RENDER_PT_level_of_detail(EnginePanel, bpy.types.Panel):
         column.active = settings.use_levels
         column.prop(settings, "level_bias")
         column.prop(settings, "least_triangles")
-        store = level_store()
+        store = resources().levels
         done, total = store.progress
         if done < total:
             column.progress(factor=done / total, text=f"{done:,} of {total:,} triangles")

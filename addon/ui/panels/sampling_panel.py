@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...engine import outcome
+from ...engine.shared_resources import resources
 from ..presets.sampling_presets import APLANAT_PT_sampling_presets
 from .panels import EnginePanel
 from .sentences import draw_sentences, letters_across
@@ -22,7 +22,7 @@ class APLANAT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
         """Draw the method."""
         self.column().prop(context.scene.aplanat, "method")
         column = self.layout.column()
-        for line in sampling_as_lines(outcome.last_sampling(context.scene)):
+        for line in sampling_as_lines(resources().notes.of(context.scene).sampling):
             draw_sentences(column, line, letters_across(context), icon="INFO")
 
 
@@ -97,7 +97,7 @@ def sampling_as_lines(report):
     Parameters
     ----------
     report : SamplingReport or None
-        As `engine.outcome.last_sampling` returns it.
+        Of a `PictureNote`.
 
     Returns
     -------

@@ -48,6 +48,7 @@ def disc_icons(camera, appearance, corner):
     return tuple(collection[name].icon_id for name in names)
 
 
+# Memo of its arguments alone: cameras that look alike share their pictures.
 @lru_cache(maxsize=8)
 def disc_pictures(appearance, corner):
     """Draw discs in front of the focus, behind it, and behind it in the corner of the picture.
@@ -86,6 +87,7 @@ def disc_pictures(appearance, corner):
     return tuple(pictures)
 
 
+# Memo of its arguments alone: three discs have the same dust.
 @lru_cache(maxsize=8)
 def _speckles(grain, ratio, extent):
     """Return the transmittance of grain and dust, drawn once for all discs."""

@@ -14,6 +14,7 @@ _collection = None
 _shown = {}
 
 
+# Memo of the map alone, which is drawn anew at every redraw of the panel.
 @lru_cache(maxsize=16)
 def shown_range(field_map):
     """Return the lowest and the highest value in the pictures of a map."""

@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import EnumProperty, PointerProperty, StringProperty
 
-from ...scene.camera.lenses import shelf
+from ...engine.shared_resources import shelf
 from ..previews import lens_thumbnails
 from .bokeh_properties import APPEARANCE_NAMES, AplanatBokehSettings
 from .chromatic_properties import AplanatChromaticSettings, values_as_dict, values_from_dict

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from addon.engine import outcome
+from addon.engine.shared_resources import listen
 from benchmarks.referees.picture_metrics import compare, read_picture
 from benchmarks.referees.shared_scenes import shared_references, shared_scene
 
@@ -71,7 +71,7 @@ def _measure(bpy, case):
     scene.render.filter_size = 1.0
     if case.kind == "pinhole":
         scene.camera.data.dof.aperture_fstop = 1e5
-    with outcome.listen(keep_pictures=True) as heard:
+    with listen(keep_pictures=True) as heard:
         bpy.ops.render.render()
     assert heard.error is None
     picture = heard.layers[0].passes["Combined"].pixels[::-1, :, :3]

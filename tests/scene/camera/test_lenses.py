@@ -3,9 +3,8 @@
 import pytest
 
 from addon.lens_io.lens_shelf import LensShelf
-from addon.scene.camera import lenses
 from addon.scene.camera.camera import read_camera, sensor_diagonal
-from addon.scene.camera.lenses import read_real_lens, shelf, user_folder
+from addon.scene.camera.lenses import read_real_lens, user_folder
 from addon.scene.extract import SceneExtractor
 from addon.snapshot.changes import Change, compare, same_camera
 from addon.snapshot.film import Film
@@ -120,11 +119,10 @@ def test_a_lens_that_is_not_there_is_told_and_kept(camera, aplanat_bpy):
     assert camera.aplanat.lens == "tessar-50mm-f28"
 
 
-def test_a_broken_lens_is_told_with_its_error(camera, aplanat_bpy, tmp_path, monkeypatch):
+def test_a_broken_lens_is_told_with_its_error(camera, tmp_path):
     (tmp_path / "broken.toml").write_text("format = 1")
-    monkeypatch.setattr(lenses, "shelf", lambda: LensShelf([tmp_path]))
     camera.aplanat.lens = "broken"
-    lens, problems = read_real_lens(camera)
+    lens, problems = read_real_lens(camera, LensShelf([tmp_path]))
     assert lens is None
     assert "E03" in problems[0] and "thin lens" in problems[0]
 
@@ -143,7 +141,6 @@ def test_an_orthographic_camera_has_no_real_lens(camera, aplanat_bpy):
 def test_the_users_folder_is_not_in_the_checkout(aplanat_bpy):
     assert user_folder().is_absolute()
     assert user_folder().parts[-2:] == ("aplanat", "lenses")
-    assert shelf() is shelf()
 
 
 @pytest.mark.parametrize(

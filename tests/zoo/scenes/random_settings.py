@@ -2,8 +2,8 @@
 
 import math
 
+from addon.engine.shared_resources import shelf
 from addon.lens_io.glasses.glass_catalog import catalog_names
-from addon.scene.camera.lenses import shelf
 
 # What only costs time where it is large: how far a check goes. Nothing else of the picture depends
 # on how many samples there are, but for the noise. Errors below the least take thousands.

@@ -166,6 +166,7 @@ def _successor(name):
     return maker, nd, vd, successor, values
 
 
+# Memo of a file that comes with Aplanat.
 @cache
 def _catalog_values():
     # nd and vd of every glass of the catalogue.
@@ -174,16 +175,19 @@ def _catalog_values():
     return {name: (float(d), float((d - 1.0) / (f - c))) for name, (d, f, c) in indices.items()}
 
 
+# Memo of a file that comes with Aplanat.
 @cache
 def _old_glasses():
     return json.loads(OLD_GLASSES_FILE.read_text(encoding="utf-8"))["glasses"]
 
 
+# Memo of a file that comes with Aplanat.
 @cache
 def _maker_glasses():
     return json.loads(MAKERS_FILE.read_text(encoding="utf-8"))["makers"]
 
 
+# Memo of the maker alone, and of files that come with Aplanat.
 @cache
 def _names_without_hyphens(maker):
     names = catalog_names() if maker == CATALOG_MAKER else _maker_glasses().get(maker, ())

@@ -1,0 +1,68 @@
+"""Counts and warnings of the last picture of each scene, for the panels."""
+
+import threading
+from collections import OrderedDict
+from dataclasses import dataclass, field, replace
+
+_MOST_SCENES = 64
+
+
+@dataclass(frozen=True)
+class PictureNote:
+    """Counts and warnings of the last picture of a scene.
+
+    Parameters
+    ----------
+    counts : dict of str to int or None
+        As `HighlightCounts` has them; None where no highlights were searched.
+    problems : tuple of str
+        Warnings, as in `FrameRenderer.report`.
+    fates : dict of str to int
+        Numbers of highlight sources, as in `FrameRenderer.fates`.
+    sampling : SamplingReport or None
+        Samples and error that were reached.
+    """
+
+    counts: dict | None = None
+    problems: tuple = ()
+    fates: dict = field(default_factory=dict)
+    sampling: object = None
+
+
+class PictureNotes:
+    """`PictureNote` by scene; safe to use from the main thread and the render thread."""
+
+    def __init__(self):
+        self._notes = OrderedDict()
+        self._lock = threading.Lock()
+
+    def note(self, scene, renderer):
+        """Store the counts and warnings of a picture, finished or not.
+
+        Parameters
+        ----------
+        scene : bpy.types.Scene
+        renderer : FrameRenderer
+        """
+        counts = dict(vars(renderer.highlights)) if renderer.highlights else None
+        self.change(
+            scene,
+            counts=counts,
+            problems=renderer.report,
+            fates=dict(renderer.fates),
+            sampling=renderer.sampling,
+        )
+
+    def change(self, scene, **values):
+        """Replace fields of the `PictureNote` of a scene."""
+        number = scene.original.session_uid
+        with self._lock:
+            self._notes[number] = replace(self._notes.get(number, PictureNote()), **values)
+            self._notes.move_to_end(number)
+            while len(self._notes) > _MOST_SCENES:
+                self._notes.popitem(last=False)
+
+    def of(self, scene):
+        """Return the `PictureNote` of a scene."""
+        with self._lock:
+            return self._notes.get(scene.original.session_uid, PictureNote())

@@ -1,0 +1,131 @@
+"""The state of one client of the engine between its pictures: readers, buffers, outcome, reports.
+
+A final render has a session from its first frame to its last, a command for all that it renders.
+3D views that show the same objects have one in common, and so have the panels. State that several
+sessions share is in `shared_resources`, in objects that are safe to use from several threads.
+"""
+
+import threading
+import weakref
+from contextlib import contextmanager
+
+from ..device import keeping
+from ..device.textures import TextureCache
+from ..scene.camera.camera import CameraSources
+from ..scene.camera.irises import IrisReader
+from ..scene.extract import SceneExtractor
+from .drawing.scene_buffers import SceneBuffers
+from .outcome import RenderOutcome
+from .report import without_count
+
+
+class RenderSession:
+    """Readers, buffers, outcome and reports of one client; used by one thread at a time.
+
+    A client makes the parts that it needs: a final render an extractor for each view layer, a 3D
+    view one for as long as it is shown, and a client that draws a stored capture none.
+
+    Parameters
+    ----------
+    shared : SharedResources
+
+    Attributes
+    ----------
+    outcome : RenderOutcome
+        Of the render in progress, or of the last one.
+    sources : CameraSources
+        The shared library of lenses, and iris images of its own.
+    look_textures : TextureCache
+        Textures of the appearance of bokeh discs, kept for the next picture.
+    """
+
+    def __init__(self, shared):
+        self.outcome = RenderOutcome()
+        self.sources = CameraSources(shared.lenses, IrisReader())
+        self.look_textures = TextureCache()
+        self._levels, self._notes = shared.levels, shared.notes
+        self._reported = set()
+        self._handles = weakref.WeakSet()
+        self._lock = threading.Lock()
+        self._uses, self._closed = 0, False
+
+    def __enter__(self):
+        """Return the session, which the end of the `with` block closes."""
+        return self
+
+    def __exit__(self, *exception):
+        """Close."""
+        self.close()
+
+    def extractor(self, space=None, largest_image=None, in_main_thread=None):
+        """Return a new `SceneExtractor`, for one depsgraph; the arguments are its own."""
+        return SceneExtractor(space, largest_image, in_main_thread, self.sources)
+
+    def buffers(self):
+        """Return new `SceneBuffers`, for the content of one extractor."""
+        return SceneBuffers(self.look_textures)
+
+    def open_levels(self):
+        """Return a new `LevelHandle`; the session closes it if nobody else does."""
+        handle = self._levels.open()
+        self._handles.add(handle)
+        return handle
+
+    def begin_report(self):
+        """Clear the list of reported warnings, for the next render."""
+        self._reported.clear()
+
+    def report(self, lines):
+        """Add warnings to the outcome; return those that this render has not reported yet.
+
+        Parameters
+        ----------
+        lines : sequence of str
+            As `report.frame_report` returns them. Lines that differ only in their count of copies
+            are the same warning.
+
+        Returns
+        -------
+        list of str
+        """
+        self.outcome.note(lines)
+        new = []
+        for line in lines:
+            words = without_count(line)
+            if words not in self._reported:
+                self._reported.add(words)
+                new.append(line)
+        return new
+
+    def note_picture(self, scene, renderer):
+        """Store counts and warnings of a picture for the panels; see `PictureNotes.note`."""
+        self._notes.note(scene, renderer)
+
+    @contextmanager
+    def in_use(self):
+        """Delay `close` until the end of a `with` block."""
+        with self._lock:
+            self._uses += 1
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._uses -= 1
+                ended = self._closed and not self._uses
+            if ended:
+                self._release()
+
+    def close(self):
+        """Close level handles and drop textures; the garbage collector does the same."""
+        with self._lock:
+            self._closed = True
+            used = self._uses
+        if not used:
+            self._release()
+
+    def _release(self):
+        for handle in list(self._handles):
+            handle.close()
+        self.look_textures.clear()
+        # Works in the thread that draws only; Blender's main thread does it again when it is idle.
+        keeping.let_go()
