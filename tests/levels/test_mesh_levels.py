@@ -245,6 +245,22 @@ def test_material_slots_stay_sorted_and_keep_their_share():
         assert level.slots[0][2] == pytest.approx(len(level.triangles) / 2, rel=0.15)
 
 
+@pytest.mark.parametrize("count", [19, 40])
+def test_materials_that_change_from_face_to_face_keep_their_shares(count):
+    # Too many borders to hold: what the levels that there are show of each is what is there.
+    positions, triangles, _ = grid(count, lambda u, v: np.stack([u, v, 0.0 * u], 1))
+    slot_of = np.tile(np.arange(len(triangles) // 2) % 3, 2)
+    numbers = np.bincount(slot_of)
+    firsts = np.cumsum(numbers) - numbers
+    slots = tuple((k, int(firsts[k]), int(numbers[k])) for k in range(3))
+    mesh = mesh_of(positions, triangles[np.argsort(slot_of, kind="stable")], slots)
+    expected = [areas(mesh)[first : first + count].sum() for _, first, count in slots]
+    assert len(simplify(mesh_of(positions, triangles), 256)[0]) >= 1
+    for level in simplify(mesh, 256)[0]:
+        found = [areas(level)[first : first + count].sum() for _, first, count in level.slots]
+        np.testing.assert_allclose(found, expected, rtol=3.1e-3)
+
+
 def test_an_open_sheet_keeps_its_outline():
     positions, triangles, uv = grid(40, lambda u, v: np.stack([u, v, 0.02 * np.sin(9 * u)], 1))
     mesh = mesh_of(positions, triangles, **{"uv:": uv})

@@ -70,6 +70,31 @@ def seam_edges(mesh, places):
     return _pairs(found)
 
 
+def materials_meet(mesh, places):
+    """Whether any edge lies between triangles of two materials.
+
+    Parameters
+    ----------
+    mesh : MeshSnapshot
+    places : ndarray of shape (V,)
+        Of its vertices.
+
+    Returns
+    -------
+    bool
+    """
+    if len(mesh.slots) < 2:
+        return False
+    slot_of = np.repeat(np.arange(len(mesh.slots)), [count for _, _, count in mesh.slots])
+    faces = places[mesh.triangles]
+    ends = np.sort(np.concatenate([faces[:, [k, (k + 1) % 3]] for k in range(3)]), axis=1)
+    keys = (ends[:, 0].astype(np.int64) << 32) | ends[:, 1]
+    order = np.argsort(keys, kind="stable")
+    same = keys[order[:-1]] == keys[order[1:]]
+    slots = np.tile(slot_of, 3)[order]
+    return bool((same & (slots[:-1] != slots[1:])).any())
+
+
 def following_seams(seams, number):
     """Return the seams of the next level.
 

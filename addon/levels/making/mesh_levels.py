@@ -19,7 +19,7 @@ from ...snapshot.content import MeshSnapshot, next_uid
 from .level_attributes import carry
 from .level_collapses import Halving, decimate
 from .level_errors import LevelErrors
-from .level_seams import following_seams, seam_edges
+from .level_seams import following_seams, materials_meet, seam_edges
 from .level_step import Step
 from .level_surface import Surface, connected, differ, stable_order, weld
 
@@ -36,6 +36,9 @@ __all__ = [
 
 # Largest share of its predecessor's triangles that a level may keep to be worth its memory.
 _LEAST_REDUCTION = 0.75
+# Largest relative change of a material's share of the surface, where its borders are too many to be
+# held as seams: light may differ by as much.
+_MOST_DRIFT = 0.003
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +97,7 @@ def simplify(mesh, least_triangles, check=None, seams=None):
     if seams is None:
         seams = seam_edges(mesh, places)
     levels, halvings = [], []
+    shares = _shares(mesh) if len(seams) == 0 and materials_meet(mesh, places) else None
     full, parts = len(mesh.triangles), None
     while len(mesh.triangles) >= 2 * least_triangles:
         watch = None if check is None else partial(check, full - len(mesh.triangles))
@@ -102,10 +106,28 @@ def simplify(mesh, least_triangles, check=None, seams=None):
         level, places, parts, seams = _merge(mesh, surface, halving)
         if not 0 < len(level.triangles) <= _LEAST_REDUCTION * len(mesh.triangles):
             break
+        if shares is not None and _drift(shares, _shares(level)) > _MOST_DRIFT:
+            break
         levels.append(level)
         halvings.append(halving)
         mesh = level
     return tuple(levels), tuple(halvings)
+
+
+def _shares(mesh):
+    """Return the share of the area that each material slot has, as a dictionary."""
+    a, b, c = (mesh.positions[corner].astype(np.float64) for corner in mesh.triangles.T)
+    sizes = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    total = max(float(sizes.sum()), 1e-300)
+    shares = {}
+    for slot, first, count in mesh.slots:
+        shares[slot] = shares.get(slot, 0.0) + float(sizes[first : first + count].sum()) / total
+    return shares
+
+
+def _drift(before, after):
+    """Return the largest relative change of a share."""
+    return max(abs(after.get(slot, 0.0) - x) / x for slot, x in before.items() if x > 0.0)
 
 
 def replay(mesh, halvings, places=None):
