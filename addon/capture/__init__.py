@@ -1,0 +1,1 @@
+"""Depth layers of a scene, rendered by Cycles, EEVEE or our own engine."""

@@ -1,0 +1,47 @@
+"""What a capture is asked for; values without Blender."""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+
+ENGINES = ("CYCLES", "BLENDER_EEVEE", "APLANAT")
+DEFAULT_LAYERS, MOST_LAYERS = 8, 64
+DEFAULT_OVERSCAN, MOST_OVERSCAN = 0.1, 1.0
+
+
+@dataclass(frozen=True)
+class CaptureSettings:
+    """How a frame is captured.
+
+    Parameters
+    ----------
+    engine : str
+        One of `ENGINES`.
+    layers : int
+        Besides the world's.
+    overscan : float
+        Share of the picture's width and height that is rendered on each side besides.
+    resolution : tuple of 2 int or None
+        Width and height in pixels; None: the scene's.
+    """
+
+    engine: str = "CYCLES"
+    layers: int = DEFAULT_LAYERS
+    overscan: float = DEFAULT_OVERSCAN
+    resolution: tuple[int, int] | None = None
+
+    def digest(self, frame, source, software):
+        """Return a word that is another one as soon as anything else is asked for.
+
+        Parameters
+        ----------
+        frame : int
+        source, software : str
+            What the scene is, and what renders it.
+
+        Returns
+        -------
+        str
+        """
+        told = {"settings": asdict(self), "frame": frame, "source": source, "software": software}
+        return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
