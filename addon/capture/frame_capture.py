@@ -5,16 +5,17 @@ done at once or between the events of a window.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import bpy
 import numpy as np
 
 from ..errors import InputError, UnfinishedFileError
+from ..layers.cuts import OVERLAP
 from ..layers.layer_stack import DepthLayer, LayerStack
 from ..layers.render_picture import read_render
-from ..layers.slices import NOTHING, filled_depth, plan_slices
+from ..layers.slices import DENOISED_OVERLAP, filled_depth, is_surface, mending, plan_slices
 from .scene_limits import limits_of
 from .shot_copy import ShotCopy
 
@@ -40,6 +41,23 @@ class Step:
     text: str
     done: int
     total: int
+
+
+def render_now(step):
+    """Render a step, and return when it is rendered.
+
+    Raises
+    ------
+    InputError
+        If Blender does not render it.
+    """
+    # The operator's own option for a scene renders it at the frame of the context's scene.
+    with bpy.context.temp_override(scene=step.scene):
+        try:
+            bpy.ops.render.render(write_still=True)
+        except RuntimeError as error:
+            reason = str(error).strip().splitlines()[0].removeprefix("Error: ")
+            raise InputError(f"Blender does not render this scene: {reason}") from error
 
 
 class FrameCapture:
@@ -100,7 +118,7 @@ class FrameCapture:
         shot.measure_depths(True)
         depth = (yield from self._render("measuring depths")).depth
         shot.measure_depths(False)
-        seen = depth[np.isfinite(depth) & (depth < NOTHING)]
+        seen = depth[is_surface(depth)]
         report = list(limits_of(shot.scene, shot.layer))
         if not seen.size:
             report.append("there is no surface in view: one layer is all there is")
@@ -110,14 +128,16 @@ class FrameCapture:
             float(seen.max()) if seen.size else math.inf,
             *shot.clip,
             shot.camera.orthographic,
+            DENOISED_OVERLAP if shot.denoises else OVERLAP,
         )
         self._total = len(slices) + 1 + shot.has_world
-        layers, guessed = [], 0
+        layers, guessed, before = [], 0, None
         for number, slice_ in enumerate(slices):
             shot.aim(slice_)
             picture = yield from self._render(f"layer {number + 1} of {len(slices)}")
-            layer, unknown = _layer(picture, slice_)
+            layer, unknown = _layer(picture, slice_, before)
             guessed += unknown
+            before = np.clip(picture.color[..., 3], 0.0, 1.0)
             layers.append(layer)
         if guessed:
             report.append(
@@ -144,6 +164,10 @@ class FrameCapture:
             report=tuple(report),
         )
 
+    def _wanted(self, name):
+        # Comes with every denoised picture; it is wanted where denoising data is.
+        return name != "Noisy Image" or self._shot.stores_noise
+
     def _render(self, text):
         scene = self._shot.scene
         scene.render.filepath = str(self._path)
@@ -160,7 +184,8 @@ class FrameCapture:
         except InputError as error:
             raise UnfinishedFileError(f"frame {self._frame}, {text}: {error}") from error
         self.words |= picture.words
-        return picture
+        passes = {name: pixels for name, pixels in picture.passes.items() if self._wanted(name)}
+        return replace(picture, passes=passes)
 
 
 def _finite(pixels):
@@ -169,13 +194,16 @@ def _finite(pixels):
     return np.nan_to_num(pixels, copy=True, nan=0.0, posinf=largest, neginf=-largest)
 
 
-def _layer(picture, slice_):
+def _layer(picture, slice_, before):
     color = _finite(picture.color)
     color[..., 3] = np.clip(color[..., 3], 0.0, 1.0)
+    mended = 1.0
+    if before is not None:
+        mended = mending(before, color[..., 3])[..., None]
     middle = slice_.near + min(slice_.far, 2.0 * slice_.near + 1.0) if slice_.near else slice_.far
     otherwise = min(0.5 * middle, slice_.clip_end, _FARTHEST)
     depth, guessed = filled_depth(picture.depth, color[..., 3], otherwise)
-    weights = slice_.weights(depth)[..., None]
+    weights = slice_.weights(depth)[..., None] * mended
     passes = {
         # Light is premultiplied as the picture is; coordinates and ids are as they are.
         name: (_finite(pixels) * weights if name in picture.light else pixels)

@@ -23,10 +23,15 @@ class KeptValues:
 
     def __exit__(self, *_):
         """Give back those that are others now."""
+        changed = False
         for block, path, index, value in self._values:
             with contextlib.suppress(ValueError, TypeError, IndexError, ReferenceError):
                 if _value(block, path, index) != value:
                     _set_value(block, path, index, value)
+                    changed = True
+        if changed:
+            # What follows from them, such as matrices, is as it was, too.
+            bpy.context.view_layer.update()
 
 
 def _animated_blocks():

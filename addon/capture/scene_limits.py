@@ -1,8 +1,11 @@
 """What layers of a scene cannot show as a lens would, told in lines for the capture's report."""
 
+import os
+
 import bpy
 
 _GLASS = {"BSDF_GLASS", "BSDF_REFRACTION"}
+_OUTPUTS = {"OUTPUT_MATERIAL", "OUTPUT_WORLD"}
 
 
 def limits_of(scene, layer):
@@ -72,9 +75,8 @@ def _kinds(block):
                 waiting.append(node.node_tree)
             elif node.type == "BSDF_PRINCIPLED" and _transmits(node):
                 found.add("BSDF_GLASS")
-            elif node.type in {"OUTPUT_MATERIAL", "OUTPUT_WORLD"}:
-                if node.inputs["Volume"].is_linked:
-                    found.add("VOLUME")
+            elif node.type in _OUTPUTS and node.inputs["Volume"].is_linked:
+                found.add("VOLUME")
     return found
 
 
@@ -96,8 +98,6 @@ def missing_images():
     -------
     list of str
     """
-    import os
-
     lines = []
     for image in bpy.data.images:
         if image.source != "FILE" or not image.users or image.packed_file or not image.filepath:

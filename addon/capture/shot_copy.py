@@ -39,6 +39,10 @@ class ShotCopy:
         The copy.
     layer : str
         The view layer that is rendered.
+    denoises : bool
+        Whether Cycles denoises the pictures.
+    stores_noise : bool
+        Whether the picture before denoising is wanted, too.
     camera : LayerCamera
     clip : tuple of 2 float
         The camera's near and far plane, m.
@@ -142,7 +146,7 @@ class ShotCopy:
         render.resolution_percentage = max(1, math.ceil(100.0 * share))
         for (owner, name), count in self._samples.items():
             setattr(getattr(scene, owner), name, 1 if measures else count)
-        self._denoise(not measures and self._denoises)
+        self._denoise(not measures and self.denoises)
 
     @property
     def has_world(self):
@@ -151,7 +155,7 @@ class ShotCopy:
 
     def _before_nothing(self):
         self.scene.render.film_transparent = True
-        self._denoise(self._denoises)
+        self._denoise(self.denoises)
 
     def _denoise(self, does):
         # Without the Cycles add-on there is no such setting.
@@ -168,9 +172,7 @@ class ShotCopy:
                 camera = marker.camera
                 break
         if camera is None:
-            raise CameraError(
-                f"scene '{scene.name}' has no camera; add one, or set Scene > Camera"
-            )
+            raise CameraError(f"scene '{scene.name}' has no camera; add one, or set Scene > Camera")
         if camera.type != "CAMERA":
             raise CameraError(
                 f"scene '{scene.name}' looks through '{camera.name}', which is no camera; set"
@@ -195,6 +197,8 @@ class ShotCopy:
         for layer in self.scene.view_layers:
             layer.use = layer.name == self.layer
         layers[0].use_pass_combined = layers[0].use_pass_z = True
+        cycles = getattr(layers[0], "cycles", None)
+        self.stores_noise = bool(cycles and cycles.denoising_store_passes)
 
     def _choose_engine(self):
         scene, render = self.scene, self.scene.render
@@ -206,7 +210,8 @@ class ShotCopy:
             ) from error
         self._transparent = render.film_transparent
         self._has_cycles = hasattr(scene, "cycles")
-        self._denoises = self._has_cycles and scene.cycles.use_denoising
+        with_cycles = self._has_cycles and self._settings.engine == "CYCLES"
+        self.denoises = with_cycles and scene.cycles.use_denoising
         if self._has_cycles and not self._transparent:
             # The world is a layer of its own, and seen through glass as in the picture.
             scene.cycles.film_transparent_glass = False

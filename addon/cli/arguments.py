@@ -5,12 +5,13 @@ Every refusal is an `InputError` of one line.
 
 import argparse
 import math
-import re
 from pathlib import Path
 
 from ..errors import InputError
+from .capture.capture_arguments import add_capture, check_capture
 from .lens.lens_arguments import add_lens, check_lens
 from .render.sampling_arguments import add_sampling, check_sampling
+from .words.frame_values import MAX_FRAME, frame_number, frame_range
 from .words.option_values import (
     file_with_ending,
     joined_negatives,
@@ -20,16 +21,12 @@ from .words.option_values import (
 from .words.parser import RESOLUTION, Parser, add_output_options
 from .words.version import version
 
-# Bound of Blender's own property.
-MAX_FRAME = 1048574
-
 ENDINGS = (".exr", ".png")
 
 # argparse would take a negative number after these for an option.
 _MAY_BE_NEGATIVE = {"--frames", "--level-bias", "--field-deg", "--planes-mm", "--rho"}
 
 _LATER = {
-    "capture": "depth layers",
     "refocus": "depth layers",
     "--method layered": "depth layers",
     "--layers": "depth layers",
@@ -48,7 +45,7 @@ def parse(words, program="aplanat"):
     Returns
     -------
     argparse.Namespace
-        With ``command``, ``render`` or ``lens``, and its options.
+        With ``command``, ``render``, ``capture`` or ``lens``, and its options.
 
     Raises
     ------
@@ -69,6 +66,8 @@ def parse(words, program="aplanat"):
         raise InputError(f"no command given (see `{program} --help`)")
     if arguments.command == "render":
         _check_render(arguments)
+    elif arguments.command == "capture":
+        check_capture(arguments)
     elif arguments.command == "lens":
         check_lens(arguments)
     return arguments
@@ -102,19 +101,6 @@ def _check_render(arguments):
         raise InputError(f"-o {arguments.output[0]} is given twice; give two different names")
 
 
-_frame = whole_number(-MAX_FRAME, MAX_FRAME)
-
-
-def _frame_range(text):
-    match = re.fullmatch(r"(-?\d+)\.\.(-?\d+)", text)
-    if not match:
-        raise argparse.ArgumentTypeError(f"'{text}' is not FIRST..LAST, such as 1..24")
-    first, last = _frame(match[1]), _frame(match[2])
-    if first > last:
-        raise argparse.ArgumentTypeError(f"{text}: the first frame comes after the last")
-    return first, last
-
-
 def _focus(text):
     try:
         distance = float(text)
@@ -136,6 +122,7 @@ def _parser(program):
     parser.add_argument("--version", action="version", version=f"aplanat {version()}")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=Parser)
     _add_render(commands)
+    add_capture(commands)
     add_lens(commands, Parser)
     return parser
 
@@ -162,8 +149,10 @@ def _add_render(commands):
         " output path and format",
     )
     frames = parser.add_mutually_exclusive_group()
-    frames.add_argument("--frame", metavar="N", type=_frame, help="default: the file's current one")
-    frames.add_argument("--frames", metavar="A..B", type=_frame_range, help="first and last frame")
+    frames.add_argument(
+        "--frame", metavar="N", type=frame_number, help="default: the file's current one"
+    )
+    frames.add_argument("--frames", metavar="A..B", type=frame_range, help="first and last frame")
     add(
         "--frame-step",
         metavar="N",

@@ -132,7 +132,10 @@ def _runner(arguments, prepare):
         from .lens.lens_command import lens as run
     else:
         prepare()
-        from .render.render_command import render as run
+        if arguments.command == "capture":
+            from .capture.capture_command import capture as run
+        else:
+            from .render.render_command import render as run
     return run
 
 

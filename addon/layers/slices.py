@@ -1,5 +1,4 @@
-"""Slices of a scene for depth layers: from cuts to clip planes, and from a renderer's picture of a
-slice to a layer.
+"""Slices of a scene for depth layers: from cuts to clip planes, from pictures of slices to layers.
 
 A slice goes on behind its far cut by `OVERLAP` of the layer, and fades there: a surface that
 crosses the cut is seen whole in one layer where it is partly seen, or partly denoised, in the
@@ -18,6 +17,10 @@ from .cuts import OVERLAP, layer_cuts
 FADE_BEGIN, FADE_END = 0.5, 0.75
 # Renderers' depth of nothing; Blender's is 1e10.
 NOTHING = 1e9
+# Coverage of a pixel that nothing is seen through: a sample's share may be lost in rounding.
+_WHOLE = 1.0 - 1e-4
+# Overlap of slices that are denoised: a denoiser draws some pixels of a ragged end wrongly.
+DENOISED_OVERLAP = 0.3
 # Below this share of the depth, a range of depths is cut no further.
 _LEAST_RANGE = 1e-3
 
@@ -62,7 +65,9 @@ class Slice:
         return np.where(np.isfinite(depth), weights, 1.0).astype(np.float32)
 
 
-def plan_slices(count, nearest, farthest, clip_start, clip_end, orthographic=False):
+def plan_slices(
+    count, nearest, farthest, clip_start, clip_end, orthographic=False, overlap=OVERLAP
+):
     """Return the slices of a picture, the foremost first.
 
     The first begins at the camera's near plane and the last ends at its far plane, so that nothing
@@ -77,6 +82,8 @@ def plan_slices(count, nearest, farthest, clip_start, clip_end, orthographic=Fal
     clip_start, clip_end : float
         Of the camera, m.
     orthographic : bool
+    overlap : float
+        Share of a layer by which its slice goes on behind its far cut.
 
     Returns
     -------
@@ -95,7 +102,7 @@ def plan_slices(count, nearest, farthest, clip_start, clip_end, orthographic=Fal
         if number == count - 1:
             slices.append(Slice(near, math.inf, start, clip_end, orthographic))
             continue
-        end = min(_overlapped(cuts[number], cuts[number + 1], orthographic), clip_end)
+        end = min(_overlapped(cuts[number], cuts[number + 1], orthographic, overlap), clip_end)
         slices.append(Slice(near, cuts[number + 1], start, end, orthographic))
     return slices
 
@@ -121,7 +128,7 @@ def filled_depth(depth, coverage, otherwise):
         Pixels that `otherwise` was taken for.
     """
     covered = coverage > 0.0
-    known = np.isfinite(depth) & (depth > 0.0) & (depth < NOTHING)
+    known = is_surface(depth)
     found = np.where(known & covered, depth, np.inf).astype(np.float32)
     # Blackman-Harris and other filters reach no farther than two pixels.
     for _ in range(2):
@@ -137,14 +144,53 @@ def filled_depth(depth, coverage, otherwise):
     return found, int(guessed.sum())
 
 
+def mending(coverage_before, coverage):
+    """Return by what a layer is multiplied where a surface goes through its near cut in a pixel.
+
+    Where the overlap is narrower than a pixel, the surface covers parts of the pixel in both
+    layers, and laid over each other they would let through what is behind: half of a half. There
+    the farther layer covers the whole pixel, as the surface does. Edges of objects are not such
+    places: on a surface that goes on, pixels on one side are whole in the one layer only, and on
+    the other side in the other only.
+
+    Parameters
+    ----------
+    coverage_before, coverage : ndarray of shape (height, width)
+        Of the layer in front and of this one, as rendered.
+
+    Returns
+    -------
+    ndarray of float32, of the same shape
+        At least 1.
+    """
+    whole_before, whole = coverage_before >= _WHOLE, coverage >= _WHOLE
+    partly = (coverage_before > 0.0) & (coverage > 0.0) & ~whole_before & ~whole
+    partly &= coverage_before + coverage >= _WHOLE
+    partly &= _near(whole_before & ~whole) & _near(whole & ~whole_before)
+    return np.divide(1.0, coverage, out=np.ones_like(coverage, np.float32), where=partly)
+
+
+def is_surface(depth):
+    """Whether a renderer's depth is one, for each pixel."""
+    return np.isfinite(depth) & (depth > 0.0) & (depth < NOTHING)
+
+
+def _near(found, pixels=2):
+    """Whether something was found in the pixel or nearby: as far as pixel filters reach."""
+    padded = np.pad(found, pixels)
+    height, width = found.shape
+    side = range(2 * pixels + 1)
+    return np.any([padded[y : y + height, x : x + width] for y in side for x in side], axis=0)
+
+
 def _steps(orthographic, depth):
     """Return a measure of depth in which the circle of confusion is linear."""
     return depth if orthographic else -1.0 / np.asarray(depth, np.float64)
 
 
-def _overlapped(near, far, orthographic):
+def _overlapped(near, far, orthographic, overlap):
     if orthographic:
-        return far + OVERLAP * (far - near)
-    inverse = 1.0 / far - OVERLAP * (1.0 / near - 1.0 / far)
+        return far + overlap * (far - near)
+    inverse = 1.0 / far - overlap * (1.0 / near - 1.0 / far)
     # The last layer but one of a deep scene may reach beyond any distance.
     return 1.0 / inverse if inverse > 0.0 else math.inf

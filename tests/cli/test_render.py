@@ -9,7 +9,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from addon.cli.render.frame_files import frame_path
+from addon.files.frame_path import frame_path
 from tests.lens_io.importers.foreign_texts import ZEMAX
 
 

@@ -5,7 +5,6 @@ names that `-o` or the scene gives, and with it what the compositor's File Outpu
 """
 
 import os
-import re
 import shutil
 from contextlib import ExitStack
 from pathlib import Path
@@ -15,6 +14,7 @@ import bpy
 from ...engine.views import views_of
 from ...errors import InputError, OutputError, UnfinishedFileError
 from ...files.claims import Claims
+from ...files.frame_path import frame_path
 from ...files.held_files import HeldFiles, publish
 from ...files.whole_file import check_writable
 from . import pictures
@@ -22,27 +22,6 @@ from .file_outputs import FileOutputs
 
 _ROOM = "picture"
 _ENDINGS = (".exr", ".png")
-
-
-def frame_path(path, frame):
-    """Put a frame number into the last run of # of a file name.
-
-    Parameters
-    ----------
-    path : Path
-    frame : int
-
-    Returns
-    -------
-    Path
-        The same path if its name has no #.
-    """
-    runs = list(re.finditer("#+", path.name))
-    if not runs:
-        return path
-    first, last = runs[-1].span()
-    digits = f"{'-' if frame < 0 else ''}{abs(frame):0{last - first}d}"
-    return path.with_name(path.name[:first] + digits + path.name[last:])
 
 
 class FrameFiles:

@@ -12,10 +12,11 @@ from ...device.context import ensure_context, max_texture_size
 from ...engine.report import without_count
 from ...engine.shared_resources import listen, resources
 from ...errors import AplanatError, DeviceLimitError, InputError, RenderCancelledError, StrictError
+from ...files.frame_path import frame_path
 from ...files.whole_file import check_writable, removed_on_signals
 from ..words.json_file import write_json
 from . import statistics
-from .frame_files import FrameFiles, frame_path
+from .frame_files import FrameFiles
 from .scene_setup import apply_frame, apply_options, load_scene
 
 

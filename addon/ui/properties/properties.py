@@ -7,8 +7,10 @@ from bpy.props import (
     FloatProperty,
     IntProperty,
     PointerProperty,
+    StringProperty,
 )
 
+from ...capture.settings import DEFAULT_LAYERS, DEFAULT_OVERSCAN, MOST_LAYERS, MOST_OVERSCAN
 from ..previews.spectrum_bar import AplanatSpectrumBar
 from .bokeh_properties import AplanatBokehSettings
 from .camera_properties import AplanatCameraSettings
@@ -214,6 +216,32 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
         min=10,
         max=2000,
         soft_max=500,
+    )
+    capture_layers: IntProperty(
+        name="Layers",
+        description="How many depth layers a captured frame has, besides the world's. More layers"
+        " keep apart what lies behind one another, and take longer",
+        default=DEFAULT_LAYERS,
+        min=1,
+        max=MOST_LAYERS,
+        soft_max=16,
+    )
+    capture_overscan: FloatProperty(
+        name="Overscan",
+        description="Share of the picture's width and height that a captured frame is larger on"
+        " each side, so that blur finds what lies beyond the border",
+        default=DEFAULT_OVERSCAN,
+        min=0.0,
+        max=MOST_OVERSCAN,
+        soft_max=0.3,
+        subtype="FACTOR",
+        precision=2,
+    )
+    capture_path: StringProperty(
+        name="Layers File",
+        description="Where Capture Depth Layers writes: an .exr file a frame, #### is its number",
+        default="//layers_####.exr",
+        subtype="FILE_PATH",
     )
 
 

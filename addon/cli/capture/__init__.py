@@ -1,0 +1,1 @@
+"""`aplanat capture`."""

@@ -1,0 +1,176 @@
+"""`aplanat capture`: frames of a .blend file to files of depth layers."""
+
+import time
+from pathlib import Path
+
+import bpy
+
+from ...capture.capture_files import is_captured, source_digest, write_capture
+from ...capture.frame_capture import FrameCapture, render_now
+from ...capture.scene_limits import missing_images
+from ...capture.settings import ENGINES, CaptureSettings
+from ...device.context import ensure_context
+from ...engine import outcome
+from ...errors import InputError, RenderCancelledError, StrictError
+from ...files.frame_path import frame_path
+from ...files.held_files import HeldFiles
+from ...files.whole_file import check_writable, removed_on_signals
+from ...scene.unsupported import missing_files, missing_links
+from ..render import statistics
+from ..render.render_command import Warnings
+from ..render.scene_setup import load_scene
+from ..words.json_file import write_json
+from ..words.version import version
+
+
+def capture(arguments, console):
+    """Carry out `aplanat capture`.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+    console : Console
+
+    Returns
+    -------
+    dict
+        What `--json` prints.
+
+    Raises
+    ------
+    AplanatError
+        If a frame is not captured.
+    """
+    start = time.perf_counter()
+    with removed_on_signals():
+        first = arguments.frames[0] if arguments.frames else arguments.frame or 0
+        check_writable(frame_path(arguments.output, first))
+        if arguments.stats:
+            check_writable(arguments.stats)
+        scene = load_scene(arguments.scene)
+        settings = _settings(scene, arguments)
+        if settings.engine == "APLANAT":
+            ensure_context()
+        warnings = Warnings(console, arguments.strict)
+        warnings.add([*missing_links(), *missing_files(), *missing_images()])
+        source = source_digest(arguments.scene)
+        software = f"Aplanat {version()}, Blender {bpy.app.version_string}"
+        frames = []
+        with HeldFiles() as held:
+            for frame in _frame_numbers(scene, arguments):
+                path = frame_path(arguments.output, frame)
+                half = " half" if arguments.half else ""
+                digest = settings.digest(frame, source, software + half)
+                if is_captured(path, digest):
+                    console.say(f"frame {frame}: {path} is there, whole and of these settings")
+                    frames.append({"frame": frame, "file": str(path), "kept": True})
+                    continue
+                begun = time.perf_counter()
+                stack, words, renders = _capture_frame(
+                    scene, frame, settings, held.room("slices"), console, warnings
+                )
+                write_capture(path, stack, digest, software, words, arguments.half)
+                seconds = round(time.perf_counter() - begun, 6)
+                console.say(f"frame {frame}: {path} ({seconds:.1f} s)")
+                frames.append(
+                    {
+                        "frame": frame,
+                        "file": str(path),
+                        "kept": False,
+                        "layers": len(stack.layers),
+                        "cuts_m": [layer.near for layer in stack.layers[1:]],
+                        "renders": renders,
+                        "report": list(stack.report),
+                        "seconds": {**_timed(renders), "total": seconds},
+                    }
+                )
+        summary = _summary(arguments, settings, frames, warnings.lines)
+        summary["seconds"] = round(time.perf_counter() - start, 6)
+        if arguments.stats:
+            write_json(arguments.stats, summary)
+    return summary
+
+
+def _settings(scene, arguments):
+    own = scene.aplanat
+    engine = arguments.engine or scene.render.engine
+    if engine not in ENGINES:
+        raise InputError(
+            f"scene '{scene.name}' renders with {engine}, which makes no depth layers; choose one"
+            f" with --engine: {', '.join(ENGINES)}"
+        )
+    overscan = own.capture_overscan if arguments.overscan is None else arguments.overscan
+    return CaptureSettings(
+        engine=engine,
+        layers=arguments.layers or own.capture_layers,
+        # As exact as it is said: Blender keeps it in single precision.
+        overscan=round(overscan, 6),
+        resolution=arguments.resolution,
+    )
+
+
+def _frame_numbers(scene, arguments):
+    if arguments.frames:
+        first, last = arguments.frames
+        return range(first, last + 1, arguments.frame_step or scene.frame_step)
+    frame = scene.frame_current if arguments.frame is None else arguments.frame
+    return range(frame, frame + 1)
+
+
+def _capture_frame(scene, frame, settings, folder, console, warnings):
+    renders = []
+    with FrameCapture(scene, frame, settings, Path(folder)) as capture_:
+        warnings.add(capture_.warnings)
+        steps = capture_.steps()
+        while True:
+            try:
+                step = next(steps)
+            except StopIteration as stop:
+                for line in stop.value.report:
+                    console.say(f"frame {frame}: note: {line}")
+                return stop.value, capture_.words, renders
+            console.progress(f"frame {frame}: {step.text} ({step.done + 1} of {step.total})")
+            begun = time.perf_counter()
+            _render(step, warnings)
+            renders.append({"what": step.text, "seconds": round(time.perf_counter() - begun, 6)})
+
+
+def _render(step, warnings):
+    with outcome.listen(strict=warnings.strict) as heard:
+        try:
+            render_now(step)
+        except InputError:
+            # Our engine says more than Blender, which tells that it said something.
+            if heard.error is None:
+                raise
+    if isinstance(heard.error, StrictError):
+        warnings.add(heard.error.warnings)
+    if heard.error is not None:
+        raise heard.error
+    if heard.cancelled:
+        raise RenderCancelledError("the capture was stopped")
+    warnings.add(heard.report)
+
+
+def _timed(renders):
+    return {"render": round(sum(render["seconds"] for render in renders), 6)}
+
+
+def _summary(arguments, settings, frames, warnings):
+    return {
+        "command": "capture",
+        "scene": str(arguments.scene),
+        "files": [frame["file"] for frame in frames],
+        "warnings": warnings,
+        "aplanat": version(),
+        "blender": bpy.app.version_string,
+        "peak_memory_bytes": statistics.peak_memory(),
+        "settings": {
+            "engine": settings.engine,
+            "layers": settings.layers,
+            "overscan": settings.overscan,
+            "resolution": settings.resolution and list(settings.resolution),
+            "half": arguments.half,
+        },
+        "frames": frames,
+    }
