@@ -21,7 +21,8 @@ PICTURE = REPO / "docs" / "images" / "architecture.svg"
 ROLES = {
     "ui": ("panels, properties, operators", 0, 3),
     "cli": ("the command line", 3, 3),
-    "engine": ("plans, draws and shows a frame; what Blender calls", 0, 6),
+    "engine": ("plans, draws and shows a frame; what Blender calls", 0, 4.6),
+    "capture": ("scenes as depth layers", 4.6, 1.4),
     "plots": ("drawings of lenses", 0, 1.15),
     "scene": ("reads Blender into a snapshot", 1.15, 2.2),
     "levels": ("levels of detail of meshes", 3.35, 1.2),

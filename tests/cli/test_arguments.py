@@ -6,6 +6,7 @@ from addon.cli.arguments import parse
 from addon.errors import InputError
 
 RENDER = ["render", "x.blend"]
+CAPTURE = ["capture", "x.blend", "-o", "y.exr"]
 INFO = ["lens", "info", "x"]
 TRACE = ["lens", "trace", "x"]
 FAN = [*TRACE, "--object-to-first-vertex-mm", "1000"]
@@ -50,6 +51,15 @@ FAN = [*TRACE, "--object-to-first-vertex-mm", "1000"]
         ([*RENDER, "--focus", "-1"], "greater than 0"),
         ([*RENDER, "--focus", "nan"], "greater than 0"),
         ([*RENDER, "--method", "magic"], "invalid choice"),
+        ([*CAPTURE[:2]], "-o"),
+        ([*CAPTURE[:2], "-o", "a.png"], "must end in .exr"),
+        ([*CAPTURE, "--engine", "WORKBENCH"], "invalid choice"),
+        ([*CAPTURE, "--layers", "0"], "not between"),
+        ([*CAPTURE, "--layers", "65"], "not between"),
+        ([*CAPTURE, "--overscan", "1.5"], "not between"),
+        ([*CAPTURE, "--overscan", "nan"], "not between"),
+        ([*CAPTURE, "--frames", "1..3"], "####"),
+        ([*CAPTURE, "--frame-step", "2"], "--frames"),
         (["bench", "--scene", "toys"], "scripts/aplanat bench"),
         (["lens"], "COMMAND"),
         (["lens", "grind"], "invalid choice"),
@@ -93,7 +103,6 @@ def test_unusable_words_are_refused_and_named(words, told):
 @pytest.mark.parametrize(
     "words",
     [
-        ["capture", "x.blend", "-o", "y.exr"],
         ["refocus", "y.exr", "-o", "z.exr"],
         [*RENDER, "--method", "layered"],
         [*RENDER, "--layers", "8"],
@@ -144,6 +153,7 @@ def test_lists_of_numbers_may_be_negative_or_a_progression():
     [
         ["--help"],
         ["render", "--help"],
+        ["capture", "--help"],
         ["lens", "--help"],
         *(["lens", word, "--help"] for word in ("list", "info", "trace", "bake", "plot", "import")),
     ],
@@ -160,7 +170,7 @@ def test_help_promises_only_what_is_built(capsys):
         parse(["--help"])
     text = capsys.readouterr().out
     assert "render" in text and "bench" in text
-    assert "capture" not in text and "refocus" not in text
+    assert "capture" in text and "    refocus " not in text
 
 
 def test_version_is_the_manifests(capsys):

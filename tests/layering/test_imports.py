@@ -84,6 +84,8 @@ ROOMS = {
         *("device", "snapshot", "lens_io", "levels", "scene", "scene.camera"),
         *("engine.planning", "engine.drawing", "engine.bokeh", "engine.frame"),
     ),
+    # Another engine's pictures, or ours, as depth layers.
+    "capture": ("sampling", "layers", "scene.camera"),
     # What a user meets.
     "ui.jobs": (),
     "ui.previews": ("lens_bokeh.look", "plots", "scene.camera", "ui.jobs"),
@@ -91,7 +93,9 @@ ROOMS = {
         *("optics", "sampling", "lens_io", "lens_io.importers.draft"),
         *("scene.camera", "engine", "ui.jobs"),
     ),
-    "ui.properties": (*("sampling", "lens_io.glasses", "engine", "ui.operators", "ui.previews"),),
+    "ui.properties": (
+        *("sampling", "lens_io.glasses", "engine", "capture", "ui.operators", "ui.previews"),
+    ),
     "ui.presets": ("ui.properties",),
     "ui.panels": (
         *("optics", "scene.camera", "engine"),
@@ -107,7 +111,11 @@ ROOMS = {
         *("files", "optics", "optics.rays", "lens_bokeh.tables", "plots", "scene.camera"),
         *("lens_io", "lens_io.toml", "lens_io.importers", "cli.words"),
     ),
-    "cli": ("cli.words", "cli.render", "cli.lens"),
+    "cli.capture": (
+        *("files", "device", "scene", "engine", "capture"),
+        *("cli.words", "cli.render"),
+    ),
+    "cli": ("cli.words", "cli.render", "cli.lens", "cli.capture"),
 }
 
 # What stands in no room: the package, its exceptions, and what makes it known to Blender.
@@ -117,7 +125,7 @@ ROOF = {"", "errors", "registration"}
 BLENDER = {"bpy", "bl_ui", "bl_operators", "bpy_extras", "mathutils", "addon_utils"}
 
 # Where Blender is read or driven. Everything else works on values.
-BLENDER_FACING = {"registration", "cli", "ui", "scene", "engine"}
+BLENDER_FACING = {"registration", "cli", "ui", "scene", "engine", "capture"}
 # Whole rooms, with their sub-rooms, that run without Blender.
 PURE_ROOMS = tuple(
     f"{name}."
@@ -130,7 +138,9 @@ PURE_ROOMS = tuple(
 # In a room that may, these may not: they are values or arithmetic.
 BLENDER_FREE = {
     "scene.geometry.vertex_split",
+    "capture.settings",
     "cli.arguments",
+    "cli.capture.capture_arguments",
     "cli.command",
     "cli.render.sampling_arguments",
     "engine.outcome",

@@ -10,7 +10,7 @@ from ...capture.frame_capture import FrameCapture, render_now
 from ...capture.scene_limits import missing_images
 from ...capture.settings import ENGINES, CaptureSettings
 from ...device.context import ensure_context
-from ...engine import outcome
+from ...engine.shared_resources import listen
 from ...errors import InputError, RenderCancelledError, StrictError
 from ...files.frame_path import frame_path
 from ...files.held_files import HeldFiles
@@ -136,7 +136,7 @@ def _capture_frame(scene, frame, settings, folder, console, warnings):
 
 
 def _render(step, warnings):
-    with outcome.listen(strict=warnings.strict) as heard:
+    with listen(strict=warnings.strict) as heard:
         try:
             render_now(step)
         except InputError:

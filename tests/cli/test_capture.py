@@ -1,0 +1,164 @@
+"""`aplanat capture`: files of layers, a run that goes on, and what is refused."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from addon.errors import InputError
+from addon.layers.layer_file import load_layers, load_words
+from tests.capture.conftest import build
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+FEW = ("--layers", "2", "--overscan", "0")
+
+
+@pytest.fixture(scope="module")
+def shot(aplanat_bpy, tmp_path_factory):
+    """A .blend file of four frames."""
+    scene = build(aplanat_bpy)
+    near = scene.objects["Near"]
+    for frame, x in ((1, -0.6), (4, 0.6)):
+        near.location.x = x
+        near.keyframe_insert("location", frame=frame)
+    scene.render.resolution_x, scene.render.resolution_y = 32, 18
+    scene.cycles.samples = 1
+    path = tmp_path_factory.mktemp("shot") / "shot.blend"
+    aplanat_bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    return path
+
+
+def test_frames_are_files_of_layers_with_metadata(aplanat, shot, tmp_path):
+    out = tmp_path / "layers_####.exr"
+    words = ("--frames", "1..4", "--frame-step", "3", "--json", "--stats", tmp_path / "s.json")
+    done = aplanat("capture", shot, "-o", out, *FEW, *words)
+    assert done.code == 0, done.err
+    assert done.answer["files"] == [str(tmp_path / f"layers_000{n}.exr") for n in (1, 4)]
+    one, four = (load_layers(path) for path in done.answer["files"])
+    assert (one.frame, four.frame, one.engine) == (1, 4, "CYCLES")
+    assert len(one.layers) == 3 and (one.width, one.height) == (32, 18)
+    assert not np.array_equal(one.layers[0].color, four.layers[0].color)
+    words = load_words(done.answer["files"][0])
+    assert words["software"].startswith("Aplanat ") and words["colorSpace"] == one.color_space
+    frame = done.answer["frames"][0]
+    assert [render["what"] for render in frame["renders"]][0] == "measuring depths"
+    assert len(frame["renders"]) == 4 and not frame["kept"]
+    assert (tmp_path / "s.json").is_file()
+
+
+def test_options_say_size_layers_and_precision(aplanat, shot, tmp_path):
+    words = ("--resolution", "20x10", "--overscan", "0.5", "--layers", "3", "--half", "--frame", 2)
+    done = aplanat("capture", shot, "-o", tmp_path / "a.exr", *words)
+    assert done.code == 0, done.err
+    stack = load_layers(tmp_path / "a.exr")
+    assert (stack.width, stack.height, stack.overscan) == (20, 10, (10, 5))
+    assert len(stack.layers) == 4 and stack.frame == 2
+    color = stack.layers[0].color
+    assert np.array_equal(color, color.astype(np.float16).astype(np.float32))
+
+
+def test_our_own_engine(aplanat, shot, tmp_path):
+    done = aplanat("capture", shot, "-o", tmp_path / "a.exr", *FEW, "--engine", "APLANAT")
+    assert done.code == 0, done.err
+    assert load_layers(tmp_path / "a.exr").engine == "APLANAT"
+
+
+def test_what_is_there_stays_and_what_is_broken_or_other_is_made_anew(aplanat, shot, tmp_path):
+    out, words = tmp_path / "l_##.exr", ("--frames", "1..2")
+
+    def kept(*more):
+        done = aplanat("capture", shot, "-o", out, *FEW, *words, *more, "--json")
+        assert done.code == 0, done.err
+        return [frame["kept"] for frame in done.answer["frames"]]
+
+    assert kept() == [False, False]
+    before = [(tmp_path / f"l_0{n}.exr").read_bytes() for n in (1, 2)]
+    stamp = os.stat(tmp_path / "l_01.exr").st_mtime_ns
+    cut = tmp_path / "l_02.exr"
+    cut.write_bytes(before[1][: len(before[1]) * 2 // 3])
+    assert kept() == [True, False]
+    assert os.stat(tmp_path / "l_01.exr").st_mtime_ns == stamp
+    assert [(tmp_path / f"l_0{n}.exr").read_bytes() for n in (1, 2)] == before
+    assert kept("--half") == [False, False]
+    cut.write_bytes(b"something else")
+    assert kept("--half") == [True, False]
+
+
+def test_a_killed_run_goes_on_where_it_stopped(shot, tmp_path):
+    environment = os.environ | {"PYTHONPATH": str(REPOSITORY), "PYTHONDONTWRITEBYTECODE": "1"}
+    words = [sys.executable, "-P", "-m", "addon.cli", "capture", str(shot), *FEW]
+    words += ["--frames", "1..4", "-o", str(tmp_path / "l_#.exr")]
+    rng = random.Random(4)
+    process = subprocess.Popen(words, env=environment, stderr=subprocess.DEVNULL)
+    while not (tmp_path / "l_1.exr").exists():
+        assert process.poll() is None
+        time.sleep(0.02)
+    time.sleep(rng.uniform(0.0, 0.5))
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    there = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    for name in there:
+        load_layers(tmp_path / name)
+    done = subprocess.run(words, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert {p.name for p in tmp_path.iterdir()} == {f"l_{n}.exr" for n in range(1, 5)}
+    assert {name: (tmp_path / name).stat().st_mtime_ns for name in there} == there
+    assert [load_layers(tmp_path / f"l_{n}.exr").frame for n in range(1, 5)] == [1, 2, 3, 4]
+
+
+def test_refused(refused, shot, make_blend, tmp_path):
+    out = ("-o", tmp_path / "a.exr")
+    assert "does not exist" in refused("capture", tmp_path / "none.blend", *out)
+    assert "does not exist" in refused("capture", shot, "-o", tmp_path / "no" / "a.exr")
+
+    def workbench(_bpy, scene):
+        scene.render.engine = "BLENDER_WORKBENCH"
+
+    assert "BLENDER_WORKBENCH" in refused("capture", make_blend(workbench), *out)
+
+    def no_camera(_bpy, scene):
+        scene.camera = None
+
+    assert "no camera" in refused("capture", make_blend(no_camera), *out)
+    line = refused("capture", shot, *out, "--resolution", "40000x40000", "--overscan", "1")
+    assert "120000 x 120000" in line
+
+
+def test_strict_takes_what_is_missing_or_left_out_for_an_error(aplanat, make_blend, tmp_path):
+    def lacking(bpy, scene):
+        image = bpy.data.images.new("Lost", 4, 4)
+        image.source, image.filepath = "FILE", "//nowhere.png"
+        image.use_fake_user = True
+        scene.render.use_border = True
+        scene.cycles.samples = 1
+        scene.render.engine = "CYCLES"
+
+    path = make_blend(lacking)
+    done = aplanat("capture", path, "-o", tmp_path / "a.exr", *FEW, "--strict", "--json")
+    assert done.code == 2 and not (tmp_path / "a.exr").exists()
+    assert "'Lost'" in done.answer["errors"][0]["message"]
+    done = aplanat("capture", path, "-o", tmp_path / "a.exr", *FEW, "--json")
+    assert done.code == 0, done.err
+    assert any("render region" in line for line in done.answer["warnings"])
+
+
+def test_a_full_disk_is_exit_code_1(aplanat, shot, tmp_path, monkeypatch):
+    import OpenEXR
+
+    def full(*_):
+        raise RuntimeError("No space left on device")
+
+    monkeypatch.setattr(OpenEXR.File, "write", full)
+    done = aplanat("capture", shot, "-o", tmp_path / "a.exr", *FEW, "--json")
+    assert done.code == 1 and "Traceback" not in done.err
+    assert "No space left" in done.answer["errors"][0]["message"]
+    assert not list(tmp_path.iterdir())
+    monkeypatch.undo()
+    with pytest.raises(InputError):
+        load_layers(tmp_path / "a.exr")
