@@ -71,6 +71,14 @@ def opaque():
     gpu.state.face_culling_set("NONE")
 
 
+def always():
+    """Every fragment replaces colour and depth, whatever was there."""
+    import gpu
+
+    opaque()
+    gpu.state.depth_test_set("ALWAYS")
+
+
 def overwrite():
     """Every fragment replaces what was there; no depth."""
     import gpu

@@ -21,7 +21,7 @@ def _shift(seed, dimensions, stream):
     return 0.5 + np.random.default_rng([seed, stream]).random(dimensions)
 
 
-def lens_samples(first, count, iris, seed=0):
+def lens_samples(first, count, iris, seed=0, rotation=0.0):
     """Return positions on the iris for samples `first` to `first + count - 1`.
 
     Parameters
@@ -30,13 +30,16 @@ def lens_samples(first, count, iris, seed=0):
     iris : Iris
     seed : int
         0 is the plain sequence; others rotate it on the torus.
+    rotation : float or array_like of shape (2,)
+        A further rotation.
 
     Returns
     -------
     ndarray of shape (count, 2)
         In units of the aperture radius.
     """
-    return iris_points(halton(first, count, LENS_BASES, _shift(seed, 2, 1)), iris)
+    shift = _shift(seed, 2, 1) + np.asarray(rotation)
+    return iris_points(halton(first, count, LENS_BASES, shift), iris)
 
 
 def pixel_offsets(first, count, kind, size_px, seed=0, subpixels=1):

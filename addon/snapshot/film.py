@@ -34,7 +34,7 @@ class Sampling:
 
     Parameters
     ----------
-    method : {'REFERENCE', 'ADAPTIVE'}
+    method : {'REFERENCE', 'ADAPTIVE', 'LAYERED'}
     lens_samples : int
     seed : int
     target_error : float or None
@@ -59,6 +59,10 @@ class Sampling:
         The picture may be looked at before all samples are drawn.
     reference_bokeh : bool
         The reference method, too, splats highlights as bokeh, instead of sampling them.
+    layers : int
+        Depth layers of the layered method.
+    cones : bool
+        Its rays are as thick as their distance from one another asks for.
     """
 
     method: str = "REFERENCE"
@@ -75,3 +79,5 @@ class Sampling:
     least_triangles: int = 256
     progressive: bool = False
     reference_bokeh: bool = False
+    layers: int = 8
+    cones: bool = True

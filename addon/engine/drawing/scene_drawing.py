@@ -65,8 +65,8 @@ class SceneDrawing:
     ----------
     counts : DrawingCounts
         Since the frame began.
-    nearest : float
-        Least depth of any visible instance, m.
+    nearest, farthest : float
+        Least and largest depth of any visible instance, m; inf and 0 where there is none.
     levels : ndarray of shape (I,)
         Level of detail of each instance in this frame.
     full_detail : int
@@ -128,6 +128,7 @@ class SceneDrawing:
             self._visible = self._seen & culling.seen(self._spheres, plan, part)
         seen = extents(self._corners, plan.view, plan.chromatic)
         self.nearest = float(seen.nearest[self._seen].min(initial=np.inf))
+        self.farthest = float(seen.farthest[self._seen].max(initial=0.0))
         self.levels = self._choose_levels(seen)
         self._find_graded()
         self._shared.forget()

@@ -15,6 +15,7 @@ from ...passes.surface import chromatic, surface_target
 from ..bokeh.stage import BokehStage, highlight_buffer
 from ..drawing.scene_drawing import DrawingCounts, SceneDrawing
 from ..drawing.view_resources import chromatic_resources, view_params
+from ..layered.layered_drawing import LayeredDrawing
 from ..planning.plan import extended
 from ..visibility.stage import SceneOccluders
 from . import render_passes, sample_sums
@@ -50,6 +51,7 @@ class FrameRenderer(ReadableFrame):
         self._target = self._occluders = self._pictures = self._targets = None
         self._graded = {}
         self._bokeh = FrameBokeh()
+        self._layers = None
         self.restart(plan, snapshot, drafts, leader)
 
     def restart(self, plan, snapshot, drafts=False, leader=None):
@@ -96,6 +98,12 @@ class FrameRenderer(ReadableFrame):
         world = snapshot.content.world
         self._background = (0.0,) * 4 if snapshot.film.transparent else (*world.color, 1.0)
         self._shows_image = bool(world.image) and not snapshot.film.transparent
+        if self._layers:
+            self._layers.release()
+        self._layers = None
+        if plan.layered:
+            resources = (self._wavelength, self._highlights, self._background)
+            self._layers = LayeredDrawing(plan, self._drawing, self._buffers, target, *resources)
         self._blur = None
         if plan.blurs:
             self._blur = SubsampleBlur(plan, self._drawing.nearest, wavelengths)
@@ -203,6 +211,8 @@ class FrameRenderer(ReadableFrame):
             specs += self._tiles.specs()
         if self._blur:
             specs += self._blur.specs()
+        if self._layers:
+            specs += self._layers.specs(self._shows_image)
         return tuple(specs)
 
     def advance(self, samples, stage=nullcontext):
@@ -297,6 +307,10 @@ class FrameRenderer(ReadableFrame):
 
     def _draw_sample(self, index):
         targets = self._targets
+        if self._layers:
+            background = self._draw_background if self._shows_image else None
+            self._layers.draw(index, self._fullscreen, targets, self._view, background)
+            return
         framebuffer = targets.framebuffer("sample", depth="sample_depth")
         with framebuffer.bind():
             framebuffer.clear(color=self._background, depth=1.0)
@@ -361,6 +375,8 @@ class FrameRenderer(ReadableFrame):
         """Release the renderer's resources on the device; it cannot be used afterwards."""
         self._bokeh.release()
         self._release_targets()
+        if self._layers:
+            self._layers.release()
         if self._plain:
             self._plain.release()
         self._plain = self._buffers = self._drawing = self._blur = self._graded = None

@@ -8,6 +8,7 @@ from .bokeh_plan import BokehPlan
 from .chromatic import ChromaticPlan
 from .distortion import DistortionPlan
 from .frame_samples import SampleSource
+from .layered_plan import LayeredPlan
 
 
 @dataclass(frozen=True)
@@ -100,6 +101,8 @@ class FramePlan:
         from here on.
     time_limit : float or None
         Seconds of drawing after which no further samples are drawn.
+    layered : LayeredPlan or None
+        How samples are rays through depth layers; None: each is a drawing of the scene.
     """
 
     width: int
@@ -135,6 +138,7 @@ class FramePlan:
     automatic: AutomaticSampling | None = None
     first: int = 0
     time_limit: float | None = None
+    layered: LayeredPlan | None = None
 
     @property
     def size(self):

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...sampling.chromatic import ChromaticAberration
+from ...sampling.halton import halton
 from ...sampling.pixel_filter import subpixel_weights
 from ...sampling.rounds import FURTHER_PLACES
-from ...sampling.sequence import lens_samples, pixel_offsets
+from ...sampling.sequence import PIXEL_BASES, lens_samples, pixel_offsets
 from ...sampling.spectral_samples import SpectralSamples, wavelengths_for
 from ...sampling.subsamples import subsample_offsets
 from ...sampling.thin_lens import ThinLens
@@ -69,16 +70,40 @@ class SampleSource:
     progressive: bool
     endless: bool
 
+    def _colors(self, count):
+        """Return the wavelengths of the samples or None, and which place on the lens each has."""
+        if self.aberration is None:
+            return None, np.arange(count)
+        colors = wavelengths_for(self.aberration, count, self.seed, in_proportion=not self.endless)
+        # Samples of several wavelengths may look from the same place.
+        return colors, colors.lens_indices
+
+    def lens_sets(self, count, sets):
+        """Return several sets of places on the lens that are as even, for neighbouring pixels.
+
+        Parameters
+        ----------
+        count, sets : int
+
+        Returns
+        -------
+        ndarray of shape (sets, count, 2)
+            In m; the first is that of `draw`.
+        """
+        _, taken = self._colors(count)
+        different = int(taken.max()) + 1
+        if self.lens is None:
+            return np.zeros((sets, count, 2))
+        # Rotations on the torus of one sequence, themselves evenly spread.
+        shifts = halton(0, sets, PIXEL_BASES)
+        found = [
+            lens_samples(0, different, self.lens.iris, self.seed, shift)[taken] for shift in shifts
+        ]
+        return np.stack(found) * self.lens.aperture_radius
+
     def draw(self, count):
         """Return the first `count` samples, as `FrameSamples`."""
-        colors = None
-        taken = np.arange(count)
-        if self.aberration is not None:
-            colors = wavelengths_for(
-                self.aberration, count, self.seed, in_proportion=not self.endless
-            )
-            # Samples of several wavelengths share a place on the lens.
-            taken = colors.lens_indices
+        colors, taken = self._colors(count)
         different = int(taken.max()) + 1
         positions, offsets, counts = self._places(different)
         pixel = pixel_offsets(

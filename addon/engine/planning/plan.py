@@ -12,6 +12,7 @@ from .chromatic import plan_chromatic
 from .distortion import plan_distortion
 from .frame_plan import AutomaticSampling, FramePlan
 from .frame_samples import SampleSource
+from .layered_plan import plan_layered
 from .quality import LEAST_ERROR, settle
 
 # Diagonals of the picture over the diameter of the largest circle of confusion that counts as
@@ -186,8 +187,10 @@ def _plan(snapshot, sampling, automatic=None):
         subsamples=sampling.subsamples if adaptive else 0,
         filter_kind=film.filter_kind,
         filter_size_px=film.filter_size_px,
-        # The adaptive method has subsamples and levels of detail instead of a finer raster.
-        subpixels=1 if adaptive else subpixels(snapshot.content, width, height, support),
+        # Subsamples and levels of detail, or finer layers, take the place of a finer raster.
+        subpixels=1
+        if sampling.method != "REFERENCE"
+        else subpixels(snapshot.content, width, height, support),
         seed=sampling.seed,
         progressive=sampling.progressive,
         endless=automatic is not None,
@@ -231,6 +234,7 @@ def _plan(snapshot, sampling, automatic=None):
         source=source,
         automatic=automatic,
         time_limit=sampling.time_limit,
+        layered=plan_layered(sampling, source),
     )
 
 

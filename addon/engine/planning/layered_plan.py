@@ -1,0 +1,59 @@
+"""The part of a frame plan that concerns depth layers (methods 7)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# Sets of places on the lens: the pixels of a square of 4 x 4 have one each, so that what few
+# samples leave is fine noise instead of bands.
+SETS = 16
+
+
+@dataclass(frozen=True, eq=False)
+class LayeredPlan:
+    """How a frame is drawn through depth layers.
+
+    Parameters
+    ----------
+    count : int
+        Layers.
+    places : ndarray of shape (SETS, N, 2)
+        Places on the lens, m; the first set is that of the plan.
+    cell : float
+        Side of the part of the lens that a ray stands for, m; 0 casts thin rays.
+    overscan : float
+        How far the layers reach beyond the frame at most, as a share of its longer side.
+    culls : bool
+        Layers that a ray cannot meet are skipped.
+    """
+
+    count: int
+    places: np.ndarray
+    cell: float
+    overscan: float = 0.25
+    culls: bool = True
+
+
+def plan_layered(sampling, source):
+    """Plan the depth layers of a frame.
+
+    Parameters
+    ----------
+    sampling : Sampling
+    source : SampleSource
+        Of the frame's lens samples.
+
+    Returns
+    -------
+    LayeredPlan or None
+        None for another method.
+    """
+    if sampling.method != "LAYERED":
+        return None
+    places = source.lens_sets(sampling.lens_samples, SETS)
+    cell = 0.0
+    if source.lens is not None and sampling.cones:
+        different = len(np.unique(places[0], axis=0))
+        extent = source.lens.aperture_radius**2 / source.lens.iris.ratio
+        cell = float(np.sqrt(np.pi * extent / different))
+    return LayeredPlan(sampling.layers, places, cell)

@@ -1,0 +1,159 @@
+"""Depth layers on the device, and the pyramids that rays look them up in (methods 7).
+
+Layers are the slices of array textures. A depth is the value that the depth buffer of the whole
+frame would hold; `EMPTY` where a layer has no surface.
+"""
+
+import numpy as np
+
+from ...device import shader_source
+from ...device.shader_variants import variants
+from ...device.shaders import ShaderInfo, compile_shader, dispatch
+from ...device.targets import TargetSpec
+
+EMPTY = 2.0
+# As many as `LayeredParams` has bounds for.
+MOST_LAYERS = 64
+
+_GROUP = 8
+_COLORS = ("RGBA16F", "FLOAT_2D_ARRAY")
+_DEPTHS = ("R32F", "FLOAT_2D_ARRAY")
+_MATTES = ("RGBA32F", "FLOAT_2D_ARRAY")
+_RANGES = ("RGBA32F", "FLOAT_2D_ARRAY")
+
+
+@variants(mattes=(False, True))
+def _pack_info(mattes=False):
+    images = [(*_COLORS, "colors_img", ("WRITE",)), (*_DEPTHS, "depths_img", ("WRITE",))]
+    samplers = [("FLOAT_2D", "color_tx"), ("FLOAT_2D", "depth_tx")]
+    if mattes:
+        images.append((*_MATTES, "mattes_img", ("WRITE",)))
+        samplers.append(("FLOAT_2D", "mattes_tx"))
+    return ShaderInfo(
+        name="aplanat_layer_pack",
+        compute=shader_source.load("passes/layered/layer_pack_comp.glsl"),
+        samplers=tuple(samplers),
+        images=tuple(images),
+        push_constants=(("INT", "layer"), ("VEC4", "slice"), ("VEC4", "whole")),
+        defines=(("MATTES", "1"),) * mattes,
+        local_size=(_GROUP, _GROUP, 1),
+    )
+
+
+_PYRAMID = ShaderInfo(
+    name="aplanat_layer_pyramid",
+    compute=shader_source.load("passes/layered/layer_pyramid_comp.glsl"),
+    samplers=(("FLOAT_2D_ARRAY", "colors_tx"), ("FLOAT_2D_ARRAY", "depths_tx")),
+    images=(
+        (*_COLORS, "means_img", ("READ", "WRITE")),
+        (*_RANGES, "ranges_img", ("READ", "WRITE")),
+    ),
+    push_constants=(("INT", "level"), ("INT", "alpha_covers")),
+    local_size=(_GROUP, _GROUP, 1),
+)
+
+
+def level_count(width, height):
+    """Return how many levels a pyramid has, the last of which is one square."""
+    return max(1, (max(width, height) - 1).bit_length())
+
+
+def atlas_size(width, height):
+    """Return the size of the texture that holds all levels; see ``lib/pyramid_atlas_lib.glsl``.
+
+    Returns
+    -------
+    tuple of 2 int
+    """
+    sizes = [
+        tuple(-(-side // 2**level) for side in (width, height))
+        for level in range(1, level_count(width, height) + 1)
+    ]
+    second = sizes[1:]
+    return (
+        sizes[0][0] + max((w for w, _ in second), default=0),
+        max(sizes[0][1], sum(h for _, h in second)),
+    )
+
+
+def specs(width, height, layers, mattes=False):
+    """Return the targets that layers of a size need.
+
+    Returns
+    -------
+    list of TargetSpec
+        ``colors``, ``depths``, ``means``, ``ranges`` and, with mattes, ``mattes``.
+    """
+    atlas = atlas_size(width, height)
+    found = [
+        TargetSpec("colors", _COLORS[0], layers),
+        TargetSpec("depths", _DEPTHS[0], layers),
+        TargetSpec("means", _COLORS[0], layers, size=atlas),
+        TargetSpec("ranges", _RANGES[0], layers, size=atlas),
+    ]
+    if mattes:
+        found.append(TargetSpec("mattes", _MATTES[0], layers))
+    return found
+
+
+def depth_rows(projection):
+    """Return how a projection makes clip z and w of z in camera space: 4 numbers.
+
+    Parameters
+    ----------
+    projection : ndarray of shape (4, 4)
+    """
+    return tuple(np.asarray(projection)[2:, 2:].ravel().tolist())
+
+
+def pack(drawn, layer, textures, slice_projection, projection):
+    """Put a drawn slice into a layer.
+
+    Parameters
+    ----------
+    drawn : dict of str to GPUTexture
+        ``color``, ``depth`` and, with mattes, ``mattes`` of the slice.
+    layer : int
+    textures : Targets
+        Of `specs`.
+    slice_projection, projection : ndarray of shape (4, 4)
+        Of the slice's depth buffer, and of the frame's.
+    """
+    mattes = "mattes" in textures
+    shader = compile_shader(_pack_info(mattes))
+    shader.bind()
+    shader.image("colors_img", textures["colors"])
+    shader.image("depths_img", textures["depths"])
+    shader.uniform_sampler("color_tx", drawn["color"])
+    shader.uniform_sampler("depth_tx", drawn["depth"])
+    if mattes:
+        shader.image("mattes_img", textures["mattes"])
+        shader.uniform_sampler("mattes_tx", drawn["mattes"])
+    shader.uniform_int("layer", layer)
+    shader.uniform_float("slice", depth_rows(slice_projection))
+    shader.uniform_float("whole", depth_rows(projection))
+    dispatch(shader, -(-drawn["depth"].width // _GROUP), -(-drawn["depth"].height // _GROUP))
+
+
+def build_pyramids(textures, width, height, layers, alpha_covers):
+    """Fill the pyramids of all layers.
+
+    Parameters
+    ----------
+    textures : Targets
+        Of `specs`, with filled layers.
+    width, height, layers : int
+    alpha_covers : bool
+        A texel is covered as much as its colour's alpha says, else wholly where it has a surface.
+    """
+    shader = compile_shader(_PYRAMID)
+    shader.bind()
+    shader.uniform_sampler("colors_tx", textures["colors"])
+    shader.uniform_sampler("depths_tx", textures["depths"])
+    shader.image("means_img", textures["means"])
+    shader.image("ranges_img", textures["ranges"])
+    shader.uniform_int("alpha_covers", int(alpha_covers))
+    for level in range(1, level_count(width, height) + 1):
+        shader.uniform_int("level", level)
+        across, up = (-(-side // 2**level) for side in (width, height))
+        dispatch(shader, -(-across // _GROUP), -(-up // _GROUP), layers)

@@ -1,0 +1,297 @@
+// One lens sample of a picture that is kept as depth layers: from each pixel a ray goes to the sample's
+// place on the lens, and meets the layers front to back. In the raster and its depth buffer's values
+// the ray is a straight line, so that each layer is a height field over its texels.
+// Inputs: colors_tx, depths_tx (the layers), means_tx, ranges_tx (their pyramids, in an atlas);
+// MATTES: mattes_tx; behind_tx (what surrounds the scene, of one texel where it is one colour);
+// places_tx (row: one of 16 sets of places on the lens, m; column: sample), sample_index; offset
+// (of the sample in its pixel, texels); layered_buf; sweep (texels of the sample's raster a metre).
+// CHROMATIC: as in surface_vert, and gain (of the sweep, by 1 / focus distance).
+// Outputs: the sample's colour, premultiplied; MATTES: what the first surface met has; the depth
+// buffer's value of the first surface that hides what is behind it.
+// COUNTED: instead, how many layers there were to look into (x), how many were looked into (y), and
+// how often a depth was read on the way of a ray (z).
+// Source: methods 7 (LES09 sections 4 and 5).
+#include "lib/pyramid_atlas_lib.glsl"
+#include "lib/bokeh/sweep_lib.glsl"
+#ifdef CHROMATIC
+#include "lib/chromatic_lib.glsl"
+#endif
+
+// A texel without a surface.
+#define EMPTY 1.5
+// A cone is thinner than a texel, below it; half a level's step above 1.
+#define LEAST_CONE 1.41
+// Least share of the light that is followed further.
+#define LEAST_THROUGH 0.002
+// Depth reads along a ray's way through a layer; then the bracket is narrowed by false position.
+#define MOST_STEPS 24
+#define FALSE_POSITIONS 3
+// How often the depths that a ray may meet are asked for again.
+#define APPROACHES 2
+// A surface is met where its texels part by no more than this on the ray's way, in texels.
+#define SURFACE_STRETCH 1.0
+
+// The ray: its place in a layer's raster is start - along * depth.
+vec2 ray_start, ray_along;
+ivec2 size;
+int reads = 0;
+
+vec2 ray_place(float depth)
+{
+  return ray_start - ray_along * depth;
+}
+
+ivec2 texel_at(vec2 place)
+{
+  return clamp(ivec2(floor(place)), ivec2(0), size - 1);
+}
+
+float depth_at(vec2 place, int layer)
+{
+  reads++;
+  return texelFetch(depths_tx, ivec3(texel_at(place), layer), 0).x;
+}
+
+// A texel of a level of a layer's pyramid; level 0 is the layer.
+vec4 range_of(ivec2 square, int level, int layer)
+{
+  if (level == 0) {
+    float depth = texelFetch(depths_tx, ivec3(square, layer), 0).x;
+    return (depth < EMPTY) ? vec4(depth, depth, depth, 1.0) : vec4(2.0, -1.0, 2.0, 0.0);
+  }
+  return texelFetch(ranges_tx, ivec3(level_origin(size, level) + square, layer), 0);
+}
+
+// Least and largest depth over the texels that a part of the ray passes, with a margin, and what shares
+// squares with them.
+vec2 depths_between(vec2 a, vec2 b, float margin, int layer)
+{
+  ivec2 low = texel_at(min(a, b) - margin), high = texel_at(max(a, b) + margin);
+  int span = max(high.x - low.x, high.y - low.y);
+  int level = min(span == 0 ? 0 : findMSB(span) + 1, int(layered_buf.sampling.y));
+  ivec2 c = low >> level, d = high >> level;
+  // The last level is one square.
+  vec2 range = range_of(c, level, layer).xy;
+  if (d != c) {
+    vec4 e = range_of(d, level, layer);
+    vec4 f = range_of(ivec2(d.x, c.y), level, layer), g = range_of(ivec2(c.x, d.y), level, layer);
+    range = vec2(min(min(range.x, e.x), min(f.x, g.x)), max(max(range.y, e.y), max(f.y, g.y)));
+  }
+  return range;
+}
+
+// A surface that a ray meets in a layer.
+struct Hit {
+  vec2 place;
+  float depth;
+  bool found;
+};
+
+// The first crossing of a thin ray with a layer's height field, between two depths.
+Hit meet(vec2 between, int layer)
+{
+  vec2 from = ray_place(between.x), way = ray_place(between.y) - from;
+  float extent = between.y - between.x;
+  float texels = max(abs(way.x), abs(way.y));
+  int steps = clamp(int(ceil(texels)), 1, MOST_STEPS);
+  // Texels that the ray passes while its depth changes by one.
+  float pace = max(abs(ray_along.x), abs(ray_along.y));
+  float stretch = max(SURFACE_STRETCH, texels / float(steps * (1 << FALSE_POSITIONS)));
+  Hit hit = Hit(from, between.x, false);
+  float before = 1.0, at_before = 0.0;
+  for (int i = 0; i <= steps; i++) {
+    float at = float(i) / float(steps);
+    float ahead = depth_at(from + way * at, layer) - (between.x + extent * at);
+    if (ahead * pace > 0.5) {
+      before = ahead;
+      at_before = at;
+      continue;
+    }
+    bool bracketed = i > 0 && before * pace > 0.5;
+    if (bracketed) {
+      // False position between a place in front of the surface and one behind it.
+      float low = at_before, high = at, f_low = before, f_high = ahead;
+      for (int j = 0; j < FALSE_POSITIONS && abs(f_high) * pace > 0.5; j++) {
+        // Where the one in front is over nothing, the secant says nothing.
+        float part = (f_low > EMPTY - 1.0) ? 0.5 : clamp(f_low / (f_low - f_high), 0.1, 0.9);
+        float middle = mix(low, high, part);
+        float f = depth_at(from + way * middle, layer) - (between.x + extent * middle);
+        if (f * pace > 0.5) {
+          low = middle;
+          f_low = f;
+        }
+        else {
+          high = middle;
+          f_high = f;
+        }
+      }
+      at = high;
+      ahead = f_high;
+    }
+    if (-ahead * pace <= stretch || i == 0) {
+      return Hit(from + way * at, between.x + extent * at + ahead, true);
+    }
+    // It has passed behind the edge of something nearer, and goes on there.
+    before = ahead;
+    at_before = float(i) / float(steps);
+  }
+  return hit;
+}
+
+// Bilinear mix of four texels of a level of the atlas.
+vec4 mean_of(sampler2DArray atlas, vec2 place, int level, int layer)
+{
+  ivec2 last = level_size(size, level) - 1, origin = level_origin(size, level);
+  vec2 at = place / float(1 << level) - 0.5;
+  ivec2 low = clamp(ivec2(floor(at)), ivec2(0), last), high = min(low + 1, last);
+  vec2 part = clamp(at - vec2(low), 0.0, 1.0);
+  low += origin;
+  high += origin;
+  vec4 a = texelFetch(atlas, ivec3(low, layer), 0);
+  vec4 b = texelFetch(atlas, ivec3(high.x, low.y, layer), 0);
+  vec4 c = texelFetch(atlas, ivec3(low.x, high.y, layer), 0);
+  vec4 d = texelFetch(atlas, ivec3(high, layer), 0);
+  return mix(mix(a, b, part.x), mix(c, d, part.x), part.y);
+}
+
+// Mean depth of what is covered (x) and coverage (y) round a place of a level.
+vec2 height_of(vec2 place, int level, int layer)
+{
+  ivec2 last = level_size(size, level) - 1;
+  vec2 at = place / float(1 << level) - 0.5;
+  ivec2 low = clamp(ivec2(floor(at)), ivec2(0), last), high = min(low + 1, last);
+  vec2 part = clamp(at - vec2(low), 0.0, 1.0);
+  vec2 sum = vec2(0.0);
+  for (int i = 0; i < 4; i++) {
+    ivec2 corner = ivec2((i & 1) == 0 ? low.x : high.x, (i >> 1) == 0 ? low.y : high.y);
+    vec4 found = range_of(corner, level, layer);
+    float share = found.w * ((i & 1) == 0 ? 1.0 - part.x : part.x) *
+                  ((i >> 1) == 0 ? 1.0 - part.y : part.y);
+    sum += share * vec2(found.z, 1.0);
+  }
+  return vec2(sum.y > 0.0 ? sum.x / sum.y : 2.0, sum.y);
+}
+
+// A layer's colour round a place, and how much of the texel has a surface.
+vec4 color_at(vec2 place, int layer, out float covered)
+{
+  if (layered_buf.sampling.z < 0.5) {
+    covered = 1.0;
+    return texelFetch(colors_tx, ivec3(texel_at(place), layer), 0);
+  }
+  vec2 at = place - 0.5;
+  ivec2 low = clamp(ivec2(floor(at)), ivec2(0), size - 1), high = min(low + 1, size - 1);
+  vec2 part = clamp(at - vec2(low), 0.0, 1.0);
+  vec4 color = mix(mix(texelFetch(colors_tx, ivec3(low, layer), 0),
+                       texelFetch(colors_tx, ivec3(high.x, low.y, layer), 0),
+                       part.x),
+                   mix(texelFetch(colors_tx, ivec3(low.x, high.y, layer), 0),
+                       texelFetch(colors_tx, ivec3(high, layer), 0),
+                       part.x),
+                   part.y);
+  covered = clamp(color.a, 0.0, 1.0);
+  return color;
+}
+
+void main()
+{
+  size = textureSize(depths_tx, 0).xy;
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  int set = (pixel.x & 3) | ((pixel.y & 3) << 2);
+  vec2 lens = texelFetch(places_tx, ivec2(sample_index, set), 0).xy;
+  vec2 fine = layered_buf.raster.xy;
+  vec2 place = gl_FragCoord.xy + offset;
+  vec4 moves = sweep;
+  vec2 axis = vec2(0.0);
+  float scale = 1.0;
+#ifdef CHROMATIC
+  vec2 field = place * chromatic_buf.raster.xy + chromatic_buf.raster.zw;
+  vec2 strengths = field_strengths(field_tx, field, chromatic_buf);
+  moves += gain * chromatic_focus(dispersion.x, strengths.x, chromatic_buf);
+  scale = lateral_scale(dispersion.y, strengths.y, chromatic_buf);
+  axis = -chromatic_buf.raster.zw / chromatic_buf.raster.xy;
+#endif
+  ray_start = (axis + (place - axis - lens * moves.xy) / scale) * fine + layered_buf.raster.zw;
+  ray_along = lens * moves.zw / scale * fine;
+  // Texels that a ray's part of the lens moves a surface by: constant, and by the depth.
+  vec2 wide = layered_buf.sampling.w * max(fine.x, fine.y) * vec2(moves.x, moves.z);
+  vec4 color = vec4(0.0);
+  float through = 1.0, first = 1.0;
+#ifdef MATTES
+  out_mattes = vec4(0.0, 0.0, 0.0, empty_focus);
+  bool met = false;
+#endif
+  int looked = 0, layers = int(layered_buf.sampling.x);
+  for (int layer = 0; layer < layers && through > LEAST_THROUGH; layer++) {
+    vec2 between = layered_buf.bounds[layer].xy;
+    // What a cone reads lies within two of its squares.
+    vec2 diameters = 0.5 * abs(wide.x + wide.y * between);
+    float margin = max(diameters.x, diameters.y);
+    margin = (margin < LEAST_CONE) ? 0.0 : 4.0 * margin;
+    bool possible = true;
+    for (int i = 0; i < APPROACHES && possible; i++) {
+      vec2 seen = depths_between(ray_place(between.x), ray_place(between.y), margin, layer);
+      vec2 narrowed = vec2(max(between.x, seen.x), min(between.y, seen.y));
+      possible = narrowed.x <= narrowed.y;
+      if (narrowed == between) {
+        break;
+      }
+      between = possible ? narrowed : between;
+    }
+    if (!possible && culls == 1) {
+      continue;
+    }
+    looked++;
+    float middle = 0.5 * (between.x + between.y);
+    float diameter = 0.5 * abs(wide.x + wide.y * middle);
+    int level = min(int(floor(log2(max(diameter, 1.0)) + 0.5)), int(layered_buf.sampling.y));
+    if (level == 0) {
+      Hit hit = meet(between, layer);
+      if (hit.found) {
+        float covered;
+        vec4 light = color_at(hit.place, layer, covered);
+        color += through * light;
+        through *= 1.0 - covered;
+        first = (covered > 0.5) ? min(first, hit.depth) : first;
+#ifdef MATTES
+        if (!met) {
+          out_mattes = texelFetch(mattes_tx, ivec3(texel_at(hit.place), layer), 0);
+          met = true;
+        }
+#endif
+      }
+      continue;
+    }
+    // A cone: the height field is that of the level whose squares are as wide as the cone.
+    vec2 height = vec2(middle, 0.0);
+    for (int i = 0; i < FALSE_POSITIONS; i++) {
+      height.y = height_of(ray_place(clamp(height.x, between.x, between.y)), level, layer).y;
+      if (height.y <= 0.0) {
+        break;
+      }
+      height.x = height_of(ray_place(clamp(height.x, between.x, between.y)), level, layer).x;
+    }
+    if (height.y > 0.0) {
+      vec2 at = ray_place(clamp(height.x, between.x, between.y));
+      float covered = height_of(at, level, layer).y;
+      color += through * mean_of(means_tx, at, level, layer);
+      through *= 1.0 - covered;
+      first = (covered > 0.5) ? min(first, height.x) : first;
+#ifdef MATTES
+      if (!met && covered > 0.5) {
+        out_mattes = texelFetch(mattes_tx, ivec3(texel_at(at), layer), 0);
+        met = true;
+      }
+#endif
+    }
+  }
+#ifdef COUNTED
+  out_color = vec4(float(layers), float(looked), float(reads), 1.0);
+#else
+  ivec2 last = textureSize(behind_tx, 0) - 1;
+  vec4 behind = (last == ivec2(0)) ? layered_buf.surroundings :
+                                     texelFetch(behind_tx, min(pixel, last), 0);
+  out_color = color + through * behind;
+#endif
+  gl_FragDepth = first;
+}
