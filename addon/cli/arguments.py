@@ -28,8 +28,6 @@ _MAY_BE_NEGATIVE = {"--frames", "--level-bias", "--field-deg", "--planes-mm", "-
 
 _LATER = {
     "refocus": "depth layers",
-    "--method layered": "depth layers",
-    "--layers": "depth layers",
 }
 
 
@@ -83,11 +81,6 @@ def _not_yet(what, key):
 
 
 def _check_render(arguments):
-    if arguments.method == "layered":
-        key = f"--method {arguments.method}"
-        raise _not_yet(key, key)
-    if arguments.layers is not None:
-        raise _not_yet("--layers", "--layers")
     check_sampling(arguments)
     if arguments.frame_step is not None and arguments.frames is None:
         raise InputError("--frame-step belongs to --frames; give the first and the last frame, too")
@@ -162,7 +155,12 @@ def _add_render(commands):
     add("--camera", metavar="NAME", help="camera object to render from")
     add("--resolution", metavar="WxH", type=RESOLUTION, help="in pixels, at 100 %%")
     add("--method", choices=("reference", "adaptive", "layered"), help="default: the scene's")
-    add("--layers", metavar="K", type=whole_number(1, 64), help=argparse.SUPPRESS)
+    add(
+        "--layers",
+        metavar="K",
+        type=whole_number(1, 64),
+        help="layered method: depth layers; default: the scene's",
+    )
     add_sampling(parser)
     add("--no-bokeh", action="store_true", help="without separate highlights")
     add("--no-chromatic", action="store_true", help="without chromatic aberration")

@@ -93,6 +93,7 @@ def read_sampling(scene):
         level_bias=settings.level_bias,
         least_triangles=settings.least_triangles,
         reference_bokeh=settings.use_reference_bokeh,
+        layers=settings.layers,
     )
 
 

@@ -104,7 +104,6 @@ def test_unusable_words_are_refused_and_named(words, told):
     "words",
     [
         ["refocus", "y.exr", "-o", "z.exr"],
-        [*RENDER, "--method", "layered"],
         [*RENDER, "--layers", "8"],
     ],
 )

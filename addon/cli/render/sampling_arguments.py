@@ -102,6 +102,14 @@ def check_sampling(arguments):
                 f"{name} belongs to --method adaptive; the reference method has none: it draws"
                 " everything in full detail, --samples times"
             )
+    if arguments.method == "layered":
+        for name in _given(arguments, _ADAPTIVE):
+            raise InputError(
+                f"{name} belongs to --method adaptive; the layered method casts --samples rays a"
+                " pixel through --layers drawings in full detail"
+            )
+    if arguments.layers is not None and arguments.method not in (None, "layered"):
+        raise InputError(f"--layers belongs to --method layered, not to {arguments.method}")
     automatic, fixed = _given(arguments, _AUTOMATIC), _given(arguments, _FIXED)
     if automatic and fixed:
         raise InputError(
@@ -150,6 +158,7 @@ def apply_sampling(settings, render, arguments):
         ("level_bias", "level_bias"),
         ("min_triangles", "least_triangles"),
         ("seed", "seed"),
+        ("layers", "layers"),
     ):
         value = getattr(arguments, option)
         if value is not None:

@@ -48,6 +48,7 @@ def settings_in_force(scene, sources, arguments=None):
         "time_limit_s": own.render_time_limit or None,
         "samples": None if automatic else own.render_samples,
         "subsamples": _subsamples(own, automatic),
+        "layers": own.layers if own.method == "LAYERED" else None,
         "share_drawings": own.sharing_cells if own.use_sharing else 0,
         "levels_of_detail": own.use_levels,
         "level_bias": own.level_bias,

@@ -85,6 +85,8 @@ class APLANAT_RENDER_PT_sampling_advanced(EnginePanel, bpy.types.Panel):
             cells = sharing.row()
             cells.active = settings.use_sharing
             cells.prop(settings, "sharing_cells")
+        elif settings.method == "LAYERED":
+            column.prop(settings, "layers")
         column.prop(settings, "seed")
         pixel = column.column()
         pixel.prop(settings, "pixel_filter")

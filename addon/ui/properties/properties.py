@@ -39,8 +39,24 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
                 "Reference",
                 "Draw everything in full detail for every lens sample: exact, the slowest",
             ),
+            (
+                "LAYERED",
+                "Layered",
+                "Draw the scene once for each depth layer, and cast the rays of all lens samples"
+                " through the layers: the time hardly depends on the number of triangles",
+            ),
         ),
         default="ADAPTIVE",
+    )
+    layers: IntProperty(
+        name="Layers",
+        description="Depth layers of the layered method. More keep more of what hides behind one"
+        " another, and take more time and memory",
+        default=8,
+        min=1,
+        max=64,
+        soft_min=4,
+        soft_max=16,
     )
     use_target_error: BoolProperty(
         name="Noise Threshold",

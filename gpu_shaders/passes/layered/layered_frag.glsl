@@ -19,8 +19,6 @@
 
 // A texel without a surface.
 #define EMPTY 1.5
-// A cone is thinner than a texel, below it; half a level's step above 1.
-#define LEAST_CONE 1.41
 // Least share of the light that is followed further.
 #define LEAST_THROUGH 0.002
 // Depth reads along a ray's way through a layer; then the bracket is narrowed by false position.
@@ -30,6 +28,8 @@
 #define APPROACHES 2
 // A surface is met where its texels part by no more than this on the ray's way, in texels.
 #define SURFACE_STRETCH 1.0
+// Texels show one surface to a part of the lens if they move alike across it, in texels.
+#define MOVES_ALIKE 1.0
 
 // The ray: its place in a layer's raster is start - along * depth.
 vec2 ray_start, ray_along;
@@ -49,7 +49,9 @@ ivec2 texel_at(vec2 place)
 float depth_at(vec2 place, int layer)
 {
   reads++;
-  return texelFetch(depths_tx, ivec3(texel_at(place), layer), 0).x;
+  // What is empty lies far behind everything.
+  float depth = texelFetch(depths_tx, ivec3(texel_at(place), layer), 0).x;
+  return (depth > EMPTY) ? 4.0 : depth;
 }
 
 // A texel of a level of a layer's pyramid; level 0 is the layer.
@@ -62,11 +64,10 @@ vec4 range_of(ivec2 square, int level, int layer)
   return texelFetch(ranges_tx, ivec3(level_origin(size, level) + square, layer), 0);
 }
 
-// Least and largest depth over the texels that a part of the ray passes, with a margin, and what shares
-// squares with them.
-vec2 depths_between(vec2 a, vec2 b, float margin, int layer)
+// Least and largest depth over the texels that a part of the ray passes, and what shares squares.
+vec2 depths_between(vec2 a, vec2 b, int layer)
 {
-  ivec2 low = texel_at(min(a, b) - margin), high = texel_at(max(a, b) + margin);
+  ivec2 low = texel_at(min(a, b)), high = texel_at(max(a, b));
   int span = max(high.x - low.x, high.y - low.y);
   int level = min(span == 0 ? 0 : findMSB(span) + 1, int(layered_buf.sampling.y));
   ivec2 c = low >> level, d = high >> level;
@@ -87,6 +88,13 @@ struct Hit {
   bool found;
 };
 
+// Whether a ray is in front of a layer's surface by more than half a texel of its way, or over nothing:
+// `ahead` is the surface's depth less the ray's.
+bool in_front(float ahead, float pace)
+{
+  return ahead > EMPTY || ahead * pace > 0.5;
+}
+
 // The first crossing of a thin ray with a layer's height field, between two depths.
 Hit meet(vec2 between, int layer)
 {
@@ -102,21 +110,21 @@ Hit meet(vec2 between, int layer)
   for (int i = 0; i <= steps; i++) {
     float at = float(i) / float(steps);
     float ahead = depth_at(from + way * at, layer) - (between.x + extent * at);
-    if (ahead * pace > 0.5) {
+    if (in_front(ahead, pace)) {
       before = ahead;
       at_before = at;
       continue;
     }
-    bool bracketed = i > 0 && before * pace > 0.5;
+    bool bracketed = i > 0 && in_front(before, pace);
     if (bracketed) {
       // False position between a place in front of the surface and one behind it.
       float low = at_before, high = at, f_low = before, f_high = ahead;
       for (int j = 0; j < FALSE_POSITIONS && abs(f_high) * pace > 0.5; j++) {
         // Where the one in front is over nothing, the secant says nothing.
-        float part = (f_low > EMPTY - 1.0) ? 0.5 : clamp(f_low / (f_low - f_high), 0.1, 0.9);
+        float part = (f_low > EMPTY) ? 0.5 : clamp(f_low / (f_low - f_high), 0.1, 0.9);
         float middle = mix(low, high, part);
         float f = depth_at(from + way * middle, layer) - (between.x + extent * middle);
-        if (f * pace > 0.5) {
+        if (in_front(f, pace)) {
           low = middle;
           f_low = f;
         }
@@ -128,7 +136,7 @@ Hit meet(vec2 between, int layer)
       at = high;
       ahead = f_high;
     }
-    if (-ahead * pace <= stretch || i == 0) {
+    if (-ahead * pace <= stretch) {
       return Hit(from + way * at, between.x + extent * at + ahead, true);
     }
     // It has passed behind the edge of something nearer, and goes on there.
@@ -154,24 +162,6 @@ vec4 mean_of(sampler2DArray atlas, vec2 place, int level, int layer)
   return mix(mix(a, b, part.x), mix(c, d, part.x), part.y);
 }
 
-// Mean depth of what is covered (x) and coverage (y) round a place of a level.
-vec2 height_of(vec2 place, int level, int layer)
-{
-  ivec2 last = level_size(size, level) - 1;
-  vec2 at = place / float(1 << level) - 0.5;
-  ivec2 low = clamp(ivec2(floor(at)), ivec2(0), last), high = min(low + 1, last);
-  vec2 part = clamp(at - vec2(low), 0.0, 1.0);
-  vec2 sum = vec2(0.0);
-  for (int i = 0; i < 4; i++) {
-    ivec2 corner = ivec2((i & 1) == 0 ? low.x : high.x, (i >> 1) == 0 ? low.y : high.y);
-    vec4 found = range_of(corner, level, layer);
-    float share = found.w * ((i & 1) == 0 ? 1.0 - part.x : part.x) *
-                  ((i >> 1) == 0 ? 1.0 - part.y : part.y);
-    sum += share * vec2(found.z, 1.0);
-  }
-  return vec2(sum.y > 0.0 ? sum.x / sum.y : 2.0, sum.y);
-}
-
 // A layer's colour round a place, and how much of the texel has a surface.
 vec4 color_at(vec2 place, int layer, out float covered)
 {
@@ -191,6 +181,26 @@ vec4 color_at(vec2 place, int layer, out float covered)
                    part.y);
   covered = clamp(color.a, 0.0, 1.0);
   return color;
+}
+
+// The colour of a surface over the part of it that a ray's part of the lens brings to the pixel, and
+// how much of a texel it covers. A ray is as thick as half the way to its neighbours; the mean is that
+// of what is covered, over squares of texels whose surface moves alike across the ray's part.
+// What is covered is decided by the thin ray: the front and the back of a body lie in several layers
+// with one outline, whose blurred coverages would add up to a wider body.
+vec4 cone_color(Hit hit, int layer, vec2 wide, out float covered)
+{
+  vec4 light = color_at(hit.place, layer, covered);
+  float diameter = 0.5 * abs(wide.x + wide.y * hit.depth);
+  int level = min(int(floor(log2(max(diameter, 1.0)) + 0.5)), int(layered_buf.sampling.y));
+  for (; level > 0; level--) {
+    vec4 range = range_of(texel_at(hit.place) >> level, level, layer);
+    if ((range.y - range.x) * abs(wide.y) <= MOVES_ALIKE) {
+      float share = mean_of(ranges_tx, hit.place, level, layer).w;
+      return mean_of(means_tx, hit.place, level, layer) * (covered / max(share, 1e-6));
+    }
+  }
+  return light;
 }
 
 void main()
@@ -224,13 +234,9 @@ void main()
   int looked = 0, layers = int(layered_buf.sampling.x);
   for (int layer = 0; layer < layers && through > LEAST_THROUGH; layer++) {
     vec2 between = layered_buf.bounds[layer].xy;
-    // What a cone reads lies within two of its squares.
-    vec2 diameters = 0.5 * abs(wide.x + wide.y * between);
-    float margin = max(diameters.x, diameters.y);
-    margin = (margin < LEAST_CONE) ? 0.0 : 4.0 * margin;
     bool possible = true;
     for (int i = 0; i < APPROACHES && possible; i++) {
-      vec2 seen = depths_between(ray_place(between.x), ray_place(between.y), margin, layer);
+      vec2 seen = depths_between(ray_place(between.x), ray_place(between.y), layer);
       vec2 narrowed = vec2(max(between.x, seen.x), min(between.y, seen.y));
       possible = narrowed.x <= narrowed.y;
       if (narrowed == between) {
@@ -242,44 +248,16 @@ void main()
       continue;
     }
     looked++;
-    float middle = 0.5 * (between.x + between.y);
-    float diameter = 0.5 * abs(wide.x + wide.y * middle);
-    int level = min(int(floor(log2(max(diameter, 1.0)) + 0.5)), int(layered_buf.sampling.y));
-    if (level == 0) {
-      Hit hit = meet(between, layer);
-      if (hit.found) {
-        float covered;
-        vec4 light = color_at(hit.place, layer, covered);
-        color += through * light;
-        through *= 1.0 - covered;
-        first = (covered > 0.5) ? min(first, hit.depth) : first;
-#ifdef MATTES
-        if (!met) {
-          out_mattes = texelFetch(mattes_tx, ivec3(texel_at(hit.place), layer), 0);
-          met = true;
-        }
-#endif
-      }
-      continue;
-    }
-    // A cone: the height field is that of the level whose squares are as wide as the cone.
-    vec2 height = vec2(middle, 0.0);
-    for (int i = 0; i < FALSE_POSITIONS; i++) {
-      height.y = height_of(ray_place(clamp(height.x, between.x, between.y)), level, layer).y;
-      if (height.y <= 0.0) {
-        break;
-      }
-      height.x = height_of(ray_place(clamp(height.x, between.x, between.y)), level, layer).x;
-    }
-    if (height.y > 0.0) {
-      vec2 at = ray_place(clamp(height.x, between.x, between.y));
-      float covered = height_of(at, level, layer).y;
-      color += through * mean_of(means_tx, at, level, layer);
+    Hit hit = meet(between, layer);
+    if (hit.found) {
+      float covered;
+      vec4 light = cone_color(hit, layer, wide, covered);
+      color += through * light;
       through *= 1.0 - covered;
-      first = (covered > 0.5) ? min(first, height.x) : first;
+      first = (covered > 0.5) ? min(first, hit.depth) : first;
 #ifdef MATTES
-      if (!met && covered > 0.5) {
-        out_mattes = texelFetch(mattes_tx, ivec3(texel_at(at), layer), 0);
+      if (!met) {
+        out_mattes = texelFetch(mattes_tx, ivec3(texel_at(hit.place), layer), 0);
         met = true;
       }
 #endif

@@ -1,0 +1,111 @@
+"""The layered method's final renders against the reference method's (methods 7)."""
+
+import numpy as np
+import pytest
+
+from tests.pictures import energy_ratio, save_side_by_side, ssim
+from tests.render.test_adaptive import TRUTH, combined, passes, render, scene, surface_of
+
+__all__ = ["scene"]
+
+pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
+
+
+def check(scene, tmp_path, least_ssim, samples=64, energy=0.01, **settings):
+    layered = render(scene, "LAYERED", samples, **settings)
+    reference = combined(render(scene, "REFERENCE", TRUTH))
+    picture = combined(layered)
+    save_side_by_side(tmp_path / "layered_reference_difference.png", picture, reference)
+    assert np.isfinite(picture).all()
+    assert ssim(picture, reference) > least_ssim, tmp_path
+    assert energy_ratio(picture, reference) == pytest.approx(1.0, abs=energy), tmp_path
+    assert picture[..., 3].mean() == pytest.approx(reference[..., 3].mean(), abs=0.005), tmp_path
+    return layered
+
+
+def test_the_layered_picture_is_the_reference(scene, tmp_path):
+    # The bar of the whole method, which the shared scenes are held to as well.
+    work = check(scene, tmp_path, 0.97).statistics
+    # Each layer draws the scene once, whatever the number of samples.
+    assert work.triangles_submitted <= 8 * work.triangles_full_detail / 64
+
+
+def test_rays_as_thick_as_their_distance_are_better_than_thin_ones(scene, monkeypatch):
+    reference = combined(render(scene, "REFERENCE", TRUTH))
+    thick = ssim(combined(render(scene, "LAYERED", 16)), reference)
+    from addon.engine.planning import layered_plan
+
+    plan = layered_plan.LayeredPlan
+    monkeypatch.setattr(
+        layered_plan, "LayeredPlan", lambda count, places, cell: plan(count, places, 0.0)
+    )
+    thin = ssim(combined(render(scene, "LAYERED", 16)), reference)
+    assert thick > thin
+
+
+def test_skipping_layers_that_no_ray_meets_changes_no_bit(scene, monkeypatch):
+    culled = combined(render(scene, "LAYERED", 8))
+    from addon.engine.planning import layered_plan
+
+    plan = layered_plan.LayeredPlan
+    monkeypatch.setattr(layered_plan, "LayeredPlan", lambda *parts: plan(*parts, culls=False))
+    assert combined(render(scene, "LAYERED", 8)).tobytes() == culled.tobytes()
+
+
+def test_a_frame_has_the_same_bits_twice(scene):
+    first, second = (combined(render(scene, "LAYERED", 4)).tobytes() for _ in range(2))
+    assert first == second
+
+
+@pytest.mark.parametrize("focus", [0.4, 30.0])
+def test_everything_before_or_behind_the_focus(scene, tmp_path, focus):
+    scene.camera.data.dof.focus_distance = focus
+    scene.camera.data.dof.aperture_fstop = 0.5
+    check(scene, tmp_path, 0.96)
+
+
+def test_a_parallel_camera(scene, tmp_path):
+    scene.camera.data.type = "ORTHO"
+    scene.camera.data.ortho_scale = 6.0
+    scene.camera.data.dof.aperture_fstop = 0.3
+    check(scene, tmp_path, 0.97)
+
+
+def test_transparent_and_glowing_surfaces_before_and_behind(scene, tmp_path):
+    tree = surface_of(scene.objects["Near"])
+    clear = tree.node("BsdfTransparent").outputs[0]
+    shine = tree.node("Emission", {"Color": (1.0, 0.5, 0.1), "Strength": 2.0}).outputs[0]
+    both = tree.node("MixShader", {"Fac": 0.5, "Shader": clear, "Shader_001": shine})
+    tree.tree.links.new(both.outputs[0], tree.output.inputs[0])
+    check(scene, tmp_path, 0.96, energy=0.02)
+
+
+def test_a_hole_and_nothing_round_the_scene(scene, tmp_path):
+    scene.render.film_transparent = True
+    scene.objects["Near"].is_holdout = True
+    check(scene, tmp_path, 0.96)
+
+
+def test_mattes_and_geometry_come_with_it(scene):
+    layer = scene.view_layers[0]
+    layer.use_pass_z = layer.use_pass_cryptomatte_object = True
+    layer.aplanat.use_pass_focus_matte = layer.aplanat.use_pass_coc = True
+    layered, reference = (passes(render(scene, m, 64)) for m in ("LAYERED", "REFERENCE"))
+    assert layered.keys() == reference.keys()
+    for name in ("Depth", "CoC"):
+        assert layered[name].tobytes() == reference[name].tobytes()
+    matte = [found["Focus Matte"][..., 0] for found in (layered, reference)]
+    assert np.abs(matte[0] - matte[1]).mean() < 0.02
+    # The share of the first id of each pixel, where the same object has it.
+    ranks = [found["CryptoObject00"] for found in (layered, reference)]
+    same = ranks[0][..., 0] == ranks[1][..., 0]
+    assert same.mean() > 0.9
+    assert np.abs(ranks[0][..., 1] - ranks[1][..., 1])[same].mean() < 0.03
+
+
+def test_a_view_of_nothing(scene):
+    scene.camera.rotation_euler = (0.0, 0.0, 0.0)
+    scene.camera.location = (0.0, 0.0, -50.0)
+    picture = combined(render(scene, "LAYERED", 4))
+    reference = combined(render(scene, "REFERENCE", 4))
+    assert np.allclose(picture, reference, atol=1e-6)
