@@ -201,6 +201,12 @@ class BenchScene:
         return seconds
 
     @contextmanager
+    def renderer(self, snapshot, plan=None):
+        """Yield the `FrameRenderer` of a frame that nothing is drawn of yet."""
+        with self._prepared(snapshot, {}, plan) as renderer:
+            yield renderer
+
+    @contextmanager
     def _prepared(self, snapshot, stages, plan=None):
         with timed(stages, "plan"):
             plan = plan or plan_frame(snapshot)

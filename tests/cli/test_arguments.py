@@ -104,7 +104,6 @@ def test_unusable_words_are_refused_and_named(words, told):
     "words",
     [
         ["refocus", "y.exr", "-o", "z.exr"],
-        [*RENDER, "--layers", "8"],
     ],
 )
 def test_what_is_not_built_yet_names_what_brings_it(words):

@@ -50,6 +50,7 @@ ROOMS = {
     "passes.surface": ("device", "sampling", "snapshot"),
     "passes.visibility": ("device", "passes.surface"),
     "passes.bokeh": ("device", "passes.surface", "passes.visibility"),
+    "passes.layered": ("device", "passes.surface"),
     "passes": ("device", "sampling", "passes.surface", "passes.bokeh"),
     # Blender's data read into a snapshot.
     "scene.images": ("snapshot",),
@@ -67,6 +68,8 @@ ROOMS = {
         *("device", "sampling", "passes", "passes.surface"),
         *("levels", "levels.making"),
     ),
+    # The scene through depth layers, in place of a drawing for each lens sample.
+    "engine.layered": ("device", "layers", "passes.layered", "passes.surface"),
     "engine.visibility": (
         *("device", "passes.surface", "passes.visibility", "passes.bokeh"),
         "engine.drawing",
@@ -78,7 +81,8 @@ ROOMS = {
     ),
     "engine.frame": (
         *("device", "sampling", "snapshot", "passes", "passes.surface", "passes.bokeh"),
-        *("engine.planning", "engine.drawing", "engine.visibility", "engine.bokeh"),
+        *("engine.planning", "engine.drawing", "engine.layered"),
+        *("engine.visibility", "engine.bokeh"),
     ),
     "engine": (
         *("device", "snapshot", "lens_io", "levels", "scene", "scene.camera"),

@@ -109,3 +109,12 @@ def test_a_view_of_nothing(scene):
     picture = combined(render(scene, "LAYERED", 4))
     reference = combined(render(scene, "REFERENCE", 4))
     assert np.allclose(picture, reference, atol=1e-6)
+
+
+def test_highlights_are_splatted_over_it(scene):
+    # A lamp far out of focus: its disc is the same over either method.
+    tree = surface_of(scene.objects["Far"])
+    tree.emission((30.0, 24.0, 18.0))
+    pictures = [combined(render(scene, method, 64)) for method in ("LAYERED", "ADAPTIVE")]
+    assert energy_ratio(*pictures) == pytest.approx(1.0, abs=0.01)
+    assert ssim(*pictures) > 0.98

@@ -148,6 +148,11 @@ class FrameRenderer(ReadableFrame):
         return BokehStage(plan, self._drawing, buffers, occluders, self._highlights, self._field)
 
     @property
+    def layered(self):
+        """The `LayeredDrawing` of the frame; None with another method."""
+        return self._layers
+
+    @property
     def counts(self):
         """Work done since the frame began, as `DrawingCounts`."""
         own = self._earlier_rounds + self._drawing.counts
