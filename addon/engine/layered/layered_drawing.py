@@ -129,7 +129,7 @@ class LayeredDrawing:
     drawing : SceneDrawing
         Aimed at the frame.
     buffers : SceneBuffers
-    target : passes.surface.surface.SurfaceTarget
+    target : passes.surface.surface_target.SurfaceTarget
         That the surfaces are drawn into.
     wavelengths : callable
         From a sample, or None for the reference wavelength, to its `ChromaticSample` or None.
