@@ -118,7 +118,8 @@ def load_layers(path):
             raise InputError(
                 f"'{path}' lacks layer {number} of {len(bounds)} (part '{name}'); capture again"
             )
-        layers.append(_layer(path, by_name[name], near, math.inf if far is None else far))
+        bounds_ = [math.inf if bound is None else bound for bound in (near, far)]
+        layers.append(_layer(path, by_name[name], *bounds_))
     stack = LayerStack(layers=tuple(layers), camera=camera, report=report, **stack_numbers)
     check_stack(stack, f"'{path}'")
     return stack
@@ -236,7 +237,7 @@ def _words(stack):
     told["camera"] = asdict(camera)
     # JSON knows no infinity.
     told["layers"] = [
-        [float(layer.near), None if math.isinf(layer.far) else float(layer.far)]
+        [None if math.isinf(bound) else float(bound) for bound in (layer.near, layer.far)]
         for layer in stack.layers
     ]
     words = {
