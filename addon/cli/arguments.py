@@ -10,6 +10,7 @@ from pathlib import Path
 from ..errors import InputError
 from .capture.capture_arguments import add_capture, check_capture
 from .lens.lens_arguments import add_lens, check_lens
+from .refocus.refocus_arguments import add_refocus, check_refocus
 from .render.sampling_arguments import add_sampling, check_sampling
 from .words.frame_values import MAX_FRAME, frame_number, frame_range
 from .words.option_values import (
@@ -25,10 +26,6 @@ ENDINGS = (".exr", ".png")
 
 # argparse would take a negative number after these for an option.
 _MAY_BE_NEGATIVE = {"--frames", "--level-bias", "--field-deg", "--planes-mm", "--rho"}
-
-_LATER = {
-    "refocus": "depth layers",
-}
 
 
 def parse(words, program="aplanat"):
@@ -57,8 +54,6 @@ def parse(words, program="aplanat"):
             f"{program} bench measures in a checkout of the sources; an installed Aplanat has none:"
             " get the sources (see README.md) and call scripts/aplanat bench there"
         )
-    if words and words[0] in _LATER:
-        raise _not_yet(f"{program} {words[0]}", words[0])
     arguments = _parser(program).parse_args(joined_negatives(words, _MAY_BE_NEGATIVE))
     if arguments.command is None:
         raise InputError(f"no command given (see `{program} --help`)")
@@ -66,6 +61,8 @@ def parse(words, program="aplanat"):
         _check_render(arguments)
     elif arguments.command == "capture":
         check_capture(arguments)
+    elif arguments.command == "refocus":
+        check_refocus(arguments)
     elif arguments.command == "lens":
         check_lens(arguments)
     return arguments
@@ -74,10 +71,6 @@ def parse(words, program="aplanat"):
 def wants_json(words):
     """Whether `--json` is among the arguments, even if the rest is invalid."""
     return "--json" in words
-
-
-def _not_yet(what, key):
-    return InputError(f"{what} is not in version {version()}; it comes later, with {_LATER[key]}")
 
 
 def _check_render(arguments):
@@ -116,6 +109,7 @@ def _parser(program):
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=Parser)
     _add_render(commands)
     add_capture(commands)
+    add_refocus(commands)
     add_lens(commands, Parser)
     return parser
 

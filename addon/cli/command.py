@@ -134,6 +134,8 @@ def _runner(arguments, prepare):
         prepare()
         if arguments.command == "capture":
             from .capture.capture_command import capture as run
+        elif arguments.command == "refocus":
+            from .refocus.refocus_command import refocus_files as run
         else:
             from .render.render_command import render as run
     return run

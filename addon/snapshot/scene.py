@@ -9,6 +9,7 @@ snapshots.
 
 from dataclasses import dataclass
 
+from ..layers.layer_stack import LayerStack
 from .camera import Camera
 from .content import SceneContent
 from .film import Film, Sampling
@@ -29,6 +30,8 @@ class SceneSnapshot:
     layer_name : str
     alpha_threshold : float
         Opacity below which a surface is left out of Depth, Normal and their like.
+    stack : LayerStack or None
+        A captured picture that is seen through the lens instead of the content.
     """
 
     content: SceneContent
@@ -38,3 +41,4 @@ class SceneSnapshot:
     passes: tuple[str, ...] = ("Combined",)
     layer_name: str = ""
     alpha_threshold: float = 0.5
+    stack: LayerStack | None = None

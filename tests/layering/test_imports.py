@@ -41,8 +41,8 @@ ROOMS = {
         *("files", "optics", "optics.rays", "sampling"),
         *("lens_bokeh.look", "lens_bokeh.tables", "lens_io"),
     ),
-    "snapshot": ("optics", "sampling", "lens_bokeh.look"),
     "layers": ("files",),
+    "snapshot": ("layers", "optics", "sampling", "lens_bokeh.look"),
     "levels.making": ("snapshot",),
     "levels": ("files", "snapshot", "levels.making"),
     # The graphics device, and passes on it.
@@ -63,7 +63,7 @@ ROOMS = {
     "scene.geometry": ("snapshot", "scene.camera", "scene.shading"),
     "scene": ("snapshot", "scene.camera", "scene.geometry", "scene.shading"),
     # A frame: planned, drawn, shown.
-    "engine.planning": ("sampling", "snapshot", "levels"),
+    "engine.planning": ("layers", "sampling", "snapshot", "levels"),
     "engine.drawing": (
         *("device", "sampling", "passes", "passes.surface"),
         *("levels", "levels.making"),
@@ -85,8 +85,8 @@ ROOMS = {
         *("engine.visibility", "engine.bokeh"),
     ),
     "engine": (
-        *("device", "snapshot", "lens_io", "levels", "scene", "scene.camera"),
-        *("engine.planning", "engine.drawing", "engine.bokeh", "engine.frame"),
+        *("device", "sampling", "snapshot", "lens_io", "levels", "scene", "scene.camera"),
+        *("engine.planning", "engine.drawing", "engine.layered", "engine.bokeh", "engine.frame"),
     ),
     # Another engine's pictures, or ours, as depth layers.
     "capture": ("sampling", "layers", "scene.camera"),
@@ -119,7 +119,11 @@ ROOMS = {
         *("files", "device", "scene", "engine", "capture"),
         *("cli.words", "cli.render"),
     ),
-    "cli": ("cli.words", "cli.render", "cli.lens", "cli.capture"),
+    "cli.refocus": (
+        *("files", "device", "sampling", "layers", "engine"),
+        *("cli.words", "cli.render"),
+    ),
+    "cli": ("cli.words", "cli.render", "cli.lens", "cli.capture", "cli.refocus"),
 }
 
 # What stands in no room: the package, its exceptions, and what makes it known to Blender.

@@ -1,5 +1,7 @@
 """The layered method's final renders against the reference method's (methods 7)."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,25 +32,29 @@ def test_the_layered_picture_is_the_reference(scene, tmp_path):
     assert work.triangles_submitted <= 8 * work.triangles_full_detail / 64
 
 
+def changed_plan(monkeypatch, **values):
+    """Have the layers of every frame planned with other values."""
+    from addon.engine.planning import plan
+
+    planned = plan.plan_layered
+
+    def plan_layered(*arguments):
+        found = planned(*arguments)
+        return found and replace(found, **values)
+
+    monkeypatch.setattr(plan, "plan_layered", plan_layered)
+
+
 def test_rays_as_thick_as_their_distance_are_better_than_thin_ones(scene, monkeypatch):
     reference = combined(render(scene, "REFERENCE", TRUTH))
     thick = ssim(combined(render(scene, "LAYERED", 16)), reference)
-    from addon.engine.planning import layered_plan
-
-    plan = layered_plan.LayeredPlan
-    monkeypatch.setattr(
-        layered_plan, "LayeredPlan", lambda count, places, cell: plan(count, places, 0.0)
-    )
-    thin = ssim(combined(render(scene, "LAYERED", 16)), reference)
-    assert thick > thin
+    changed_plan(monkeypatch, cell=0.0)
+    assert thick > ssim(combined(render(scene, "LAYERED", 16)), reference)
 
 
 def test_skipping_layers_that_no_ray_meets_changes_no_bit(scene, monkeypatch):
     culled = combined(render(scene, "LAYERED", 8))
-    from addon.engine.planning import layered_plan
-
-    plan = layered_plan.LayeredPlan
-    monkeypatch.setattr(layered_plan, "LayeredPlan", lambda *parts: plan(*parts, culls=False))
+    changed_plan(monkeypatch, culls=False)
     assert combined(render(scene, "LAYERED", 8)).tobytes() == culled.tobytes()
 
 

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...layers.layer_stack import LayerStack
+
 # Sets of places on the lens: the pixels of a square of 4 x 4 have one each, so that what few
 # samples leave is fine noise instead of bands.
 SETS = 16
@@ -25,6 +27,8 @@ class LayeredPlan:
         How far the layers reach beyond the frame at most, as a share of its longer side.
     culls : bool
         Layers that a ray cannot meet are skipped.
+    stack : LayerStack or None
+        The layers, of a captured picture; None: slices of the scene.
     """
 
     count: int
@@ -32,9 +36,10 @@ class LayeredPlan:
     cell: float
     overscan: float = 0.25
     culls: bool = True
+    stack: LayerStack | None = None
 
 
-def plan_layered(sampling, source):
+def plan_layered(sampling, source, stack=None):
     """Plan the depth layers of a frame.
 
     Parameters
@@ -42,6 +47,7 @@ def plan_layered(sampling, source):
     sampling : Sampling
     source : SampleSource
         Of the frame's lens samples.
+    stack : LayerStack or None
 
     Returns
     -------
@@ -56,4 +62,4 @@ def plan_layered(sampling, source):
         different = len(np.unique(places[0], axis=0))
         extent = source.lens.aperture_radius**2 / source.lens.iris.ratio
         cell = float(np.sqrt(np.pi * extent / different))
-    return LayeredPlan(sampling.layers, places, cell)
+    return LayeredPlan(sampling.layers, places, cell, stack=stack)

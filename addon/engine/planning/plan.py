@@ -234,7 +234,7 @@ def _plan(snapshot, sampling, automatic=None):
         source=source,
         automatic=automatic,
         time_limit=sampling.time_limit,
-        layered=plan_layered(sampling, source),
+        layered=plan_layered(sampling, source, snapshot.stack),
     )
 
 

@@ -1,0 +1,1 @@
+"""`aplanat refocus`: captured pictures seen through the lens again."""

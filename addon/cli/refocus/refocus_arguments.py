@@ -1,0 +1,74 @@
+"""The words of `aplanat refocus`; no Blender."""
+
+from pathlib import Path
+
+from ...errors import InputError
+from ..words.frame_values import frame_range
+from ..words.option_values import file_with_ending, positive_number, whole_number
+from ..words.parser import add_output_options
+
+_MOST_SAMPLES = 65536
+_MOST_BLADES = 64
+
+
+def add_refocus(commands):
+    """Add the command to a parser's subcommands."""
+    parser = commands.add_parser(
+        "refocus",
+        help="see captured depth layers through another lens",
+        description="Makes pictures of captured depth layers (`aplanat capture`) with another"
+        " focus, f-number or iris, without rendering again. What is not given is as it was"
+        " captured.",
+        allow_abbrev=False,
+    )
+    add = parser.add_argument
+    add("layers", metavar="LAYERS_####.exr", type=Path, help="captured files")
+    add(
+        "-o",
+        "--output",
+        metavar="OUT_####",
+        type=file_with_ending(".exr", ".png"),
+        required=True,
+        help="picture file: .exr (float, scene linear) or .png (as displayed); #### becomes the"
+        " frame number",
+    )
+    add(
+        "--frames",
+        metavar="A..B",
+        type=frame_range,
+        help="first and last frame; default: every captured file that there is",
+    )
+    add("--focus", metavar="DISTANCE", type=positive_number(), help="in m along the optical axis")
+    add("--fstop", metavar="X", type=positive_number(), help="f-number")
+    add("--blades", metavar="N", type=whole_number(0, _MOST_BLADES), help="of the iris; 0: round")
+    add(
+        "--samples",
+        metavar="N",
+        type=whole_number(1, _MOST_SAMPLES),
+        default=128,
+        help="lens samples (default 128)",
+    )
+    add("--seed", metavar="N", type=whole_number(0, 2**31 - 1), default=0)
+    add("--strict", action="store_true", help="take warnings for errors: exit code 2")
+    add("--stats", metavar="FILE", type=Path, help="write statistics as JSON")
+    add_output_options(parser)
+
+
+def check_refocus(arguments):
+    """Refuse options that do not go together.
+
+    Raises
+    ------
+    InputError
+    """
+    if arguments.frames is not None and "#" not in arguments.layers.name:
+        raise InputError(
+            f"--frames chooses among files with a frame number; '{arguments.layers}' has no #### in"
+            " its name"
+        )
+    first, last = arguments.frames or (0, 0)
+    if first != last and "#" not in arguments.output.name:
+        raise InputError(
+            f"-o {arguments.output}: several frames need #### in the file's name for the frame"
+            " number"
+        )

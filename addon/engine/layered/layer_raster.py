@@ -1,0 +1,122 @@
+"""The raster that depth layers have, and depths in the values of a frame's depth buffer."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# Texels of all layers together, and along a side of a pixel: what is in focus is as smooth as the
+# pixel filter makes it only where texels are finer than pixels.
+_MOST_TEXELS = 1 << 25
+_FINEST = 3
+
+
+@dataclass(frozen=True)
+class LayerRaster:
+    """The raster of the layers.
+
+    Parameters
+    ----------
+    width, height : int
+        In texels.
+    fine : int
+        Texels along a side of a pixel.
+    margin : tuple of 2 int
+        Pixels beyond the frame on the left and right, at the bottom and the top.
+    """
+
+    width: int
+    height: int
+    fine: int
+    margin: tuple[int, int]
+
+
+def layer_raster(plan, nearest, farthest):
+    """Choose the raster of the layers.
+
+    Parameters
+    ----------
+    plan : FramePlan
+        With `layered`.
+    nearest, farthest : float
+        Depths between which there is something, m.
+
+    Returns
+    -------
+    LayerRaster
+    """
+    reach = plan_reach(plan, nearest, farthest)
+    most = int(plan.layered.overscan * max(plan.width, plan.height))
+    margin = tuple(int(min(np.ceil(side), most)) for side in reach)
+    width, height = plan.width + 2 * margin[0], plan.height + 2 * margin[1]
+    affordable = int(np.sqrt(_MOST_TEXELS / (width * height * plan.layered.count)))
+    fine = int(np.clip(affordable, 1, _FINEST))
+    return LayerRaster(width * fine, height * fine, fine, margin)
+
+
+def plan_reach(plan, nearest, farthest):
+    """Return how far the lens moves anything between two depths across and up, in pixels."""
+    moved = np.zeros(2)
+    sweeps = [plan.sweep]
+    if plan.chromatic:
+        base, gain = plan.sweep_parts
+        sweeps = [base + gain * focus for focus in plan.chromatic.overall().inverse_focus]
+    for sweep in sweeps:
+        for depth in (window_depth(plan, nearest), window_depth(plan, farthest)):
+            moved = np.maximum(moved, np.abs(plan.lens_extent * (sweep[:2] + sweep[2:] * depth)))
+    return moved
+
+
+def window_depth(plan, depth):
+    """Return what the depth buffer of a frame holds for a depth in m."""
+    clip = plan.projection @ np.array([0.0, 0.0, -depth, 1.0])
+    return float(clip[2] / clip[3]) * 0.5 + 0.5
+
+
+def clipped_projection(projection, near, far):
+    """Return a projection with other near and far planes, m.
+
+    Parameters
+    ----------
+    projection : ndarray of shape (4, 4)
+    near, far : float
+
+    Returns
+    -------
+    ndarray of shape (4, 4)
+    """
+    found = np.array(projection, np.float64)
+    if found[3, 2] == 0.0:
+        found[2, 2:] = -2.0 / (far - near), -(far + near) / (far - near)
+    else:
+        found[2, 2:] = -(far + near) / (far - near), -2.0 * far * near / (far - near)
+    return found
+
+
+def clip_planes(projection):
+    """Return the depths of the near and the far plane of a projection, m."""
+    slope, offset = projection[2, 2:]
+    if projection[3, 2] == 0.0:
+        return (offset + 1.0) / slope, (offset - 1.0) / slope
+    return offset / (slope - 1.0), offset / (slope + 1.0) if slope != -1.0 else np.inf
+
+
+@dataclass(frozen=True, eq=False)
+class DeviceLayers:
+    """Depth layers on the device.
+
+    Parameters
+    ----------
+    textures : Targets
+        See `passes.layered.layers.specs`.
+    raster : LayerRaster
+    bounds : ndarray of shape (K, 2)
+        Least and largest value of the depth buffer that each layer may hold.
+    filtered : bool
+        Colours are filtered pictures: alpha is the share of a texel that is covered, and they are
+        mixed between texels; else a texel is one place of one surface.
+    """
+
+    textures: object
+    raster: LayerRaster
+    bounds: np.ndarray
+    filtered: bool

@@ -1,0 +1,69 @@
+"""`aplanat refocus`: captured files to pictures, and what it refuses."""
+
+import numpy as np
+import OpenEXR
+import pytest
+
+from addon.layers.layer_file import save_layers
+from tests.engine.test_refocus import stack
+
+__all__ = ["stack"]
+
+
+@pytest.fixture
+def captured(stack, tmp_path):
+    for frame in (1, 2, 5):
+        save_layers(tmp_path / f"layers_{frame:04d}.exr", stack)
+    return tmp_path / "layers_####.exr"
+
+
+def test_every_captured_frame_becomes_a_picture(aplanat, captured, tmp_path):
+    done = aplanat(
+        *("refocus", captured, "-o", tmp_path / "out_####.exr", "--focus", "2", "--samples", "16"),
+        "--json",
+    )
+    assert done.code == 0, done.err
+    assert [told["frame"] for told in done.answer["frames"]] == [1, 2, 5]
+    pictures = []
+    for file in done.answer["files"]:
+        with OpenEXR.File(file) as found:
+            pictures.append(np.array(found.channels()["RGBA"].pixels))
+    assert pictures[0].shape == (32, 48, 4)
+    assert pictures[0].tobytes() == pictures[2].tobytes()
+    assert done.answer["frames"][0]["focus_distance_m"] == 2.0
+
+
+def test_a_png_and_chosen_frames(aplanat, captured, tmp_path):
+    done = aplanat(
+        *("refocus", captured, "-o", tmp_path / "out_##.png", "--frames", "1..2"),
+        *("--samples", "4", "--fstop", "2", "--blades", "5"),
+    )
+    assert done.code == 0, done.err
+    assert sorted(p.name for p in tmp_path.glob("out_*")) == ["out_01.png", "out_02.png"]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["none_####.exr", "-o", "x_####.exr"], "whatever its number"),
+        (["none.exr", "-o", "x.exr"], "does not exist"),
+        (["layers_####.exr", "-o", "x.exr"], "need ####"),
+        (["layers_####.exr", "-o", "x_####.exr", "--frames", "1..4"], "layers_0003.exr"),
+        (["layers_0001.exr", "-o", "x.exr", "--frames", "1..4"], "has no ####"),
+        (["layers_0001.exr", "-o", "x.exr", "--focus", "0"], "greater than 0"),
+        (["foreign.exr", "-o", "x.exr"], "foreign.exr"),
+        (["broken.exr", "-o", "x.exr"], "broken.exr"),
+    ],
+)
+def test_what_cannot_be_is_one_line(aplanat, captured, tmp_path, words, told):
+    header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
+    pixels = np.zeros((4, 4, 4), np.float32)
+    OpenEXR.File(header, {"RGBA": pixels}).write(str(tmp_path / "foreign.exr"))
+    whole = (tmp_path / "layers_0001.exr").read_bytes()
+    (tmp_path / "broken.exr").write_bytes(whole[: len(whole) // 2])
+    words = [tmp_path / word if word.endswith(".exr") else word for word in words]
+    before = set(tmp_path.iterdir())
+    done = aplanat("refocus", *words)
+    assert done.code == 2, done
+    assert told in done.err and done.err.count("\n") == 1, done.err
+    assert before == set(tmp_path.iterdir())
