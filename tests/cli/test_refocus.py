@@ -52,6 +52,7 @@ def test_a_png_and_chosen_frames(aplanat, captured, tmp_path):
         (["layers_0001.exr", "-o", "x.exr", "--frames", "1..4"], "has no ####"),
         (["layers_0001.exr", "-o", "x.exr", "--focus", "0"], "greater than 0"),
         (["foreign.exr", "-o", "x.exr"], "foreign.exr"),
+        (["foreign.exr", "-o", "x.exr", "--depth-range", "3,1"], "NEAR"),
         (["broken.exr", "-o", "x.exr"], "broken.exr"),
     ],
 )
@@ -67,3 +68,17 @@ def test_what_cannot_be_is_one_line(aplanat, captured, tmp_path, words, told):
     assert done.code == 2, done
     assert told in done.err and done.err.count("\n") == 1, done.err
     assert before == set(tmp_path.iterdir())
+
+
+def test_a_picture_with_a_depth_pass_is_one_layer(aplanat, tmp_path):
+    header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
+    pixels = np.full((24, 32, 4), 0.5, np.float32)
+    depth = np.full((24, 32), 4.0, np.float32)
+    OpenEXR.File(header, {"RGBA": pixels, "Depth.Z": depth}).write(str(tmp_path / "a.exr"))
+    words = ("refocus", tmp_path / "a.exr", "-o", tmp_path / "b.exr", "--samples", "4")
+    done = aplanat(*words, "--json")
+    assert done.code == 0, done.err
+    assert any("one layer does not know" in line for line in done.answer["warnings"])
+    with OpenEXR.File(str(tmp_path / "b.exr")) as found:
+        assert np.allclose(found.channels()["RGBA"].pixels[..., :3], 0.5, atol=2e-3)
+    assert aplanat(*words, "--strict").code == 2

@@ -1,5 +1,6 @@
 """The words of `aplanat refocus`; no Blender."""
 
+import argparse
 from pathlib import Path
 
 from ...errors import InputError
@@ -49,9 +50,47 @@ def add_refocus(commands):
         help="lens samples (default 128)",
     )
     add("--seed", metavar="N", type=whole_number(0, 2**31 - 1), default=0)
+    flat = parser.add_argument_group(
+        "pictures with a depth pass",
+        "Any EXR picture with a depth channel is taken as one layer; what is not given is guessed"
+        " from names, metadata and values, and told.",
+    )
+    flat.add_argument("--depth-channel", metavar="NAME", help="channel of the depth")
+    flat.add_argument("--color-layer", metavar="NAME", help="what stands before .R of the colours")
+    flat.add_argument(
+        "--ray-depth",
+        action="store_true",
+        default=None,
+        help="depth is the distance from the lens, not the one along the optical axis",
+    )
+    flat.add_argument(
+        "--depth-range",
+        metavar="NEAR,FAR",
+        type=_depth_range,
+        help="depths in m that the values 0 and 1 stand for",
+    )
+    flat.add_argument(
+        "--inverted-depth",
+        action="store_true",
+        default=None,
+        help="1 is near; without --depth-range: values are one over the depth",
+    )
+    flat.add_argument("--depth-scale", metavar="X", type=positive_number(), help="metres in a unit")
+    flat.add_argument("--focal-length", metavar="MM", type=positive_number())
+    flat.add_argument("--sensor-width", metavar="MM", type=positive_number())
     add("--strict", action="store_true", help="take warnings for errors: exit code 2")
     add("--stats", metavar="FILE", type=Path, help="write statistics as JSON")
     add_output_options(parser)
+
+
+def _depth_range(text):
+    try:
+        near, far = (float(word) for word in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is not NEAR,FAR, such as 0.5,20") from None
+    if not 0.0 <= near < far < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text}: NEAR must be at least 0, and FAR beyond it")
+    return near, far
 
 
 def check_refocus(arguments):

@@ -12,7 +12,8 @@ from ...engine.refocus import RefocusSettings, lens_of, refocus
 from ...errors import InputError, StrictError, UnfinishedFileError
 from ...files.frame_path import frame_path
 from ...files.whole_file import check_writable, removed_on_signals, whole_file
-from ...layers.layer_file import load_layers
+from ...layers.flat_input import FlatOptions, load_flat
+from ...layers.layer_file import is_layer_file, load_layers
 from ...sampling.iris import Iris
 from ..render.pictures import set_png
 from ..render.statistics import peak_memory
@@ -115,7 +116,7 @@ def captured_files(path, frames):
 
 def _refocus_frame(frame, file, arguments, console, warnings):
     begun = time.perf_counter()
-    stack = load_layers(file)
+    stack = load_layers(file) if is_layer_file(file) else load_flat(file, _flat(arguments))
     new = [line for line in stack.report if line not in warnings]
     if new and arguments.strict:
         raise StrictError(new)
@@ -148,6 +149,19 @@ def _refocus_frame(frame, file, arguments, console, warnings):
         "fstop": stack.camera.f_stop if settings.f_stop is None else settings.f_stop,
         "seconds": seconds,
     }
+
+
+def _flat(arguments):
+    return FlatOptions(
+        depth_channel=arguments.depth_channel,
+        color_layer=arguments.color_layer,
+        ray=arguments.ray_depth,
+        depth_range=arguments.depth_range,
+        inverted=arguments.inverted_depth,
+        depth_scale=arguments.depth_scale,
+        focal_length_mm=arguments.focal_length,
+        sensor_width_mm=arguments.sensor_width,
+    )
 
 
 def _settings(stack, arguments):
