@@ -4,6 +4,7 @@ from .cli import blender_command
 from .engine import render_engine, shared_resources
 from .ui.jobs import background
 from .ui.operators import (
+    capture_operator,
     chromatic_curves,
     chromatic_operators,
     lens_import,
@@ -13,6 +14,7 @@ from .ui.operators import (
 from .ui.panels import (
     blender_panels,
     bokeh_panel,
+    capture_panel,
     chromatic_panel,
     lens_panel,
     panels,
@@ -45,6 +47,8 @@ _MODULES = (
     chromatic_presets,
     chromatic_operators,
     chromatic_panel,
+    capture_operator,
+    capture_panel,
     blender_command,
 )
 

@@ -31,6 +31,8 @@ class Step:
     ----------
     scene : bpy.types.Scene
         To be rendered as a still, and written to its own output path.
+    view_layer : bpy.types.ViewLayer
+        The one of it that is rendered.
     text : str
         What it is, for people.
     done, total : int
@@ -38,6 +40,7 @@ class Step:
     """
 
     scene: bpy.types.Scene
+    view_layer: bpy.types.ViewLayer
     text: str
     done: int
     total: int
@@ -172,7 +175,7 @@ class FrameCapture:
         scene = self._shot.scene
         scene.render.filepath = str(self._path)
         self._path.unlink(missing_ok=True)
-        yield Step(scene, text, self._done, self._total)
+        yield Step(scene, scene.view_layers[self._shot.layer], text, self._done, self._total)
         self._done += 1
         if not self._path.is_file() or not self._path.stat().st_size:
             raise UnfinishedFileError(

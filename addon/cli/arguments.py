@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 
 from ..errors import InputError
+from ..files.version import version
 from .capture.capture_arguments import add_capture, check_capture
 from .lens.lens_arguments import add_lens, check_lens
 from .refocus.refocus_arguments import add_refocus, check_refocus
@@ -20,7 +21,6 @@ from .words.option_values import (
     whole_number,
 )
 from .words.parser import RESOLUTION, Parser, add_output_options
-from .words.version import version
 
 ENDINGS = (".exr", ".png")
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from addon.cli.lens.lens_command import open_lens
 from addon.cli.words.json_file import write_json
-from addon.cli.words.version import version
 from addon.errors import InputError
+from addon.files.version import version
 from addon.files.whole_file import check_writable, removed_on_signals
 from addon.optics.glass import REFERENCE_WAVELENGTH_NM
 from addon.optics.paraxial import first_order

@@ -162,7 +162,7 @@ def test_help_lists_every_command(capsys):
 
 
 def test_version_is_the_manifests(capsys):
-    from addon.cli.words.version import version
+    from addon.files.version import version
 
     with pytest.raises(SystemExit):
         parse(["--version"])

@@ -89,20 +89,20 @@ ROOMS = {
         *("engine.planning", "engine.drawing", "engine.layered", "engine.bokeh", "engine.frame"),
     ),
     # Another engine's pictures, or ours, as depth layers.
-    "capture": ("sampling", "layers", "scene.camera"),
+    "capture": ("files", "sampling", "layers", "scene.camera"),
     # What a user meets.
     "ui.jobs": (),
     "ui.previews": ("lens_bokeh.look", "plots", "scene.camera", "ui.jobs"),
     "ui.operators": (
         *("optics", "sampling", "lens_io", "lens_io.importers.draft"),
-        *("scene.camera", "engine", "ui.jobs"),
+        *("files", "scene.camera", "engine", "capture", "ui.jobs"),
     ),
     "ui.properties": (
         *("sampling", "lens_io.glasses", "engine", "capture", "ui.operators", "ui.previews"),
     ),
     "ui.presets": ("ui.properties",),
     "ui.panels": (
-        *("optics", "scene.camera", "engine"),
+        *("optics", "scene.camera", "engine", "capture"),
         *("ui.jobs", "ui.operators", "ui.presets", "ui.previews"),
     ),
     "ui": (),
@@ -123,7 +123,10 @@ ROOMS = {
         *("files", "device", "sampling", "layers", "engine"),
         *("cli.words", "cli.render"),
     ),
-    "cli": ("cli.words", "cli.render", "cli.lens", "cli.capture", "cli.refocus"),
+    "cli": (
+        *("files", "cli.words", "cli.render", "cli.lens"),
+        *("cli.capture", "cli.refocus"),
+    ),
 }
 
 # What stands in no room: the package, its exceptions, and what makes it known to Blender.

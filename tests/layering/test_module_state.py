@@ -14,7 +14,7 @@ from .test_imports import ADDON, MODULES
 # A function of its arguments alone: what it returns is the same whether it was called before or
 # not, and is not changed by whoever gets it. The comment above each says of what.
 MEMOS = {
-    "cli.words.version": ("version",),
+    "files.version": ("version",),
     "device.shader_source": ("_join", "_places", "_read", "load"),
     "engine.bokeh.look": (
         *("_beams", "_lens_rows", "_light_on_radii", "_opening"),

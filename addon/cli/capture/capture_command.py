@@ -9,18 +9,19 @@ from ...capture.capture_files import is_captured, source_digest, write_capture
 from ...capture.frame_capture import FrameCapture, render_now
 from ...capture.scene_limits import missing_images
 from ...capture.settings import ENGINES, CaptureSettings
+from ...capture.shot_capture import software
 from ...device.context import ensure_context
 from ...engine.shared_resources import listen
 from ...errors import InputError, RenderCancelledError, StrictError
 from ...files.frame_path import frame_path
 from ...files.held_files import HeldFiles
+from ...files.version import version
 from ...files.whole_file import check_writable, removed_on_signals
 from ...scene.unsupported import missing_files, missing_links
 from ..render import statistics
 from ..render.render_command import Warnings
 from ..render.scene_setup import load_scene
 from ..words.json_file import write_json
-from ..words.version import version
 
 
 def capture(arguments, console):
@@ -54,13 +55,13 @@ def capture(arguments, console):
         warnings = Warnings(console, arguments.strict)
         warnings.add([*missing_links(), *missing_files(), *missing_images()])
         source = source_digest(arguments.scene)
-        software = f"Aplanat {version()}, Blender {bpy.app.version_string}"
+        program = software()
         frames = []
         with HeldFiles() as held:
             for frame in _frame_numbers(scene, arguments):
                 path = frame_path(arguments.output, frame)
                 half = " half" if arguments.half else ""
-                digest = settings.digest(frame, source, software + half)
+                digest = settings.digest(frame, source, program + half)
                 if is_captured(path, digest):
                     console.say(f"frame {frame}: {path} is there, whole and of these settings")
                     frames.append({"frame": frame, "file": str(path), "kept": True})
@@ -69,7 +70,7 @@ def capture(arguments, console):
                 stack, words, renders = _capture_frame(
                     scene, frame, settings, held.room("slices"), console, warnings
                 )
-                write_capture(path, stack, digest, software, words, arguments.half)
+                write_capture(path, stack, digest, program, words, arguments.half)
                 seconds = round(time.perf_counter() - begun, 6)
                 console.say(f"frame {frame}: {path} ({seconds:.1f} s)")
                 frames.append(
@@ -92,17 +93,17 @@ def capture(arguments, console):
 
 
 def _settings(scene, arguments):
-    own = scene.aplanat
+    own = scene.aplanat.capture
     engine = arguments.engine or scene.render.engine
     if engine not in ENGINES:
         raise InputError(
             f"scene '{scene.name}' renders with {engine}, which makes no depth layers; choose one"
             f" with --engine: {', '.join(ENGINES)}"
         )
-    overscan = own.capture_overscan if arguments.overscan is None else arguments.overscan
+    overscan = own.overscan if arguments.overscan is None else arguments.overscan
     return CaptureSettings(
         engine=engine,
-        layers=arguments.layers or own.capture_layers,
+        layers=arguments.layers or own.layers,
         # As exact as it is said: Blender keeps it in single precision.
         overscan=round(overscan, 6),
         resolution=arguments.resolution,

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from ...errors import InputError
+from ...files.version import version
 from ...files.whole_file import check_writable, removed_on_signals
 from ...lens_bokeh.tables.profile import make_profile, profile_table
 from ...lens_bokeh.tables.pupil_parts import pack
@@ -15,7 +16,6 @@ from ...lens_bokeh.tables.pupil_tracing import build_pupil_tables
 from ...lens_io.profile_cache import content_hash
 from ...lens_io.profile_file import StoredProfile, save_profile
 from ...optics.glass import C_LINE_NM, F_LINE_NM, REFERENCE_WAVELENGTH_NM
-from ..words.version import version
 from .lens_command import open_lens, tell_warnings
 
 # Of the off-axis pupil in colour: lateral colour bends over the spectrum as two further ones show.

@@ -6,6 +6,7 @@ import bpy
 
 from ...device.context import device_name
 from ...engine.views import views_of
+from ...files.version import version
 from ...lens_bokeh.look.iris_mask import PictureIris
 from ...sampling.chromatic import RGB_WAVELENGTHS_NM
 from ...scene.camera.bokeh import corner_tangent, read_bokeh
@@ -13,7 +14,6 @@ from ...scene.camera.camera import focus_distance
 from ...scene.camera.chromatic import read_chromatic
 from ...scene.camera.lenses import read_real_lens
 from ...scene.settings import read_passes
-from ..words.version import version
 
 
 def settings_in_force(scene, sources, arguments=None):

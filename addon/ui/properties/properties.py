@@ -7,13 +7,12 @@ from bpy.props import (
     FloatProperty,
     IntProperty,
     PointerProperty,
-    StringProperty,
 )
 
-from ...capture.settings import DEFAULT_LAYERS, DEFAULT_OVERSCAN, MOST_LAYERS, MOST_OVERSCAN
 from ..previews.spectrum_bar import AplanatSpectrumBar
 from .bokeh_properties import AplanatBokehSettings
 from .camera_properties import AplanatCameraSettings
+from .capture_properties import AplanatCaptureSettings
 from .chromatic_properties import AplanatChromaticSettings
 from .overrides import OVERRIDABLE, setting_changed
 
@@ -233,31 +232,10 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
         max=2000,
         soft_max=500,
     )
-    capture_layers: IntProperty(
-        name="Layers",
-        description="How many depth layers a captured frame has, besides the world's. More layers"
-        " keep apart what lies behind one another, and take longer",
-        default=DEFAULT_LAYERS,
-        min=1,
-        max=MOST_LAYERS,
-        soft_max=16,
-    )
-    capture_overscan: FloatProperty(
-        name="Overscan",
-        description="Share of the picture's width and height that a captured frame is larger on"
-        " each side, so that blur finds what lies beyond the border",
-        default=DEFAULT_OVERSCAN,
-        min=0.0,
-        max=MOST_OVERSCAN,
-        soft_max=0.3,
-        subtype="FACTOR",
-        precision=2,
-    )
-    capture_path: StringProperty(
-        name="Layers File",
-        description="Where Capture Depth Layers writes: an .exr file a frame, #### is its number",
-        default="//layers_####.exr",
-        subtype="FILE_PATH",
+    capture: PointerProperty(
+        name="Depth Layers",
+        description="How depth layers of the scene are captured",
+        type=AplanatCaptureSettings,
     )
 
 
@@ -374,6 +352,7 @@ class AplanatWorldSettings(bpy.types.PropertyGroup):
 
 
 CLASSES = (
+    AplanatCaptureSettings,
     AplanatSceneSettings,
     AplanatViewLayerSettings,
     AplanatMaterialSettings,

@@ -4,7 +4,7 @@ import tomllib
 from functools import cache
 from pathlib import Path
 
-_MANIFEST = Path(__file__).resolve().parents[3] / "blender_manifest.toml"
+_MANIFEST = Path(__file__).resolve().parents[2] / "blender_manifest.toml"
 
 
 # Memo of a file that comes with Aplanat.
