@@ -11,6 +11,7 @@ from ...device.context import device_name, ensure_context
 from ...engine.refocus import RefocusSettings, lens_of, refocus
 from ...errors import InputError, StrictError, UnfinishedFileError
 from ...files.frame_path import frame_path
+from ...files.version import version
 from ...files.whole_file import check_writable, removed_on_signals, whole_file
 from ...layers.flat_input import FlatOptions, load_flat
 from ...layers.layer_file import is_layer_file, load_layers
@@ -18,7 +19,6 @@ from ...sampling.iris import Iris
 from ..render.pictures import set_png
 from ..render.statistics import peak_memory
 from ..words.json_file import write_json
-from ..words.version import version
 
 
 def refocus_files(arguments, console):
