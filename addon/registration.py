@@ -20,9 +20,9 @@ from .ui.panels import (
     panels,
     sampling_panel,
 )
-from .ui.presets import bokeh_presets, chromatic_presets, sampling_presets
+from .ui.presets import presets
 from .ui.previews import bokeh_previews, chromatic_previews, lens_thumbnails
-from .ui.properties import overrides, properties
+from .ui.properties import migrations, overrides, properties
 
 _MODULES = (
     shared_resources,
@@ -30,9 +30,10 @@ _MODULES = (
     lens_thumbnails,
     properties,
     overrides,
+    migrations,
     render_engine,
     blender_panels,
-    sampling_presets,
+    presets,
     level_operators,
     sampling_panel,
     panels,
@@ -40,11 +41,9 @@ _MODULES = (
     lens_import,
     lens_panel,
     bokeh_previews,
-    bokeh_presets,
     bokeh_panel,
     chromatic_curves,
     chromatic_previews,
-    chromatic_presets,
     chromatic_operators,
     chromatic_panel,
     capture_operator,

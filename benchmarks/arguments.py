@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from addon.cli.render.sampling_arguments import MAX_SAMPLES
 from addon.cli.words.option_values import whole_number
 from addon.cli.words.parser import RESOLUTION, Parser, add_output_options
 from addon.errors import InputError
+from addon.settings.scene_settings import MAX_SAMPLES
 
 # Of `bench --bokeh`.
 BOKEH_MEASURES = (

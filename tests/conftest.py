@@ -57,3 +57,15 @@ def empty_scene(aplanat_bpy):
     scene.render.resolution_percentage = 100
     scene.view_settings.view_transform = "Standard"
     return scene
+
+
+@pytest.fixture
+def camera(empty_scene, aplanat_bpy):
+    """The data of a new camera: that of the empty scene, and active."""
+    bpy = aplanat_bpy
+    data = bpy.data.cameras.new("Camera")
+    obj = bpy.data.objects.new("Camera", data)
+    bpy.context.collection.objects.link(obj)
+    bpy.context.view_layer.objects.active = obj
+    empty_scene.camera = obj
+    return data

@@ -4,9 +4,15 @@ import hashlib
 import json
 from dataclasses import asdict, dataclass
 
+from ..settings.scene_settings import CAPTURE
+from ..settings.setting import settings_of
+
 ENGINES = ("CYCLES", "BLENDER_EEVEE", "APLANAT")
-DEFAULT_LAYERS, MOST_LAYERS = 8, 64
-DEFAULT_OVERSCAN, MOST_OVERSCAN = 0.1, 1.0
+_DECLARED = settings_of(CAPTURE)
+DEFAULT_LAYERS = _DECLARED["layers"].default
+DEFAULT_OVERSCAN = _DECLARED["overscan"].default
+_, MOST_LAYERS = _DECLARED["layers"].limits
+_, MOST_OVERSCAN = _DECLARED["overscan"].limits
 
 
 @dataclass(frozen=True)

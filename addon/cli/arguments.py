@@ -12,7 +12,7 @@ from ..files.version import version
 from .capture.capture_arguments import add_capture, check_capture
 from .lens.lens_arguments import add_lens, check_lens
 from .refocus.refocus_arguments import add_refocus, check_refocus
-from .render.sampling_arguments import add_sampling, check_sampling
+from .render.sampling_arguments import add_sampling, bounds, check_sampling
 from .words.frame_values import MAX_FRAME, frame_number, frame_range
 from .words.option_values import (
     file_with_ending,
@@ -152,7 +152,7 @@ def _add_render(commands):
     add(
         "--layers",
         metavar="K",
-        type=whole_number(1, 64),
+        type=whole_number(*bounds("layers")),
         help="layered method: depth layers; default: the scene's",
     )
     add_sampling(parser)

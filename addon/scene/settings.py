@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import InputError
+from ..settings.scene_settings import ADVANCED, LEVELS, MEASURING, PREVIEW, RENDER, SAMPLING
+from ..settings.setting import fields_of
 from ..snapshot.film import Film, Sampling
 
 # 16384 squared: the largest texture of today's graphics devices; 4 GB a target.
@@ -78,36 +80,21 @@ def _pixel(fraction, size):
 
 def read_sampling(scene):
     """Return how a final render is sampled."""
-    settings = scene.aplanat
-    return Sampling(
-        method=settings.method,
-        lens_samples=settings.render_samples,
-        seed=settings.seed,
-        target_error=settings.render_error if settings.use_target_error else None,
-        least_samples=settings.render_min_samples,
-        most_samples=settings.render_max_samples,
-        time_limit=settings.render_time_limit or None,
-        subsamples=settings.subsamples,
-        reuse_grid=settings.sharing_cells if settings.use_sharing else 0,
-        uses_levels=settings.use_levels,
-        level_bias=settings.level_bias,
-        least_triangles=settings.least_triangles,
-        reference_bokeh=settings.use_reference_bokeh,
-        layers=settings.layers,
-    )
+    return _read_sampling(scene.aplanat, RENDER, "render")
 
 
 def read_preview_sampling(scene):
-    """Return how a viewport is sampled: as the final render, with the viewport's numbers."""
-    settings = scene.aplanat
-    return replace(
-        read_sampling(scene),
-        lens_samples=settings.preview_samples,
-        target_error=settings.preview_error if settings.use_target_error else None,
-        least_samples=settings.preview_min_samples,
-        most_samples=settings.preview_max_samples,
-        time_limit=settings.preview_time_limit or None,
-        progressive=True,
+    """Return how a viewport is sampled: as the final render, with its own numbers."""
+    return replace(_read_sampling(scene.aplanat, PREVIEW, "preview"), progressive=True)
+
+
+def _read_sampling(settings, numbers, prefix):
+    wanted = getattr(settings, f"{prefix}_error") if settings.use_target_error else None
+    return Sampling(
+        **fields_of(settings, SAMPLING, numbers, ADVANCED, LEVELS, MEASURING),
+        target_error=wanted,
+        time_limit=getattr(settings, f"{prefix}_time_limit") or None,
+        reuse_grid=settings.sharing_cells if settings.use_sharing else 0,
     )
 
 

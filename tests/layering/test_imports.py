@@ -21,6 +21,8 @@ ROOMS = {
     "optics.rays": ("optics",),
     "sampling": (),
     "lens_bokeh": (),
+    # Settings, each declared once: name, type, bounds, default; and the presets.
+    "settings": ("sampling",),
     "lens_bokeh.tables": ("optics", "optics.rays", "sampling"),
     "lens_bokeh.look": ("optics", "lens_bokeh.tables"),
     "lens_io.glasses": ("optics", "sampling"),
@@ -57,11 +59,11 @@ ROOMS = {
     "scene.nodes": ("snapshot", "scene.images"),
     "scene.camera": (
         *("optics.rays", "sampling", "lens_bokeh.look", "lens_io", "lens_io.glasses"),
-        *("snapshot", "scene.images"),
+        *("settings", "snapshot", "scene.images"),
     ),
     "scene.shading": ("snapshot", "scene.images", "scene.nodes"),
     "scene.geometry": ("snapshot", "scene.camera", "scene.shading"),
-    "scene": ("snapshot", "scene.camera", "scene.geometry", "scene.shading"),
+    "scene": ("settings", "snapshot", "scene.camera", "scene.geometry", "scene.shading"),
     # A frame: planned, drawn, shown.
     "engine.planning": ("layers", "sampling", "snapshot", "levels"),
     "engine.drawing": (
@@ -89,7 +91,7 @@ ROOMS = {
         *("engine.planning", "engine.drawing", "engine.layered", "engine.bokeh", "engine.frame"),
     ),
     # Another engine's pictures, or ours, as depth layers.
-    "capture": ("files", "sampling", "layers", "scene.camera"),
+    "capture": ("files", "sampling", "settings", "layers", "scene.camera"),
     # What a user meets.
     "ui.jobs": (),
     "ui.previews": ("lens_bokeh.look", "plots", "scene.camera", "ui.jobs"),
@@ -97,10 +99,8 @@ ROOMS = {
         *("optics", "sampling", "lens_io", "lens_io.importers.draft"),
         *("files", "scene.camera", "engine", "capture", "ui.jobs"),
     ),
-    "ui.properties": (
-        *("sampling", "lens_io.glasses", "engine", "capture", "ui.operators", "ui.previews"),
-    ),
-    "ui.presets": ("ui.properties",),
+    "ui.properties": (*("lens_io.glasses", "settings", "engine", "ui.operators", "ui.previews"),),
+    "ui.presets": ("settings", "ui.operators", "ui.properties"),
     "ui.panels": (
         *("optics", "scene.camera", "engine", "capture"),
         *("ui.jobs", "ui.operators", "ui.presets", "ui.previews"),
@@ -109,7 +109,7 @@ ROOMS = {
     "cli.words": ("files",),
     "cli.render": (
         *("files", "device", "sampling", "lens_bokeh.look", "lens_io", "scene", "scene.camera"),
-        *("engine", "cli.words"),
+        *("settings", "engine", "cli.words"),
     ),
     "cli.lens": (
         *("files", "optics", "optics.rays", "lens_bokeh.tables", "plots", "scene.camera"),
@@ -175,10 +175,7 @@ class Import:
 
 
 def modules():
-    # Presets are scripts that Blender runs.
-    presets = ADDON / "ui" / "presets" / "aplanat"
-    files = sorted(path for path in ADDON.rglob("*.py") if presets not in path.parents)
-    return {module_name(path): path for path in files}
+    return {module_name(path): path for path in sorted(ADDON.rglob("*.py"))}
 
 
 def module_name(path):

@@ -90,9 +90,9 @@ OTHERS = {
         "work for panels, and what the user stopped of it",
         ("_errors", "_queue", "_stopped"),
     ),
-    "ui.previews.bokeh_previews": ("icons of panels", ("_collection", "_shown")),
-    "ui.previews.chromatic_previews": ("icons of panels", ("_collection", "_shown")),
-    "ui.previews.lens_thumbnails": ("icons of panels", ("_collection", "_shown")),
+    "ui.previews.bokeh_previews": ("icons of panels", ("icons",)),
+    "ui.previews.chromatic_previews": ("icons of panels", ("icons",)),
+    "ui.previews.lens_thumbnails": ("icons of panels", ("icons",)),
     "ui.previews.spectrum_bar": ("colours of a panel", ("_colors",)),
     "ui.properties.camera_properties": (
         "texts of menus, which Blender does not keep, and their numbers; a file has neither",

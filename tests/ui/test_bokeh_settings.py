@@ -1,6 +1,4 @@
-"""Bokeh of a camera as Blender keeps it: properties, presets, what a lens remembers, pictures."""
-
-from pathlib import Path
+"""Bokeh of a camera as Blender keeps it: what a lens remembers, pictures."""
 
 import numpy as np
 import pytest
@@ -13,27 +11,15 @@ from addon.lens_bokeh.look.vignetting_model import cat_eye
 from addon.passes.bokeh.marks import FATES
 from addon.ui.panels import bokeh_panel
 from addon.ui.panels.bokeh_panel import counts_as_lines
-from addon.ui.presets import bokeh_presets
 from addon.ui.previews.bokeh_previews import disc_pictures
 from addon.ui.properties.bokeh_properties import APPEARANCE_NAMES
 from addon.ui.properties.lens_memory import values_of
 
 TESSAR, PLANAR = "tessar-50mm-f2.8", "planar-50mm-f1.4"
-MENU = "APLANAT_PT_bokeh_presets"
 COUNTS = dict.fromkeys(
     ("found", "clustered", "culled_size", "culled_occlusion", "culled_cone", "masked", "splatted"),
     0,
 )
-
-
-@pytest.fixture
-def camera(empty_scene, aplanat_bpy):
-    data = aplanat_bpy.data.cameras.new("Camera")
-    obj = aplanat_bpy.data.objects.new("Camera", data)
-    aplanat_bpy.context.collection.objects.link(obj)
-    empty_scene.camera = obj
-    data.aplanat.bokeh.use = True
-    return data
 
 
 @pytest.fixture
@@ -43,79 +29,6 @@ def bokeh(camera):
 
 def appearance(bokeh):
     return values_of(bokeh, APPEARANCE_NAMES)
-
-
-def preset(bpy, name):
-    path = bpy.utils.preset_find(name, "aplanat/bokeh", display_name=True)
-    assert path, name
-    assert bpy.ops.script.execute_preset(filepath=path, menu_idname=MENU) == {"FINISHED"}
-
-
-def test_every_property_has_a_name_a_tooltip_bounds_and_can_be_overridden(bokeh):
-    for prop in bokeh.bl_rna.properties:
-        if prop.identifier in {"rna_type", "name"}:
-            continue
-        assert prop.name and prop.description, prop.identifier
-        assert not prop.description.endswith("."), prop.identifier
-        assert prop.is_overridable, prop.identifier
-        if prop.type in {"INT", "FLOAT"}:
-            assert prop.hard_min <= prop.default <= prop.hard_max
-            assert prop.soft_max < 2**31 - 1 or prop.identifier == "texture_seed"
-        if prop.type == "ENUM":
-            assert all(item.description for item in prop.enum_items)
-
-
-def test_what_a_preset_keeps_are_properties(bokeh):
-    assert set(APPEARANCE_NAMES) <= set(bokeh.bl_rna.properties.keys())
-
-
-def test_clean_is_how_a_camera_starts(bokeh, aplanat_bpy):
-    start = appearance(bokeh)
-    preset(aplanat_bpy, "Vintage")
-    assert appearance(bokeh) != start
-    preset(aplanat_bpy, "Clean")
-    assert appearance(bokeh) == start
-
-
-def test_every_shipped_preset_sets_all_of_the_appearance_and_nothing_else(aplanat_bpy):
-    (folder,) = aplanat_bpy.utils.preset_paths("aplanat/bokeh")
-    files = list(Path(folder).glob("*.py"))
-    assert {"Clean", "Soap_Bubble", "Creamy", "Vintage"} <= {path.stem for path in files}
-    for path in files:
-        lines = path.read_text(encoding="utf-8").splitlines()
-        set_here = [line.split(" = ")[0] for line in lines if line.startswith("bokeh.")]
-        assert set_here == [f"bokeh.{name}" for name in APPEARANCE_NAMES], path.name
-
-
-def test_soap_bubble_and_creamy_are_opposites(bokeh, aplanat_bpy):
-    preset(aplanat_bpy, "Soap Bubble")
-    assert bokeh.hardness > 0.5
-    preset(aplanat_bpy, "Creamy")
-    assert bokeh.hardness < -0.5
-
-
-def test_a_preset_leaves_search_and_light_alone(bokeh, aplanat_bpy):
-    bokeh.threshold, bokeh.model, bokeh.visibility = 3.0, "CLUSTERED", "SPLAT"
-    preset(aplanat_bpy, "Swirl")
-    assert (bokeh.threshold, bokeh.model, bokeh.visibility) == (3.0, "CLUSTERED", "SPLAT")
-
-
-def test_an_own_preset_is_saved_and_loaded(camera, bokeh, aplanat_bpy, tmp_path, monkeypatch):
-    bpy = aplanat_bpy
-
-    def user_resource(*_, path="", **__):
-        (tmp_path / path).mkdir(parents=True, exist_ok=True)
-        return str(tmp_path / path)
-
-    monkeypatch.setattr(bpy.utils, "user_resource", user_resource)
-    bokeh.hardness, bokeh.dust, bokeh.vignetting = 0.25, 7, "ANALYTIC"
-    before = appearance(bokeh)
-    assert bpy.ops.camera.aplanat_bokeh_preset_add(name="Mine") == {"FINISHED"}
-    saved = next(tmp_path.rglob("Mine.py"))
-    other = bpy.data.cameras.new("Other")
-    with bpy.context.temp_override(camera=other):
-        bpy.ops.script.execute_preset(filepath=str(saved), menu_idname=MENU)
-    assert appearance(other.aplanat.bokeh) == before
 
 
 def test_a_lens_remembers_its_appearance_and_the_camera_keeps_the_rest(camera, bokeh):
@@ -211,12 +124,6 @@ def test_grain_and_a_wide_iris_fit_into_the_picture():
         assert picture[:10].max(axis=(0, 1))[0] < 0.05
 
 
-def test_panels_are_for_aplanat_only():
-    for panel in bokeh_panel.CLASSES:
-        assert panel.is_registered and set(panel.COMPAT_ENGINES) == {"APLANAT"}
-    assert bokeh_presets.APLANAT_OT_bokeh_preset_add.bl_description
-
-
 def test_the_legend_of_the_debug_view_has_every_colour_of_its_marks(aplanat_bpy):
     assert set(bokeh_panel.LEGEND) == set(FATE_COLORS) == set(FATES)
     label = aplanat_bpy.types.UILayout.bl_rna.functions["label"]
@@ -227,25 +134,3 @@ def test_the_legend_of_the_debug_view_has_every_colour_of_its_marks(aplanat_bpy)
 def test_the_debug_view_is_off_and_no_part_of_a_preset(bokeh):
     assert bokeh.debug_view == "NONE"
     assert "debug_view" not in APPEARANCE_NAMES
-
-
-def test_materials_and_lights_start_with_automatic_highlights(aplanat_bpy, empty_scene):
-    material = aplanat_bpy.data.materials.new("Material")
-    light = aplanat_bpy.data.lights.new("Light", "SPOT")
-    for data in (material, light):
-        assert data.aplanat.highlights == "AUTOMATIC"
-        (prop,) = [p for p in data.aplanat.bl_rna.properties if p.identifier == "highlights"]
-        assert prop.description and all(item.description for item in prop.enum_items)
-
-
-def test_nothing_stays_after_unregistering(aplanat_bpy):
-    import addon
-
-    bpy = aplanat_bpy
-    addon.unregister()
-    try:
-        assert not bpy.utils.preset_paths("aplanat/bokeh")
-        assert not hasattr(bpy.types.Material, "aplanat")
-        assert not hasattr(bpy.types.Light, "aplanat")
-    finally:
-        addon.register()

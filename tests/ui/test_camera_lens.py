@@ -32,13 +32,8 @@ def own_folder(tmp_path, monkeypatch, aplanat_bpy):
 
 
 @pytest.fixture
-def camera(empty_scene, aplanat_bpy, own_folder):
-    data = aplanat_bpy.data.cameras.new("Camera")
-    obj = aplanat_bpy.data.objects.new("Camera", data)
-    aplanat_bpy.context.collection.objects.link(obj)
-    empty_scene.camera = obj
-    aplanat_bpy.context.view_layer.objects.active = obj
-    return data
+def camera(camera, own_folder):
+    return camera
 
 
 def test_a_new_camera_has_a_thin_lens(camera):

@@ -1,18 +1,15 @@
-"""Chromatic aberration of a camera as Blender keeps it: curves, presets, what a lens remembers."""
+"""Chromatic aberration of a camera as Blender keeps it: curves, what a lens remembers."""
 
 import json
-from pathlib import Path
 
 import pytest
 
 from addon.sampling.equalizer import EQUALIZER_PRESETS
-from addon.sampling.field_maps import FIELD_PRESETS, FieldMap
 from addon.scene.camera.chromatic import read_field_map
 from addon.scene.camera.drawn_curves import CURVE_NAMES, EQUALIZER, curve_points, curve_values
 from addon.ui.operators import chromatic_curves, chromatic_operators
-from addon.ui.panels import chromatic_panel
-from addon.ui.presets import chromatic_presets
-from addon.ui.properties.chromatic_properties import SETTING_NAMES, values_as_dict
+from addon.ui.properties.chromatic_properties import SETTING_NAMES
+from addon.ui.properties.lens_memory import values_of
 
 TESSAR, PLANAR = "tessar-50mm-f2.8", "planar-50mm-f1.4"
 MENU = "APLANAT_PT_chromatic_presets"
@@ -21,48 +18,22 @@ SINGLE = 1e-6
 
 
 @pytest.fixture
-def camera(empty_scene, aplanat_bpy):
-    data = aplanat_bpy.data.cameras.new("Camera")
-    obj = aplanat_bpy.data.objects.new("Camera", data)
-    aplanat_bpy.context.collection.objects.link(obj)
-    empty_scene.camera = obj
-    aplanat_bpy.context.view_layer.objects.active = obj
-    return data
-
-
-@pytest.fixture
 def chromatic(camera):
     return camera.aplanat.chromatic
+
+
+def all_values(chromatic):
+    return values_of(chromatic, SETTING_NAMES)
 
 
 def mapping(chromatic, name):
     return chromatic.curves.nodes[name].mapping
 
 
-def preset(bpy, name):
-    path = bpy.utils.preset_find(name, "aplanat/chromatic", display_name=True)
-    assert path, name
-    assert bpy.ops.script.execute_preset(filepath=path, menu_idname=MENU) == {"FINISHED"}
-
-
 def test_a_new_camera_is_achromatic_and_has_no_curves(chromatic, aplanat_bpy):
     assert not chromatic.use
     assert chromatic.curves is None
     assert not aplanat_bpy.data.node_groups
-
-
-def test_every_property_has_a_name_a_tooltip_and_can_be_overridden(camera):
-    for prop in camera.aplanat.chromatic.bl_rna.properties:
-        if prop.identifier in {"rna_type", "name"}:
-            continue
-        assert prop.name and prop.description, prop.identifier
-        assert not prop.description.endswith("."), prop.identifier
-        if prop.identifier in SETTING_NAMES and prop.identifier != "curve_text":
-            assert prop.is_overridable, prop.identifier
-        if prop.type == "FLOAT":
-            assert prop.hard_min <= prop.default <= prop.hard_max
-        if prop.type == "ENUM":
-            assert all(item.description for item in prop.enum_items)
 
 
 def test_strengths_may_be_negative(chromatic):
@@ -209,50 +180,20 @@ def test_an_equalizer_preset_draws_its_curve(chromatic, aplanat_bpy, name):
             assert drawn[round(sample)] == pytest.approx(weight, abs=1e-3)
 
 
-def test_shipped_presets_are_the_field_maps_of_the_papers_figures(chromatic, aplanat_bpy):
-    for label, axial, lateral in FIELD_PRESETS.values():
-        chromatic.use = False
-        preset(aplanat_bpy, label)
-        assert chromatic.use
-        assert read_field_map(chromatic, "axial") == axial, label
-        assert read_field_map(chromatic, "lateral") == lateral, label
-    preset(aplanat_bpy, "Showcase")
-    assert read_field_map(chromatic, "axial") == FieldMap("ONE_MINUS", "RECIPROCAL")
-    assert read_field_map(chromatic, "lateral") == FieldMap("ONE_MINUS", "RECIPROCAL")
-
-
-def test_every_shipped_preset_sets_everything_but_curves(aplanat_bpy):
-    (folder,) = aplanat_bpy.utils.preset_paths("aplanat/chromatic")
-    files = list(Path(folder).glob("*.py"))
-    assert len(files) == len(FIELD_PRESETS) + 1
-    for path in files:
-        text = path.read_text(encoding="utf-8")
-        for name in SETTING_NAMES:
-            assert (f"chromatic.{name} = " in text) == (name != "curve_text"), (path.name, name)
-
-
-def test_an_own_preset_keeps_everything_and_its_curves(
-    camera, chromatic, aplanat_bpy, tmp_path, monkeypatch
-):
+def test_an_own_preset_keeps_everything_and_its_curves(chromatic, aplanat_bpy, preset_folder):
     bpy = aplanat_bpy
-
-    def user_resource(*_, path="", **__):
-        (tmp_path / path).mkdir(parents=True, exist_ok=True)
-        return str(tmp_path / path)
-
-    monkeypatch.setattr(bpy.utils, "user_resource", user_resource)
     chromatic.use, chromatic.axial, chromatic.glass = True, -1.5, "F2"
     chromatic.lateral_then = "CURVE"
     chromatic_curves.set_points(
         mapping(chromatic, "Lateral Then"), [(0, 0.5, "VECTOR"), (1, -0.5, "VECTOR")]
     )
-    before = values_as_dict(chromatic)
+    before = all_values(chromatic)
     assert bpy.ops.camera.aplanat_chromatic_preset_add(name="Mine") == {"FINISHED"}
-    saved = next(tmp_path.rglob("Mine.py"))
+    saved = next(preset_folder.rglob("Mine.py"))
     other = bpy.data.cameras.new("Other")
     with bpy.context.temp_override(camera=other):
         bpy.ops.script.execute_preset(filepath=str(saved), menu_idname=MENU)
-    assert values_as_dict(other.aplanat.chromatic) == before
+    assert all_values(other.aplanat.chromatic) == before
     assert other.aplanat.chromatic.curves != chromatic.curves
 
 
@@ -266,22 +207,22 @@ def test_a_lens_remembers_its_chromatic_settings(camera, chromatic):
     chromatic_curves.set_points(
         mapping(chromatic, "Lateral First"), [(0, 1, "AUTO"), (1, 0, "AUTO")]
     )
-    of_tessar = values_as_dict(chromatic)
+    of_tessar = all_values(chromatic)
     camera.aplanat.lens = PLANAR
     chromatic.use, chromatic.axial, chromatic.glass = False, 0.5, "N-SF11"
     chromatic_curves.set_points(
         mapping(chromatic, "Lateral First"), [(0, 0, "AUTO"), (1, 1, "AUTO")]
     )
-    of_planar = values_as_dict(chromatic)
+    of_planar = all_values(chromatic)
     camera.aplanat.lens = TESSAR
-    assert values_as_dict(chromatic) == of_tessar
+    assert all_values(chromatic) == of_tessar
     camera.aplanat.lens_choice = f"lens:{PLANAR}"
-    assert values_as_dict(chromatic) == of_planar
+    assert all_values(chromatic) == of_planar
     camera.aplanat.lens = ""
     assert chromatic.use and chromatic.axial == 2.0
     camera.aplanat.lens = TESSAR
     camera.aplanat.lens = TESSAR
-    assert values_as_dict(chromatic) == of_tessar
+    assert all_values(chromatic) == of_tessar
 
 
 def test_what_a_lens_remembers_is_saved_and_copied(camera, chromatic, aplanat_bpy, tmp_path):
@@ -316,23 +257,3 @@ def test_operators_can_be_undone_and_explain_themselves():
     ):
         assert "UNDO" in operator.bl_options
         assert operator.bl_description and not operator.bl_description.endswith(".")
-    assert chromatic_presets.APLANAT_OT_chromatic_preset_add.bl_description
-
-
-def test_panels_are_for_aplanat_only():
-    for panel in chromatic_panel.CLASSES:
-        assert panel.is_registered and set(panel.COMPAT_ENGINES) == {"APLANAT"}
-
-
-def test_nothing_stays_after_unregistering(aplanat_bpy):
-    import addon
-
-    bpy = aplanat_bpy
-    handlers = (bpy.app.handlers.depsgraph_update_post, bpy.app.handlers.load_post)
-    addon.unregister()
-    try:
-        assert not bpy.utils.preset_paths("aplanat/chromatic")
-        for handler in handlers:
-            assert not [f for f in handler if f.__module__ == chromatic_curves.__name__]
-    finally:
-        addon.register()

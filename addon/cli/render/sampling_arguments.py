@@ -1,17 +1,28 @@
 """The sampling options of `aplanat render`, as in the Sampling and Level of Detail panels."""
 
 from ...errors import InputError
+from ...settings.scene_settings import SCENE
+from ...settings.setting import settings_of
 from ..words.option_values import number_between, positive_number, whole_number
 
-# Bounds of Blender's and our own properties.
-MAX_SAMPLES = 65536
+# Bounds of Blender's own properties.
 MAX_SEED = 2**31 - 1
 MAX_FILTER_PX = 500.0
-LEAST_ERROR, LARGEST_ERROR = 0.0005, 0.5
-MAX_BIAS = 16.0
-MAX_CELLS = 8
-MIN_TRIANGLES, MAX_TRIANGLES = 4, 10_000_000
 
+_SETTINGS = settings_of(*SCENE)
+# Options that set a setting as it is, by their names in the namespace.
+_OF_SETTING = {
+    "samples": "render_samples",
+    "subsamples": "subsamples",
+    "target_error": "render_error",
+    "min_samples": "render_min_samples",
+    "max_samples": "render_max_samples",
+    "time_limit": "render_time_limit",
+    "level_bias": "level_bias",
+    "min_triangles": "least_triangles",
+    "seed": "seed",
+    "layers": "layers",
+}
 # Options of the adaptive method only, by their names in the namespace.
 _ADAPTIVE = (
     *("subsamples", "target_error", "min_samples", "max_samples", "level_bias", "no_levels"),
@@ -22,6 +33,11 @@ _AUTOMATIC = ("target_error", "min_samples", "max_samples")
 _FIXED = ("samples", "subsamples")
 
 
+def bounds(option):
+    """Return the least and the largest value of the setting that an option sets."""
+    return _SETTINGS[_OF_SETTING[option]].limits
+
+
 def add_sampling(parser):
     """Add the options.
 
@@ -30,11 +46,11 @@ def add_sampling(parser):
     parser : argparse.ArgumentParser
     """
     add = parser.add_argument
-    samples = whole_number(1, MAX_SAMPLES)
+    samples = whole_number(*bounds("samples"))
     add(
         "--target-error",
         metavar="X",
-        type=number_between(LEAST_ERROR, LARGEST_ERROR),
+        type=number_between(*bounds("target_error")),
         help="adaptive method: noise threshold; samples are drawn, where they are needed, until the"
         " picture differs from a perfect one by no more than this (1 - SSIM; 0.02 draft, 0.01"
         " clean)",
@@ -51,28 +67,28 @@ def add_sampling(parser):
     add(
         "--subsamples",
         metavar="S",
-        type=whole_number(0, 64),
+        type=whole_number(*bounds("subsamples")),
         help="adaptive method without a noise threshold: places on the lens that a sample stands"
         " for besides its own",
     )
     add(
         "--sharing-cells",
         metavar="N",
-        type=whole_number(0, MAX_CELLS),
+        type=whole_number(0, _SETTINGS["sharing_cells"].limits[1]),
         help="adaptive method: places along a pixel that are told apart when samples share"
         " drawings of what is in focus; 0 shares none",
     )
     add(
         "--level-bias",
         metavar="X",
-        type=number_between(-MAX_BIAS, MAX_BIAS),
+        type=number_between(*bounds("level_bias")),
         help="adaptive method: levels of detail by which blurred objects are drawn finer",
     )
     add("--no-levels", action="store_true", help="adaptive method: everything in full detail")
     add(
         "--min-triangles",
         metavar="N",
-        type=whole_number(MIN_TRIANGLES, MAX_TRIANGLES),
+        type=whole_number(*bounds("min_triangles")),
         help="adaptive method: no level of detail has fewer",
     )
     add("--seed", metavar="N", type=whole_number(0, MAX_SEED), help="pattern of samples")
@@ -148,18 +164,7 @@ def apply_sampling(settings, render, arguments):
         settings.use_target_error = False
     if _given(arguments, _AUTOMATIC):
         settings.use_target_error = True
-    for option, name in (
-        ("samples", "render_samples"),
-        ("subsamples", "subsamples"),
-        ("target_error", "render_error"),
-        ("min_samples", "render_min_samples"),
-        ("max_samples", "render_max_samples"),
-        ("time_limit", "render_time_limit"),
-        ("level_bias", "level_bias"),
-        ("min_triangles", "least_triangles"),
-        ("seed", "seed"),
-        ("layers", "layers"),
-    ):
+    for option, name in _OF_SETTING.items():
         value = getattr(arguments, option)
         if value is not None:
             setattr(settings, name, value)

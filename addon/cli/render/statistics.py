@@ -13,7 +13,10 @@ from ...scene.camera.bokeh import corner_tangent, read_bokeh
 from ...scene.camera.camera import focus_distance
 from ...scene.camera.chromatic import read_chromatic
 from ...scene.camera.lenses import read_real_lens
-from ...scene.settings import read_passes
+from ...scene.settings import read_passes, read_sampling
+from ...settings.bokeh_settings import BOKEH
+from ...settings.scene_settings import ADVANCED, LEVELS, RENDER, SAMPLING
+from ...settings.setting import told, told_by
 
 
 def settings_in_force(scene, sources, arguments=None):
@@ -32,29 +35,16 @@ def settings_in_force(scene, sources, arguments=None):
     -------
     dict
     """
-    render, own = scene.render, scene.aplanat
+    render = scene.render
     depsgraph = bpy.context.evaluated_depsgraph_get()
     camera = scene.camera.evaluated_get(depsgraph)
     data = camera.data
     dof = data.dof
     focus = dof.focus_object
     lens, _ = read_real_lens(data, sources.shelf)
-    automatic = own.method == "ADAPTIVE" and own.use_target_error
     return {
-        "method": own.method.lower(),
-        "target_error": own.render_error if automatic else None,
-        "min_samples": own.render_min_samples if automatic else None,
-        "max_samples": own.render_max_samples if automatic else None,
-        "time_limit_s": own.render_time_limit or None,
-        "samples": None if automatic else own.render_samples,
-        "subsamples": _subsamples(own, automatic),
-        "layers": own.layers if own.method == "LAYERED" else None,
-        "share_drawings": own.sharing_cells if own.use_sharing else 0,
-        "levels_of_detail": own.use_levels,
-        "level_bias": own.level_bias,
-        "least_triangles": own.least_triangles,
-        "seed": own.seed,
-        "filter": own.pixel_filter.lower().replace("_", "-"),
+        **_sampling(scene),
+        "filter": told(scene.aplanat.pixel_filter),
         "filter_size_px": render.filter_size,
         "resolution": [
             render.resolution_x * render.resolution_percentage // 100,
@@ -107,6 +97,28 @@ def settings_in_force(scene, sources, arguments=None):
     }
 
 
+def _sampling(scene):
+    """Return how a frame is sampled; null is what the method does not use."""
+    sampling = read_sampling(scene)
+    automatic = sampling.method == "ADAPTIVE" and sampling.target_error is not None
+    numbers = told_by(sampling, SAMPLING, RENDER, ADVANCED, LEVELS) | {
+        "target_error": sampling.target_error,
+        "time_limit_s": sampling.time_limit,
+        "share_drawings": sampling.reuse_grid,
+    }
+    if automatic:
+        # They follow from the noise and from the blur; the work tells how many there were.
+        unused = ("samples", "subsamples")
+    else:
+        unused = ("target_error", "min_samples", "max_samples")
+    numbers |= dict.fromkeys(unused)
+    if sampling.method != "ADAPTIVE":
+        numbers["subsamples"] = 0
+    if sampling.method != "LAYERED":
+        numbers["layers"] = None
+    return numbers
+
+
 def _stereo(render, data):
     if not render.use_multiview or render.views_format != "STEREO_3D":
         return None
@@ -127,18 +139,8 @@ def _bokeh(scene, data, lens, irises):
     look = bokeh.appearance
     picture = isinstance(look.iris, PictureIris)
     return {
-        "threshold": bokeh.threshold,
-        "gain": bokeh.gain,
-        "model": bokeh.model.lower(),
+        **told_by(bokeh, *BOKEH),
         "cluster_levels": bokeh.cluster_levels if bokeh.model == "CLUSTERED" else 0,
-        "similarity": bokeh.similarity,
-        "global_merge": bokeh.global_merge,
-        "visibility": bokeh.visibility.lower(),
-        "debug_view": bokeh.debug_view.lower(),
-        "layers": bokeh.layers,
-        "lens_views": bokeh.lens_views,
-        "overscan": bokeh.overscan,
-        "world": bokeh.world,
         "hardness": look.edge,
         "profile_strength": bokeh.profile_strength if lens and lens.shapes_bokeh else None,
         "iris_image": data.aplanat.bokeh.iris_image.name if picture else None,
@@ -173,13 +175,6 @@ def _chromatic(data, lens):
             else [found.equalizer.wavelengths_nm, found.equalizer.weights]
         ),
     }
-
-
-def _subsamples(own, automatic):
-    if own.method != "ADAPTIVE":
-        return 0
-    # With a noise threshold they follow from the blur; the work tells how many there were.
-    return None if automatic else own.subsamples
 
 
 def work(statistics):

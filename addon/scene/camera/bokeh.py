@@ -14,6 +14,8 @@ from ...lens_bokeh.look.onion import OnionRings
 from ...lens_bokeh.look.vignetting_model import cat_eye
 from ...optics.rays.aberrations import field_curves
 from ...sampling.spectrum import rgb_weights, spectrum_wavelengths
+from ...settings.bokeh_settings import BOKEH
+from ...settings.setting import fields_of
 from ...snapshot.camera import BokehSettings
 
 # Least number of blades; with fewer the iris is round, as in Cycles.
@@ -72,22 +74,10 @@ def describe_bokeh(camera, real_lens, corner, irises):
     if vignetting == "LENS" and shaping is None:
         vignetting = "NONE"
     bokeh = BokehSettings(
-        threshold=settings.threshold,
-        gain=settings.gain,
-        model=settings.model,
-        cluster_levels=settings.cluster_levels,
-        similarity=settings.similarity,
-        global_merge=settings.use_global_merge,
-        visibility=settings.visibility,
-        layers=settings.layers,
-        overscan=settings.overscan,
-        lens_views=settings.lens_views,
-        world=settings.use_world,
+        **fields_of(settings, *BOKEH),
         appearance=appearance,
         distortion=distortion,
         vignetting=vignetting,
-        profile_strength=settings.profile_strength,
-        debug_view=settings.debug_view,
     )
     return bokeh, problems + distortion_problems + _told(camera)
 

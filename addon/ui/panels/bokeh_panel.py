@@ -6,9 +6,8 @@ import bpy
 
 from ...engine.shared_resources import real_lens_of, resources
 from ...scene.camera.bokeh import corner_tangent, describe_bokeh
-from ..presets.bokeh_presets import APLANAT_PT_bokeh_presets
 from ..previews import bokeh_previews
-from .panels import EnginePanel
+from .panel_bases import CameraPanel, PresetsHeader, SwitchHeader
 from .sentences import draw_alert, draw_sentences, letters_across
 
 # In units of Blender's buttons.
@@ -25,32 +24,15 @@ LEGEND = {
 }
 
 
-class _BokehPanel(EnginePanel):
-    bl_context = "data"
-
-    @classmethod
-    def poll(cls, context):
-        """Whether the editor shows a camera."""
-        return super().poll(context) and context.camera is not None
-
-    def begin(self, context):
-        """Return the settings and a column for them, dimmed where they are switched off."""
-        settings = context.camera.aplanat.bokeh
-        column = self.column()
-        column.active = settings.use
-        column.use_property_decorate = True
-        return settings, column
+class _BokehPanel(CameraPanel):
+    group = "bokeh"
 
 
-class APLANAT_CAMERA_PT_bokeh(_BokehPanel, bpy.types.Panel):
+class APLANAT_CAMERA_PT_bokeh(_BokehPanel, SwitchHeader, bpy.types.Panel):
     """Highlights as discs."""
 
     bl_label = "Bokeh"
     bl_options = {"DEFAULT_CLOSED"}
-
-    def draw_header(self, context):
-        """Draw the switch."""
-        self.layout.prop(context.camera.aplanat.bokeh, "use", text="")
 
     def draw(self, context):
         """Draw the settings, the counts of highlights by fate, and warnings."""
@@ -150,15 +132,12 @@ class APLANAT_CAMERA_PT_bokeh_search(_BokehPanel, bpy.types.Panel):
         world.prop(settings, "use_world")
 
 
-class APLANAT_CAMERA_PT_bokeh_appearance(_BokehPanel, bpy.types.Panel):
+class APLANAT_CAMERA_PT_bokeh_appearance(_BokehPanel, PresetsHeader, bpy.types.Panel):
     """Appearance of the discs."""
 
     bl_label = "Appearance"
     bl_parent_id = "APLANAT_CAMERA_PT_bokeh"
-
-    def draw_header_preset(self, _context):
-        """Draw the button of the presets."""
-        APLANAT_PT_bokeh_presets.draw_panel_header(self.layout)
+    presets = "bokeh"
 
     def draw(self, context):
         """Draw discs, and what shapes all of them."""

@@ -6,46 +6,25 @@ from ...engine.shared_resources import real_lens_of
 from ...scene.camera.chromatic import describe_chromatic, read_field_map
 from ...scene.camera.drawn_curves import EQUALIZER, MAP_CURVES, find_mapping
 from ..operators.chromatic_operators import APLANAT_OT_make_curves
-from ..presets.chromatic_presets import APLANAT_PT_chromatic_presets
 from ..previews import chromatic_previews
 from ..previews.spectrum_bar import draw_spectrum
-from .panels import EnginePanel
+from .panel_bases import CameraPanel, PresetsHeader, SwitchHeader
 from .sentences import draw_alert, draw_sentences, letters_across
 
 # In units of Blender's buttons.
 _MAP_SCALE = 7.0
 
 
-class _ChromaticPanel(EnginePanel):
-    bl_context = "data"
-
-    @classmethod
-    def poll(cls, context):
-        """Whether the editor shows a camera."""
-        return super().poll(context) and context.camera is not None
-
-    def begin(self, context):
-        """Return the settings and a column for them, dimmed where they are switched off."""
-        settings = context.camera.aplanat.chromatic
-        column = self.column()
-        column.active = settings.use
-        column.use_property_decorate = True
-        return settings, column
+class _ChromaticPanel(CameraPanel):
+    group = "chromatic"
 
 
-class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, bpy.types.Panel):
+class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, SwitchHeader, PresetsHeader, bpy.types.Panel):
     """Strength, glass and mode of the chromatic aberration."""
 
     bl_label = "Chromatic Aberration"
     bl_options = {"DEFAULT_CLOSED"}
-
-    def draw_header(self, context):
-        """Draw the switch."""
-        self.layout.prop(context.camera.aplanat.chromatic, "use", text="")
-
-    def draw_header_preset(self, _context):
-        """Draw the button of the presets."""
-        APLANAT_PT_chromatic_presets.draw_panel_header(self.layout)
+    presets = "chromatic"
 
     def draw(self, context):
         """Draw the settings, and what is not as they ask for."""
@@ -134,21 +113,18 @@ class APLANAT_CAMERA_PT_chromatic_lateral(_FieldMapPanel, bpy.types.Panel):
     meaning = "0: none of the lateral strength, 1: all"
 
 
-class APLANAT_CAMERA_PT_chromatic_equalizer(_ChromaticPanel, bpy.types.Panel):
+class APLANAT_CAMERA_PT_chromatic_equalizer(_ChromaticPanel, SwitchHeader, bpy.types.Panel):
     """Spectral equalizer: the weight of each wavelength."""
 
     bl_label = "Spectral Equalizer"
     bl_parent_id = "APLANAT_CAMERA_PT_chromatic"
     bl_options = {"DEFAULT_CLOSED"}
+    switch = "use_equalizer"
 
     @classmethod
     def poll(cls, context):
         """Whether the mode has a spectrum."""
         return super().poll(context) and context.camera.aplanat.chromatic.mode == "SPECTRAL"
-
-    def draw_header(self, context):
-        """Draw the switch."""
-        self.layout.prop(context.camera.aplanat.chromatic, "use_equalizer", text="")
 
     def draw_header_preset(self, _context):
         """Draw the button of the curves that come with Aplanat."""

@@ -20,7 +20,7 @@ from ..operators.lens_operators import (
     APLANAT_OT_use_iris,
 )
 from ..previews import lens_thumbnails
-from .panels import EnginePanel
+from .panel_bases import CameraPanel, EnginePanel
 from .sentences import draw_alert, draw_sentences, letters_across
 
 # In units of Blender's buttons.
@@ -45,16 +45,16 @@ class APLANAT_MT_lens(bpy.types.Menu):
         layout.operator(APLANAT_OT_remove_lens.bl_idname, icon="TRASH")
 
 
-class _LensPanel(EnginePanel):
-    bl_context = "data"
+class _KnownLensPanel(CameraPanel):
+    bl_parent_id = "APLANAT_CAMERA_PT_lens"
 
     @classmethod
     def poll(cls, context):
-        """Whether the editor shows a camera."""
-        return super().poll(context) and context.camera is not None
+        """Whether the camera has a lens that can be used."""
+        return super().poll(context) and real_lens_of(context.camera) is not None
 
 
-class APLANAT_CAMERA_PT_lens(_LensPanel, bpy.types.Panel):
+class APLANAT_CAMERA_PT_lens(CameraPanel, bpy.types.Panel):
     """The real lens of the camera: chooser, zoom position, focal length, f-stop."""
 
     bl_label = "Real Lens"
@@ -162,17 +162,11 @@ def _draw_work(column):
         row.operator(APLANAT_OT_background_work.bl_idname, text="Go On", icon="PLAY").stop = False
 
 
-class APLANAT_CAMERA_PT_lens_bokeh(_LensPanel, bpy.types.Panel):
+class APLANAT_CAMERA_PT_lens_bokeh(_KnownLensPanel, bpy.types.Panel):
     """Picture of the lens' bokeh over depth and field."""
 
     bl_label = "Bokeh"
-    bl_parent_id = "APLANAT_CAMERA_PT_lens"
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        """Whether the camera has a lens that can be used."""
-        return super().poll(context) and real_lens_of(context.camera) is not None
 
     def draw(self, context):
         """Draw the picture, which is made in the background."""
@@ -194,16 +188,10 @@ class APLANAT_CAMERA_PT_lens_bokeh(_LensPanel, bpy.types.Panel):
         draw_sentences(column, text, letters)
 
 
-class APLANAT_CAMERA_PT_lens_facts(_LensPanel, bpy.types.Panel):
+class APLANAT_CAMERA_PT_lens_facts(_KnownLensPanel, bpy.types.Panel):
     """Facts of the lens: design, source, figures."""
 
     bl_label = "Facts"
-    bl_parent_id = "APLANAT_CAMERA_PT_lens"
-
-    @classmethod
-    def poll(cls, context):
-        """Whether the camera has a lens that can be used."""
-        return super().poll(context) and real_lens_of(context.camera) is not None
 
     def draw(self, context):
         """Draw facts and warnings."""

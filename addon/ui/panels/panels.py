@@ -2,47 +2,25 @@
 
 import bpy
 
-from ...engine.render_engine import ENGINE_ID
 from ...engine.shared_resources import resources
 from ..operators.level_operators import APLANAT_OT_rebuild_levels
+from .panel_bases import EnginePanel, SwitchHeader
 
 _GEOMETRY = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
 
 
-class EnginePanel:
-    """A panel of the properties editor that is shown while Aplanat is the render engine."""
-
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    COMPAT_ENGINES = frozenset({ENGINE_ID})
-
-    @classmethod
-    def poll(cls, context):
-        """Whether Aplanat is the render engine."""
-        return context.engine in cls.COMPAT_ENGINES
-
-    def column(self):
-        """Return a column that is laid out as Blender lays out properties."""
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
-        return self.layout.column()
-
-
-class APLANAT_RENDER_PT_level_of_detail(EnginePanel, bpy.types.Panel):
+class APLANAT_RENDER_PT_level_of_detail(SwitchHeader, EnginePanel, bpy.types.Panel):
     """Level of detail of blurred objects."""
 
     bl_label = "Level of Detail"
     bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
+    switch = "use_levels"
 
     @classmethod
     def poll(cls, context):
         """Whether the method simplifies anything."""
         return super().poll(context) and context.scene.aplanat.method == "ADAPTIVE"
-
-    def draw_header(self, context):
-        """Draw the switch."""
-        self.layout.prop(context.scene.aplanat, "use_levels", text="")
 
     def draw(self, context):
         """Draw the settings, and what the levels take."""
@@ -89,16 +67,17 @@ class APLANAT_RENDER_PT_performance(EnginePanel, bpy.types.Panel):
         compositor.prop(render, "compositor_precision", text="Precision")
 
 
-class APLANAT_RENDER_PT_simplify(EnginePanel, bpy.types.Panel):
+class APLANAT_RENDER_PT_simplify(SwitchHeader, EnginePanel, bpy.types.Panel):
     """Blender's simplification; Blender's own panel would stand above all others."""
 
     bl_label = "Simplify"
     bl_context = "render"
     bl_options = {"DEFAULT_CLOSED"}
+    switch = "use_simplify"
 
-    def draw_header(self, context):
-        """Draw the switch."""
-        self.layout.prop(context.scene.render, "use_simplify", text="")
+    def owner(self, context):
+        """Return Blender's settings."""
+        return context.scene.render
 
     def draw(self, context):
         """Draw Blender's settings."""

@@ -3,20 +3,16 @@
 import bpy
 
 from ...engine.shared_resources import resources
-from ..presets.sampling_presets import APLANAT_PT_sampling_presets
-from .panels import EnginePanel
+from .panel_bases import EnginePanel, PresetsHeader
 from .sentences import draw_sentences, letters_across
 
 
-class APLANAT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
+class APLANAT_RENDER_PT_sampling(PresetsHeader, EnginePanel, bpy.types.Panel):
     """Sampling: method, presets."""
 
     bl_label = "Sampling"
     bl_context = "render"
-
-    def draw_header_preset(self, _context):
-        """Draw the button of the presets."""
-        APLANAT_PT_sampling_presets.draw_panel_header(self.layout)
+    presets = "sampling"
 
     def draw(self, context):
         """Draw the method."""

@@ -3,20 +3,19 @@
 from dataclasses import replace
 from functools import lru_cache
 
-import bpy.utils.previews
 import numpy as np
 
 from ...lens_bokeh.look.grain import transmission
 from ...lens_bokeh.look.iris_mask import texel_centres
 from ...lens_bokeh.look.sprite import sprite
+from .picture_icons import PictureIcons
 
 _SIZE = 96
 # Displayed brightness of an even disc.
 _GREY = 0.55
 
-_collection = None
-# Inputs of the pictures of each camera, to see whether they have changed.
-_shown = {}
+icons = PictureIcons()
+register, unregister = icons.register, icons.unregister
 
 
 def disc_icons(camera, appearance, corner):
@@ -36,16 +35,9 @@ def disc_icons(camera, appearance, corner):
     tuple of 3 int
         0 in a Blender without windows.
     """
-    names = [f"{camera.session_uid}:{number}" for number in range(3)]
-    if bpy.app.background:
-        return (0,) * len(names)
-    key = (replace(appearance, diffraction=None), corner)
-    if _shown.get(camera.session_uid) != key:
-        for name, picture in zip(names, disc_pictures(*key), strict=True):
-            _draw(name, picture)
-        _shown[camera.session_uid] = key
-    collection = _icons()
-    return tuple(collection[name].icon_id for name in names)
+    inputs = (replace(appearance, diffraction=None), corner)
+    name = str(camera.session_uid)
+    return icons.icon_ids(name, inputs, lambda: disc_pictures(*inputs), 3)
 
 
 # Memo of its arguments alone: cameras that look alike share their pictures.
@@ -94,31 +86,3 @@ def _speckles(grain, ratio, extent):
     if grain is None:
         return np.ones((_SIZE, _SIZE))
     return transmission(grain, texel_centres(_SIZE, extent) * (ratio, 1.0))
-
-
-def _draw(name, picture):
-    icons = _icons()
-    icon = icons.get(name) or icons.new(name)
-    height, width, _ = picture.shape
-    icon.image_size = width, height
-    icon.image_pixels_float.foreach_set(np.ascontiguousarray(picture).ravel())
-
-
-def _icons():
-    global _collection
-    if _collection is None:
-        _collection = bpy.utils.previews.new()
-    return _collection
-
-
-def register():
-    """Nothing is made before a panel is drawn."""
-
-
-def unregister():
-    """Free the icons."""
-    global _collection
-    if _collection is not None:
-        bpy.utils.previews.remove(_collection)
-        _collection = None
-    _shown.clear()

@@ -2,14 +2,14 @@
 
 from functools import partial
 
-import bpy.utils.previews
+import bpy
 
 from ...lens_bokeh.look.iris_mask import BladedIris
 from ..jobs import background
+from .picture_icons import PictureIcons
 
-_collection = None
-# What the picture of an icon was made of, by the icon's name.
-_shown = {}
+icons = PictureIcons()
+register, unregister = icons.register, icons.unregister
 
 
 def icon_id(found):
@@ -82,11 +82,10 @@ def _key(name, wanted):
 def _icon(name, wanted, label, work, urgent=False):
     if bpy.app.background:
         return 0
-    if _shown.get(name) != wanted:
+    if icons.shown.get(name) != wanted:
         receive = partial(_show, name, wanted)
         background.submit(_key(name, wanted), label, work, receive, urgent, group=name)
-    icon = _icons().get(name)
-    return icon.icon_id if icon else 0
+    return icons.icon_id(name)
 
 
 # In the background thread, which also imports what they need: Blender starts sooner.
@@ -105,29 +104,4 @@ def _draw_bokeh(*arguments):
 
 
 def _show(name, wanted, pixels):
-    icons = _icons()
-    icon = icons.get(name) or icons.new(name)
-    height, width, _ = pixels.shape
-    icon.image_size = width, height
-    icon.image_pixels_float.foreach_set(pixels[::-1].ravel())
-    _shown[name] = wanted
-
-
-def _icons():
-    global _collection
-    if _collection is None:
-        _collection = bpy.utils.previews.new()
-    return _collection
-
-
-def register():
-    """Nothing is made before a panel is drawn."""
-
-
-def unregister():
-    """Free the icons."""
-    global _collection
-    if _collection is not None:
-        bpy.utils.previews.remove(_collection)
-        _collection = None
-    _shown.clear()
+    icons.show(name, wanted, pixels[::-1])

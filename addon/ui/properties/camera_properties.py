@@ -4,13 +4,14 @@ import bpy
 from bpy.props import EnumProperty, PointerProperty, StringProperty
 
 from ...engine.shared_resources import shelf
+from ...settings.scene_part_settings import LENS
 from ..previews import lens_thumbnails
 from .bokeh_properties import APPEARANCE_NAMES, AplanatBokehSettings
-from .chromatic_properties import AplanatChromaticSettings, values_as_dict, values_from_dict
-from .lens_memory import remember, set_values, values_of
-from .overrides import OVERRIDABLE, setting_changed
+from .chromatic_properties import SETTING_NAMES, AplanatChromaticSettings
+from .declared import properties
+from .lens_memory import remember
+from .overrides import OVERRIDABLE, SHARED, setting_changed
 
-_LONGEST_TEXT = 255
 _THIN = "thin"
 _LENS = "lens:"
 
@@ -105,86 +106,61 @@ def _lens_changed(camera, context):
     labels = _labels(camera)
     if camera.zoom_label and labels and camera.zoom_label not in labels:
         camera.zoom_label = ""
-    remember(
-        camera,
-        "bokeh",
-        lambda group: values_of(group, APPEARANCE_NAMES),
-        lambda group, values: set_values(group, APPEARANCE_NAMES, values),
-    )
-    remember(camera, "chromatic", values_as_dict, values_from_dict)
+    remember(camera, "bokeh", APPEARANCE_NAMES)
+    remember(camera, "chromatic", SETTING_NAMES)
     setting_changed(camera, context)
+
+
+def _group_with_memory(which, label, kind, description):
+    """Return the properties of a group of settings of which each lens keeps its own."""
+    hidden = {"options": {"HIDDEN"}, "override": OVERRIDABLE}
+    return {
+        which: PointerProperty(
+            name=label, type=kind, description=description, override=OVERRIDABLE
+        ),
+        f"{which}_lens": StringProperty(
+            name=f"Lens of the {label}", description="Lens for which they were set", **hidden
+        ),
+        f"{which}_memory": StringProperty(
+            name=f"{label} of Other Lenses",
+            description="What was set for lenses that were used before, as JSON",
+            **hidden,
+        ),
+    }
 
 
 class AplanatCameraSettings(bpy.types.PropertyGroup):
     """The real lens of a camera, how it parts the colours, and its bokeh."""
 
-    lens: StringProperty(
-        name="Lens",
-        description="Name of a lens of the library; empty for a thin lens. The lens limits the"
-        " f-number. It never changes the focal length by itself",
-        maxlen=_LONGEST_TEXT,
-        options=set(),
-        override=OVERRIDABLE,
-        search=_found_lenses,
-        update=_lens_changed,
-    )
-    zoom_label: StringProperty(
-        name="Zoom Position",
-        description="Name of the position of a zoom lens; empty for its first one",
-        maxlen=_LONGEST_TEXT,
-        options=set(),
-        override=OVERRIDABLE,
-        update=setting_changed,
-    )
-    lens_choice: EnumProperty(
-        name="Lens",
-        description="Choose a lens by its cross-section and its bokeh",
-        items=_lens_items,
-        get=_chosen_lens,
-        set=_choose_lens,
-        options=set(),
-    )
-    zoom: EnumProperty(
-        name="Zoom",
-        description="Position of the zoom ring. The camera's focal length stays as it is",
-        items=_zoom_items,
-        get=_chosen_zoom,
-        set=_choose_zoom,
-        options=set(),
-    )
-    bokeh: PointerProperty(
-        type=AplanatBokehSettings,
-        name="Bokeh",
-        description="How the camera's highlights are drawn",
-        override=OVERRIDABLE,
-    )
-    bokeh_lens: StringProperty(
-        name="Lens of the Bokeh",
-        description="Lens for which the appearance of the bokeh was set",
-        options={"HIDDEN"},
-        override=OVERRIDABLE,
-    )
-    bokeh_memory: StringProperty(
-        name="Bokeh of Other Lenses",
-        description="What was set for lenses that were used before, as JSON",
-        options={"HIDDEN"},
-        override=OVERRIDABLE,
-    )
-    chromatic: PointerProperty(
-        type=AplanatChromaticSettings,
-        name="Chromatic Aberration",
-        description="How colours part in the camera",
-        override=OVERRIDABLE,
-    )
-    chromatic_lens: StringProperty(
-        name="Lens of the Chromatic Settings",
-        description="Lens for which the chromatic settings were made",
-        options={"HIDDEN"},
-        override=OVERRIDABLE,
-    )
-    chromatic_memory: StringProperty(
-        name="Chromatic Settings of Other Lenses",
-        description="What was set for lenses that were used before, as JSON",
-        options={"HIDDEN"},
-        override=OVERRIDABLE,
-    )
+    __annotations__ = {
+        **properties(
+            LENS,
+            callbacks={"lens": {"search": _found_lenses, "update": _lens_changed}},
+            **SHARED,
+        ),
+        "lens_choice": EnumProperty(
+            name="Lens",
+            description="Choose a lens by its cross-section and its bokeh",
+            items=_lens_items,
+            get=_chosen_lens,
+            set=_choose_lens,
+            options=set(),
+        ),
+        "zoom": EnumProperty(
+            name="Zoom",
+            description="Position of the zoom ring. The camera's focal length stays as it is",
+            items=_zoom_items,
+            get=_chosen_zoom,
+            set=_choose_zoom,
+            options=set(),
+        ),
+        **_group_with_memory(
+            "bokeh", "Bokeh", AplanatBokehSettings, "How the camera's highlights are drawn"
+        ),
+        **_group_with_memory(
+            "chromatic",
+            "Chromatic Aberration",
+            AplanatChromaticSettings,
+            "How colours part in the camera",
+        ),
+    }

@@ -39,7 +39,7 @@ def set_values(group, names, values):
             continue
 
 
-def remember(camera_settings, which, read, write):
+def remember(camera_settings, which, names):
     """Store the settings for the previous lens, and restore those of the present one.
 
     A lens that was not used before takes over the present settings.
@@ -51,21 +51,19 @@ def remember(camera_settings, which, read, write):
         remembered.
     which : str
         Name of the group of settings.
-    read : callable
-        From the group to a dict of what belongs to a lens, fit for JSON.
-    write : callable
-        Sets in the group what such a dict holds.
+    names : sequence of str
+        Of the group's settings that belong to a lens, fit for JSON.
     """
     old, new = getattr(camera_settings, f"{which}_lens"), camera_settings.lens
     if old == new:
         return
     group = getattr(camera_settings, which)
     memory = _parsed(getattr(camera_settings, f"{which}_memory"))
-    memory[old] = read(group)
+    memory[old] = values_of(group, names)
     setattr(camera_settings, f"{which}_memory", json.dumps(memory))
     setattr(camera_settings, f"{which}_lens", new)
     if isinstance(memory.get(new), dict):
-        write(group, memory[new])
+        set_values(group, names, memory[new])
 
 
 def _parsed(text):

@@ -28,6 +28,10 @@ def setting_changed(settings, _context):
     block.update_tag()
 
 
+# What the properties of a data-block that can be overridden have in common.
+SHARED = {"override": OVERRIDABLE, "update": setting_changed}
+
+
 def make_groups(group):
     """Make a property group and the groups inside it exist.
 

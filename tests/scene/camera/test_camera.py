@@ -11,14 +11,10 @@ FILM = Film(96, 64, (0, 0, 96, 64))
 
 
 @pytest.fixture
-def camera(empty_scene, aplanat_bpy):
-    data = aplanat_bpy.data.cameras.new("Camera")
-    obj = aplanat_bpy.data.objects.new("Camera", data)
-    aplanat_bpy.context.collection.objects.link(obj)
-    empty_scene.camera = obj
-    data.dof.use_dof = True
-    data.dof.focus_distance = 4.0
-    return obj
+def camera(camera, empty_scene):
+    camera.dof.use_dof = True
+    camera.dof.focus_distance = 4.0
+    return empty_scene.camera
 
 
 def read(bpy, film=FILM):

@@ -26,15 +26,11 @@ CURVE_PATH = 'nodes["Axial First"].mapping.curves[0].points[1].location'
 
 
 @pytest.fixture
-def camera(empty_scene, aplanat_bpy):
-    data = aplanat_bpy.data.cameras.new("Camera")
-    obj = aplanat_bpy.data.objects.new("Camera", data)
-    aplanat_bpy.context.collection.objects.link(obj)
-    empty_scene.camera = obj
-    data.dof.use_dof = True
-    data.dof.focus_distance = 4.0
-    data.aplanat.chromatic.use = True
-    return data
+def camera(camera):
+    camera.dof.use_dof = True
+    camera.dof.focus_distance = 4.0
+    camera.aplanat.chromatic.use = True
+    return camera
 
 
 @pytest.fixture

@@ -1,0 +1,38 @@
+"""Settings of what stands in a scene: lenses of cameras, materials, lights, the world."""
+
+from .setting import Item, Section, Setting
+
+_HIGHLIGHTS = (
+    Item(0, "AUTOMATIC", "Automatic", "Where it is bright and blurred enough"),
+    Item(1, "NEVER", "Never", "It is sampled as everything else, however bright it is"),
+)
+
+# A table: what belongs to a setting stands together.
+# fmt: off
+LENS = Section("Real lens", "Camera Properties > Lens > Real Lens", (
+    Setting("lens", "", "Lens", "Name of a lens of the library; empty for a thin lens. The lens"
+            " limits the f-number. It never changes the focal length by itself", told="lens"),
+    Setting("zoom_label", "", "Zoom Position", "Name of the position of a zoom lens; empty for"
+            " its first one", told="zoom_position"),
+))
+
+MATERIAL = Section("Material", "Material Properties > Settings", (
+    Setting("highlights", "AUTOMATIC", "Highlights", "Whether the light of surfaces with this"
+            " material is drawn as bokeh where it is brighter than the camera's threshold",
+            items=_HIGHLIGHTS),
+))
+
+LAMP = Section("Light", "Light Properties > Bokeh", (
+    Setting("highlights", "AUTOMATIC", "Highlights", "Whether what surfaces reflect of this light"
+            " is drawn as bokeh where it is brighter than the camera's threshold",
+            items=_HIGHLIGHTS),
+))
+
+WORLD = Section("World", "World Properties > Whites", (
+    Setting("amplification", 0.0, "Amplify Whites", "How much brighter white is taken to be in a"
+            " world image that holds nothing brighter (8 bits a channel), as background and as"
+            " light: 100 to 200 makes lamps out of its white spots, 0 changes nothing. What is"
+            " brighter than white grows by as much as white does", limits=(0.0, 10000.0),
+            soft=(None, 200.0), step=100, precision=1, told="amplify_whites"),
+))
+# fmt: on

@@ -1,0 +1,144 @@
+"""Settings of a scene and of its view layers: sampling, levels of detail, passes."""
+
+from .setting import Item, Section, Setting
+
+# Lens samples of a frame, also on the command line.
+MAX_SAMPLES = 65536
+
+# A table: what belongs to a setting stands together.
+# fmt: off
+SAMPLING = Section("Sampling", "Render Properties > Sampling", (
+    Setting("method", "ADAPTIVE", "Method", "How the picture is put together from views through"
+            " the lens", field="method", told="method", kept=True, items=(
+            Item(0, "ADAPTIVE", "Adaptive", "Draw blurred objects with fewer triangles, share"
+                 " drawings of what is in focus, and blur each lens sample over the part of the"
+                 " lens it stands for"),
+            Item(1, "REFERENCE", "Reference", "Draw everything in full detail for every lens"
+                 " sample: exact, the slowest"),
+            Item(2, "LAYERED", "Layered", "Draw the scene once for each depth layer, and cast the"
+                 " rays of all lens samples through the layers: the time hardly depends on the"
+                 " number of triangles"),
+    )),
+    Setting("use_target_error", True, "Noise Threshold", "Draw samples until the picture is as"
+            " good as one number for quality asks, where they are needed; the error is measured"
+            " while the picture is drawn", kept=True),
+))
+
+RENDER = Section("Samples of the final render", "Render Properties > Sampling > Render", (
+    Setting("render_error", 0.01, "Render Noise Threshold", "How much the final render may differ"
+            " from a perfect one, as 1 - SSIM: 0.02 is a draft, 0.01 looks clean, 0.002 is for"
+            " large prints. It changes the noise, never the amount of blur", limits=(0.0005, 0.5),
+            soft=(None, 0.05), step=0.1, precision=4, told="target_error", kept=True),
+    Setting("render_max_samples", 4096, "Render Max Samples", "Lens samples at which the final"
+            " render stops even if it is above its noise threshold", limits=(1, MAX_SAMPLES),
+            field="most_samples", told="max_samples", kept=True),
+    Setting("render_min_samples", 16, "Render Min Samples", "Lens samples that every part of the"
+            " final render gets at least. More find small and rare things that few samples miss",
+            limits=(1, MAX_SAMPLES), soft=(None, 4096), field="least_samples", told="min_samples",
+            kept=True),
+    Setting("render_samples", 256, "Render", "Places on the lens from which the final render sees"
+            " the scene. More make blurred parts smoother; the amount of blur stays the same",
+            limits=(1, MAX_SAMPLES), soft=(None, 4096), field="lens_samples", told="samples",
+            kept=True),
+    Setting("render_time_limit", 0.0, "Render Time Limit", "Seconds of drawing at which sampling"
+            " stops, but not before Min Samples; 0 is no limit. With a limit, the noise depends"
+            " on how fast and how busy the machine is", limits=(0.0, None), soft=(None, 3600.0),
+            subtype="TIME_ABSOLUTE", told="time_limit_s"),
+))
+
+PREVIEW = Section("Samples of the viewport", "Render Properties > Sampling > Viewport", (
+    Setting("preview_error", 0.03, "Viewport Noise Threshold", "How much the picture may differ"
+            " from a perfect one when the viewport rests, as 1 - SSIM", limits=(0.0005, 0.5),
+            soft=(None, 0.1), step=0.1, precision=4, kept=True),
+    Setting("preview_max_samples", 1024, "Viewport Max Samples", "Lens samples at which the"
+            " viewport rests even if it is above its noise threshold", limits=(1, MAX_SAMPLES),
+            field="most_samples", kept=True),
+    Setting("preview_min_samples", 16, "Viewport Min Samples", "Lens samples that every part of"
+            " the viewport gets at least", limits=(1, MAX_SAMPLES), soft=(None, 1024),
+            field="least_samples", kept=True),
+    Setting("preview_samples", 64, "Viewport", "Lens samples after which the viewport rests",
+            limits=(1, MAX_SAMPLES), soft=(None, 1024), field="lens_samples", kept=True),
+    Setting("preview_time_limit", 0.0, "Viewport Time Limit", "Seconds of drawing at which it"
+            " rests, but not before Min Samples; 0 is no limit", limits=(0.0, None),
+            soft=(None, 60.0), subtype="TIME_ABSOLUTE"),
+))
+
+ADVANCED = Section("Sampling of both", "Render Properties > Sampling > Advanced", (
+    Setting("subsamples", 4, "Subsamples", "Places on the lens for which each lens sample is"
+            " blurred besides its own. They cost less than samples, but see only what the sample"
+            " sees", limits=(0, 64), soft=(None, 8), field="subsamples", told="subsamples",
+            kept=True),
+    Setting("use_sharing", True, "Share Drawings", "Draw what is nearly in focus once for all"
+            " lens samples that put it at the same place of the raster", told="share_drawings",
+            kept=True),
+    Setting("sharing_cells", 2, "Cells", "Places along a pixel that are told apart when drawings"
+            " are shared. More give smoother edges, fewer share more", limits=(1, 8),
+            told="share_drawings", kept=True),
+    Setting("layers", 8, "Layers", "Depth layers of the layered method. More keep more of what"
+            " hides behind one another, and take more time and memory", limits=(1, 64),
+            soft=(4, 16), field="layers", told="layers"),
+    Setting("seed", 0, "Seed", "Chooses another pattern of samples; the same seed gives the same"
+            " picture", limits=(0, None), field="seed", told="seed"),
+    Setting("pixel_filter", "BLACKMAN_HARRIS", "Pixel Filter", "How samples are gathered into a"
+            " pixel", told="filter", kept=True, items=(
+            Item(0, "BLACKMAN_HARRIS", "Blackman-Harris", "Smooth edges without ringing"),
+            Item(1, "BOX", "Box", "Every place of the pixel counts the same"),
+    )),
+))
+
+CAPTURE = Section("Capture of depth layers", "Render Properties > Depth Layers", (
+    Setting("layers", 8, "Layers", "How many depth layers a captured frame has, besides"
+            " the world's. More layers keep apart what lies behind one another, and take longer",
+            limits=(1, 64), soft=(None, 16)),
+    Setting("overscan", 0.1, "Overscan", "Share of the picture's width and height that a"
+            " captured frame is larger on each side, so that blur finds what lies beyond the"
+            " border", limits=(0.0, 1.0), soft=(None, 0.3), precision=2, subtype="FACTOR"),
+    Setting("path", "//layers_####.exr", "Layers File", "Where Capture Depth Layers"
+            " writes: an .exr file a frame, #### is its number", subtype="FILE_PATH"),
+))
+
+MEASURING = Section("Measuring", "Only in Python", (
+    Setting("use_reference_bokeh", False, "Separate Highlights", "Draw the cameras' bokeh with"
+            " the reference method, too. Without it, highlights are sampled as everything else",
+            field="reference_bokeh"),
+))
+
+LEVELS = Section("Level of detail", "Render Properties > Level of Detail", (
+    Setting("use_levels", True, "Level of Detail", "Draw blurred objects with fewer triangles;"
+            " what is in focus keeps all of them", field="uses_levels", told="levels_of_detail"),
+    Setting("level_bias", 0.0, "Bias", "Levels of detail by which objects are drawn finer (or"
+            " coarser, if negative) than their blur asks for; each has twice the triangles",
+            limits=(-16.0, 16.0), soft=(-4.0, 4.0), field="level_bias", told="level_bias"),
+    Setting("least_triangles", 256, "Minimum Triangles", "No level of detail has fewer triangles",
+            limits=(4, 10_000_000), soft=(None, 10000), field="least_triangles",
+            told="least_triangles"),
+))
+
+PERFORMANCE = Section("Performance", "Render Properties > Performance", (
+    Setting("chunk_milliseconds", 50, "Chunk", "How long a final render may draw before it lets"
+            " the window answer, in milliseconds. Longer renders a little faster; shorter keeps"
+            " Blender more responsive", limits=(10, 2000), soft=(None, 500)),
+))
+
+PASSES = Section("Passes", "View Layer Properties > Passes > Data", (
+    Setting("use_pass_coc", False, "Circle of Confusion", "Radius of the blur disk of the point"
+            " in each pixel's centre, in pixels; negative in front of the focus plane"),
+    Setting("use_pass_focus_matte", False, "Focus Matte", "Share of each pixel that is in focus,"
+            " blurred like the picture: 1 up to a blur of 1/1500 of the picture's diagonal (at"
+            " least a pixel), then falling to 0"),
+    Setting("use_pass_fringe", False, "Fringe", "What chromatic aberration adds and takes away:"
+            " Combined less the same picture without it, which is rendered beside it"),
+    Setting("use_pass_defocus", False, "Defocus", "What the lens samples show: Combined without"
+            " the highlights that were drawn one by one"),
+    Setting("use_pass_bokeh", False, "Bokeh", "The highlights that were drawn one by one. Defocus"
+            " and Bokeh together are Combined"),
+    Setting("use_pass_detail", False, "Detail", "Where the adaptive method saves work: level of"
+            " detail (X), share of the lens samples that copy a drawing of the object (Y), and 1"
+            " where there is an object (Z)"),
+    Setting("use_pass_sample_count", False, "Sample Count", "Lens samples that each pixel got:"
+            " with a noise threshold, more where the picture needs them"),
+))
+# fmt: on
+
+SCENE = (SAMPLING, RENDER, PREVIEW, ADVANCED, LEVELS, PERFORMANCE, MEASURING)
+VIEW_LAYER = (PASSES,)

@@ -1,0 +1,89 @@
+"""What the panels of the properties editor have in common."""
+
+from ...engine.render_engine import ENGINE_ID
+from ..presets.presets import PRESET_CLASSES
+
+
+class EnginePanel:
+    """A panel of the properties editor that is shown while Aplanat is the render engine."""
+
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    COMPAT_ENGINES = frozenset({ENGINE_ID})
+
+    @classmethod
+    def poll(cls, context):
+        """Whether Aplanat is the render engine."""
+        return context.engine in cls.COMPAT_ENGINES
+
+    def column(self):
+        """Return a column that is laid out as Blender lays out properties."""
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout.column()
+
+
+class SwitchHeader:
+    """A header with a switch.
+
+    Attributes
+    ----------
+    switch : str
+        Name of the setting.
+    """
+
+    switch = "use"
+
+    def owner(self, context):
+        """Return what has the setting: the scene, unless the panel is of something else."""
+        return context.scene.aplanat
+
+    def draw_header(self, context):
+        """Draw the switch."""
+        self.layout.prop(self.owner(context), self.switch, text="")
+
+
+class PresetsHeader:
+    """A header with presets.
+
+    Attributes
+    ----------
+    presets : str
+        Their kind, out of `ui.presets.presets.KINDS`.
+    """
+
+    presets = ""
+
+    def draw_header_preset(self, _context):
+        """Draw the button of the presets."""
+        _, listing = PRESET_CLASSES[self.presets]
+        listing.draw_panel_header(self.layout)
+
+
+class CameraPanel(EnginePanel):
+    """A panel of the camera in the editor.
+
+    Attributes
+    ----------
+    group : str
+        Name of its group of settings.
+    """
+
+    bl_context = "data"
+    group = ""
+
+    @classmethod
+    def poll(cls, context):
+        """Whether the editor shows a camera."""
+        return super().poll(context) and context.camera is not None
+
+    def owner(self, context):
+        """Return the settings of the camera."""
+        return getattr(context.camera.aplanat, self.group)
+
+    def begin(self, context):
+        """Return the settings and a column for them, dimmed where the camera does not use them."""
+        settings, column = self.owner(context), self.column()
+        column.active = settings.use
+        column.use_property_decorate = True
+        return settings, column
