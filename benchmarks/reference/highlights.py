@@ -10,6 +10,10 @@ from addon.sampling.highlights import highlight_share
 _COC_TOLERANCE = 1.0
 # Those that differ by less see the same surfaces in front, px.
 _SAME_VIEW = 1.0
+# Of see-through ones that differ by less one highlight is made, px.
+_ONE_PLACE = 1.05
+# Parallax, px, below which visibility does not count what is in front.
+_SAME_PLACE = 0.25
 # Highlights of a pixel; side of a tile, px.
 _MOST, _TILE = 8, 8
 
@@ -60,7 +64,8 @@ def highlights(fragments, scene, raster):
     ----------
     fragments : sequence of (ndarray, ndarray, ndarray)
         Of each texel, in any order: light to be splatted, shape (height, width, 3), window
-        depth and whether it is opaque, shape (height, width); bottom row first.
+        depth and share of the light from behind that passes, 0 where opaque, shape (height, width);
+        bottom row first.
     scene : ndarray of shape (height, width)
         Window depth of the nearest opaque surface.
     raster : Raster
@@ -86,19 +91,45 @@ def highlights(fragments, scene, raster):
 def _seen(fragments, scene, raster, texel):
     """Return the fragments of a texel that something of the lens may see, from front to back."""
     listed = [
-        (float(depth[texel]), color[texel].astype(float), bool(opaque[texel]))
-        for color, depth, opaque in fragments
+        (float(depth[texel]), color[texel].astype(float), float(through[texel]))
+        for color, depth, through in fragments
         if color[texel].max() > 0.0
     ]
-    kept = []
+    kept, layers, placed = [], 0, None
     for fragment in sorted(listed, key=lambda each: each[0]):
         depth = fragment[0]
         hiding = [scene[texel]] if scene[texel] < depth - 2e-7 else []
-        hiding += [kept[-1][0]] if kept and kept[-1][2] else []
+        hiding += [kept[-1][0]] if kept and kept[-1][2] == 0.0 else []
         cocs = raster.coc(raster.depth(np.array([*hiding, depth])))
-        if (np.abs(cocs[:-1] - cocs[-1]) >= _SAME_VIEW).all() and len(kept) < raster.layers:
-            kept.append(fragment)
-    return kept
+        if (np.abs(cocs[:-1] - cocs[-1]) < _SAME_VIEW).any():
+            continue
+        # See-through ones with nearly one circle of confusion are put at the first one's depth.
+        near = kept and kept[-1][2] > 0.0
+        near = near and abs(raster.coc(raster.depth(placed)) - cocs[-1]) < _ONE_PLACE
+        if not near:
+            if layers == raster.layers:
+                break
+            layers, placed = layers + 1, depth
+        kept.append((*fragment, placed))
+    return [
+        (placed, color * _passed(listed, depth, placed, raster), through)
+        for depth, color, through, placed in kept
+    ]
+
+
+def _passed(listed, depth, placed, raster):
+    """Return the share that passes what is in front, but not for visibility at `placed`."""
+    ends = raster.depth(placed)
+    move = _SAME_PLACE / raster.coc_scale
+    far = ends - move * raster.focus_distance if raster.orthographic else 1 / (1 / ends + move)
+    far = min(far, ends * (1.0 - 1e-5))
+    return np.prod(
+        [
+            through
+            for before, _, through in listed
+            if through > 0.0 and before < depth and raster.depth(before) > far
+        ]
+    )
 
 
 def _pixel(fragments, scene, raster, row, column):

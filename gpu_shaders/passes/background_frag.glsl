@@ -70,7 +70,7 @@ void main()
 #ifdef EXCESS
   vec3 light = highlight_light(radiance, highlight_buf.split.x, highlight_buf.split.z);
   if (max(light.r, max(light.g, light.b)) > 0.0) {
-    append_fragment(ivec2(gl_FragCoord.xy), light, 1.0, true, 0u);
+    append_fragment(ivec2(gl_FragCoord.xy), light, 1.0, true, 0.0, 0u);
   }
 #else
   out_color = vec4(radiance, 1.0);

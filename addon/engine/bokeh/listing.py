@@ -150,15 +150,20 @@ class HighlightSearch:
         return searches
 
     def _draws(self, search):
-        """Return the draws of the searched surfaces and of all others that may be in front."""
+        """Return the draws of all other surfaces, of the searched, and of see-through ones."""
         if search.world:
-            return (), ()
+            return (), (), ()
         drawing = self._drawing
         shining = drawing.full_detail_draws(peel.HIGHLIGHTS, search.surfaces)
         if not shining:
-            return (), ()
+            return (), (), ()
         others = drawing.surfaces() - search.surfaces
-        return drawing.full_detail_draws(peel.OPAQUE, others), shining
+        see_through = drawing.see_through()
+        veils = [
+            *drawing.full_detail_draws(peel.VEILS, see_through & search.surfaces),
+            *drawing.full_detail_draws(peel.OTHER_VEILS, see_through & others),
+        ]
+        return drawing.full_detail_draws(peel.OPAQUE, others), shining, veils
 
     def _draw(self, search, tile, view, draws, raster, held, fullscreen):
         """Draw a tile, seen from a place on the lens, into lists; return its `ViewParams`."""
@@ -177,6 +182,9 @@ class HighlightSearch:
         lists.clear()
         params = self._draw(search, tile, view, draws, raster, held, fullscreen)
         number, shining = lists.read()
+        if draws[2] and 0 < number <= lists.capacity:
+            self._append_veils(search, tile, params, draws[2], lens, lists, raster)
+            number, _ = lists.read()
         if number > lists.capacity:
             # Drawn again into larger lists: texels are not counted twice.
             if number <= _MOST_ROOM:
@@ -213,12 +221,22 @@ class HighlightSearch:
             world = (buffers.environment_buffer, buffers.environment_image)
             background.list_highlights(fullscreen, params, *world, self._split, lists)
             return
-        others, shining = draws
+        others, shining, _ = draws
         peel.draw_opaque(others, params, buffers.instances, lens)
         peel.list_highlights(
             shining, params, buffers.instances, lens, lists, self._split, counts, counting
         )
         for draw in (*others, *shining):
+            self._drawing.counts.draw_calls += 1
+            self._drawing.counts.triangles += draw.triangles * draw.count
+
+    def _append_veils(self, search, tile, params, veils, lens, lists, raster):
+        """Add the see-through fragments that dim the highlights of a tile."""
+        size = (tile[2] * search.subpixels, tile[3] * search.subpixels)
+        framebuffer = raster.framebuffer(depth="scene")
+        with framebuffer.bind(), state.scissored(0, 0, *size):
+            peel.list_veils(veils, params, self._buffers.instances, lens, lists, self._split)
+        for draw in veils:
             self._drawing.counts.draw_calls += 1
             self._drawing.counts.triangles += draw.triangles * draw.count
 

@@ -326,6 +326,10 @@ class SceneDrawing:
         """Return group and slot of all surfaces."""
         return frozenset((draw.group, draw.slot) for draw in (*self._draws, *self._glows))
 
+    def see_through(self):
+        """Return group and slot of the surfaces that may let light through."""
+        return frozenset((draw.group, draw.slot) for draw in self._draws if draw.transparent)
+
     def full_detail_draws(self, target, wanted=None):
         """Return the draws, at full detail, of the visible instances for another target.
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...passes.bokeh import highlights
 from ...passes.visibility import culling
 from ..drawing.occluders import CLUSTER
 
@@ -19,9 +20,6 @@ STEPS_PER_DRAWN = 8
 STEPS_PER_TEXEL = 4
 # Triangles that are counted for an instance of a transparent surface.
 _SURFACE_TRIANGLES = 64
-# Parallax, px, below which a surface in front of a source is no occluder: all places on the lens
-# see the source as the lens' centre does.
-_SAME_VIEW = 0.25
 # The square root of 3: the spline with which masks are read then blurs as a pixel does.
 _MASK_TEXELS_PER_PIXEL = 1.73
 # Most texels of the atlas, and its longest side.
@@ -172,7 +170,7 @@ def visibility_params(plan, fine=1, reach=1.0):
         "projection": projection,
         "lens": (focus, float(plan.orthographic), plan.coc_scale, bokeh.iris.ratio),
         "opening": (*plan.lens_extent, start, reach),
-        "raster": (*raster, fine, _SAME_VIEW),
+        "raster": (*raster, fine, highlights.SAME_VIEW),
         "frame": (*bokeh.margin, plan.width, plan.height),
         "sweep": (*sweep, *depth),
         "tiles": (

@@ -33,6 +33,9 @@ from ..visibility.prefix_sums import COLUMNS
 
 # Side of a tile, px.
 TILE = 8
+# Parallax, px, below which a surface in front of a source is no occluder: all places on the lens
+# see the source as the lens' centre does.
+SAME_VIEW = 0.25
 
 _THREADS = 64
 # Most groups along the first axis of a dispatch.
@@ -70,7 +73,7 @@ def _order_info(world, in_wavelengths):
     samplers = [("UINT_2D", "nodes_tx")]
     if not world:
         samplers += [("FLOAT_2D", "scene_tx"), ("FLOAT_2D", "areas_tx"), ("UINT_2D", "hits_tx")]
-    constants = [("INT", "number")] + [("INT", "layers")] * (not world)
+    constants = [("INT", "number")] + [("INT", "layers"), ("FLOAT", "same_view")] * (not world)
     constants += [("VEC4", "lens_view")] * in_wavelengths
     info = ShaderInfo(
         name="aplanat_highlights_order",
@@ -274,6 +277,7 @@ def order(raster, lists, number, scene=None, counts=None):
         shader.uniform_sampler("areas_tx", counts.areas)
         shader.uniform_sampler("hits_tx", counts.hits)
         shader.uniform_int("layers", raster.layers)
+        shader.uniform_float("same_view", SAME_VIEW)
     _dispatch(shader, -(-number // _THREADS))
 
 

@@ -2,7 +2,7 @@
 
 `OCCLUDERS`: depth-peeled layers of all surfaces, each the nearest behind the layer before.
 `OPAQUE`: depth of the nearest opaque surface. `HIGHLIGHTS`: lists of all fragments brighter than
-the highlight threshold.
+the highlight threshold. `VEILS`, `OTHER_VEILS`: see-through fragments in front of and behind these.
 
 References
 ----------
@@ -34,6 +34,15 @@ HIGHLIGHTS = surface_target.SurfaceTarget(
     values=highlights.APPEND_DEFINES,
     splits=True,
 )
+# See-through surfaces of `HIGHLIGHTS`, where they are no highlight.
+VEILS = replace(
+    HIGHLIGHTS,
+    defines=(surface_target.SPLIT, "VEILS"),
+    samplers=(),
+    images=highlights.APPEND_IMAGES,
+)
+# See-through surfaces that are not searched for highlights.
+OTHER_VEILS = replace(VEILS, defines=("VEILS",), shades=False, splits=False)
 
 
 def draw_layer(draws, view_buffer, instances, textures):
@@ -92,3 +101,22 @@ def list_highlights(draws, view_buffer, instances, lens, lists, split, counts, c
     sample = (*lens, 0.0, 0.0)
     bindings = (*lists.bindings(), *counts.bindings(counting))
     surface.draw_sample(draws, view_buffer, instances, sample, 0, bindings, split)
+
+
+def list_veils(draws, view_buffer, instances, lens, lists, split):
+    """Append see-through fragments without light above the threshold to lists that have any.
+
+    Parameters
+    ----------
+    draws : list of Draw
+        For `VEILS` or `OTHER_VEILS`, of see-through surfaces only.
+    view_buffer, instances, lens
+        As for `draw_opaque`.
+    lists : highlights.FragmentLists
+        With highlights; read since they were listed, so that the device has finished them.
+    split : GPUUniformBuf
+        `HighlightParams`.
+    """
+    state.opaque()
+    sample = (*lens, 0.0, 0.0)
+    surface.draw_sample(draws, view_buffer, instances, sample, 0, lists.bindings(), split)

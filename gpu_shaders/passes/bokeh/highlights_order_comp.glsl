@@ -1,11 +1,15 @@
 // Sorts the fragments of each texel from front to back and drops those hidden from the whole lens:
 // right behind an opaque surface or an opaque highlight. All others stay, whatever is in front: their
-// visibility from each part of the lens is found later.
+// visibility from each part of the lens is found later, but for see-through fragments right in front,
+// which the lens sees in front of them from everywhere: these dim them here. See-through fragments
+// with nearly one circle of confusion are put at the depth of the first, as one highlight will be made
+// of them and its visibility must not count its own fragments.
 // A thread for each fragment; the thread of a texel's last fragment sorts the texel.
-// Inputs: nodes_tx, heads_img, light_img (see highlights_append); scene_tx (window depth of the
+// Inputs: nodes_tx, heads_img, light_img (see highlights_append; fragments without light only dim); scene_tx (window depth of the
 // nearest opaque surface); areas_tx and hits_tx (of each instance: area in the raster, 0 where it is
 // not known, and number of its texels there); view_buf (of the raster), highlight_buf; number (of fragments); layers
-// (that are kept of a texel). WORLD: the world at infinity, nothing in front. CHROMATIC: chromatic_buf,
+// (that are kept of a texel, one for all see-through fragments that are put at one depth); same_view
+// (parallax, px, from which on visibility counts a surface in front). WORLD: the world at infinity, nothing in front. CHROMATIC: chromatic_buf,
 // field_tx (field table) and lens_view (xy: place on the lens that the raster was seen from, m).
 // Outputs: heads_img (first of a texel, with IN_ORDER), order_img (next of each); light_img: light that
 // is splatted (0 where the circle of confusion is too small) and depth along the axis, m.
@@ -13,6 +17,7 @@
 #include "lib/depth_lib.glsl"
 #include "lib/bokeh/fragment_list_lib.glsl"
 #include "lib/bokeh/highlight_lib.glsl"
+#include "lib/bokeh/visibility_lib.glsl"
 #include "lib/lens_lib.glsl"
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
@@ -20,6 +25,9 @@
 
 // Difference of circles of confusion, px, below which a surface in front hides from the whole lens.
 #define SAME_VIEW 1.0
+// The same, px, below which see-through fragments are put at one depth: a little more than what
+// highlights_comp makes one highlight of, so that no rounding joins two of them there.
+#define ONE_PLACE 1.05
 // Depth buffer values of one surface in two shaders may differ by this much.
 #define DEPTH_STEPS 2e-7
 
@@ -39,6 +47,14 @@ bool hides(float front, float window_depth)
   float near = coc_radius_px(depth_of(front), view_buf.lens);
   float far = coc_radius_px(depth_of(window_depth), view_buf.lens);
   return abs(near - far) < SAME_VIEW;
+}
+
+// Whether see-through fragments are put at one depth.
+bool at_one_place(float front, float window_depth)
+{
+  float near = coc_radius_px(depth_of(front), view_buf.lens);
+  float far = coc_radius_px(depth_of(window_depth), view_buf.lens);
+  return abs(near - far) < ONE_PLACE;
 }
 
 #ifndef WORLD
@@ -61,7 +77,7 @@ Fragment next_behind(uint first, Fragment front, float scene)
     nearer = nearer || (light.a == best.light.a && largest(light.rgb) > largest(best.light.rgb));
     bool hidden = scene < light.a - DEPTH_STEPS && hides(scene, light.a);
     hidden = hidden || (front.opaque && hides(front.light.a, light.a));
-    if (light.a > front.light.a && nearer && !hidden) {
+    if (light.a > front.light.a && nearer && !hidden && largest(light.rgb) > 0.0) {
       best = Fragment(number, light, (node.x & KEY_OPAQUE) != 0u);
     }
     number = node.y;
@@ -71,6 +87,59 @@ Fragment next_behind(uint first, Fragment front, float scene)
 #endif
 
 #ifndef WORLD
+bool any_see_through(uint first)
+{
+  for (uint number = first; number != 0u;) {
+    uvec2 node = texelFetch(nodes_tx, list_texel(number - 1u), 0).xy;
+    if ((node.x & KEY_OPAQUE) == 0u) {
+      return true;
+    }
+    number = node.y;
+  }
+  return false;
+}
+
+// Share of a fragment's light that passes the see-through fragments in front of it, as far as
+// visibility does not count them for a highlight at the depth `place`.
+float passed(uint first, float window_depth, float place)
+{
+  float hiding = hiding_depth(depth_of(place), view_buf.lens, same_view);
+  float through = 1.0;
+  for (uint number = first; number != 0u;) {
+    ivec2 texel = list_texel(number - 1u);
+    uvec4 node = texelFetch(nodes_tx, texel, 0);
+    float before = imageLoad(light_img, texel).a;
+    if ((node.x & KEY_OPAQUE) == 0u && before < window_depth && depth_of(before) > hiding) {
+      through *= uintBitsToFloat(node.w);
+    }
+    number = node.y;
+  }
+  return through;
+}
+
+// Depth at which a fragment is put. `place`: that of the fragment before it; `joinable`: there is one,
+// and it is see-through.
+float layer_place(float place, bool joinable, float window_depth)
+{
+  return (joinable && at_one_place(place, window_depth)) ? place : window_depth;
+}
+
+// Dims the fragments of a texel by those in front, all before any depth is changed.
+void dim(uint first, uint start)
+{
+  float place = 0.0;
+  bool joinable = false;
+  for (uint kept = start; kept != 0u;) {
+    ivec2 at = list_texel(kept - 1u);
+    vec4 light = imageLoad(light_img, at);
+    place = layer_place(place, joinable, light.a);
+    joinable = (texelFetch(nodes_tx, at, 0).x & KEY_OPAQUE) == 0u;
+    light.rgb *= passed(first, light.a, place);
+    imageStore(light_img, at, light);
+    kept = imageLoad(order_img, at).x;
+  }
+}
+
 // Factor of the light of an instance's texels: its area in the raster over its number of texels.
 float area_per_hit(uint instance)
 {
@@ -136,12 +205,21 @@ void main()
   float scene = texelFetch(scene_tx, texel, 0).x;
   Fragment front = Fragment(0u, vec4(0.0), false);
   uint start = 0u;
-  int most = (node.y == 0u) ? 1 : layers;
-  for (int layer = 0; layer < most; layer++) {
+  // Of the first fragment of a layer.
+  float place = 0.0;
+  for (int layer = 0;;) {
     Fragment next = next_behind(first, front, scene);
     if (next.number == 0u) {
       break;
     }
+    bool joinable = front.number != 0u && !front.opaque;
+    float to = layer_place(place, joinable, next.light.a);
+    bool joins = joinable && to == place;
+    if (!joins && layer == layers) {
+      break;
+    }
+    layer += joins ? 0 : 1;
+    place = to;
     if (front.number == 0u) {
       start = next.number;
     }
@@ -149,19 +227,32 @@ void main()
       imageStore(order_img, list_texel(front.number - 1u), uvec4(next.number));
     }
     front = next;
+    if (node.y == 0u) {
+      break;
+    }
   }
   if (front.number != 0u) {
     imageStore(order_img, list_texel(front.number - 1u), uvec4(0u));
   }
+  if (node.y != 0u && any_see_through(first)) {
+    dim(first, start);
+  }
 #endif
   imageStore(heads_img, texel, uvec4(start | IN_ORDER));
-  for (uint kept = start; kept != 0u;) {
-    ivec2 place = list_texel(kept - 1u);
-    vec4 light = imageLoad(light_img, place);
 #ifndef WORLD
-    light.rgb *= area_per_hit(texelFetch(nodes_tx, place, 0).z);
+  bool joinable = false;
 #endif
-    imageStore(light_img, place, splatted(light, texel));
-    kept = imageLoad(order_img, place).x;
+  for (uint kept = start; kept != 0u;) {
+    ivec2 at = list_texel(kept - 1u);
+    vec4 light = imageLoad(light_img, at);
+#ifndef WORLD
+    uvec4 own = texelFetch(nodes_tx, at, 0);
+    light.rgb *= area_per_hit(own.z);
+    place = layer_place(place, joinable, light.a);
+    joinable = (own.x & KEY_OPAQUE) == 0u;
+    light.a = place;
+#endif
+    imageStore(light_img, at, splatted(light, texel));
+    kept = imageLoad(order_img, at).x;
   }
 }

@@ -2,6 +2,8 @@
 // OCCLUDERS: one layer of all surfaces, the nearest behind the previous layer, as their opacity.
 // HIGHLIGHTS: all fragments above the highlight threshold, in lists for each texel, whatever is in
 // front of them, and the depth of opaque surfaces.
+// VEILS: see-through fragments that are not listed as highlights, added to the lists that there are,
+// as they dim what lies right behind them.
 // Otherwise: the depth of the nearest opaque surface.
 // Inputs: varyings of surface_vert; view_buf; OCCLUDERS: front_tx (depth of the layer before);
 // highlights: highlight_buf, areas_tx (of instances whose texels are counted; else 0) and what
@@ -16,7 +18,7 @@
 // Least opacity of a surface that counts as an occluder.
 #define OPAQUE_FROM 0.999
 
-#ifndef HIGHLIGHTS
+#if !defined(HIGHLIGHTS) && !defined(VEILS)
 void main()
 {
 #ifdef OCCLUDERS
@@ -43,6 +45,43 @@ void main()
 #else
 #include "passes/bokeh/highlights_append.glsl"
 
+#ifdef HIGHLIGHTS
+// Light above the threshold of a surface.
+vec3 listed_light(Closure closure, float opacity)
+{
+  vec2 split = vec2(highlight_buf.split.x, highlight_buf.split.z);
+#if defined(TRANSPARENT) && !defined(GLOW_APART)
+  // As lens samples split it: the light of a surface that the random opacity keeps.
+  float there = max(opacity, 1e-6);
+  return opacity *
+         highlight_light(closure.radiance / there, closure.unsplit / there, split.x, split.y);
+#else
+  return highlight_light(closure.radiance, closure.unsplit, split.x, split.y);
+#endif
+}
+#endif
+
+#ifdef VEILS
+void main()
+{
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  if (imageLoad(heads_img, texel).x == 0u) {
+    discard;
+  }
+  Closure closure = surface_closure();
+  float opacity = 1.0 - closure_through(closure);
+  bool veils = opacity > 0.0 && opacity < OPAQUE_FROM;
+#ifdef HIGHLIGHTS
+  vec3 light = listed_light(closure, opacity);
+  veils = veils && max(light.r, max(light.g, light.b)) <= 0.0;
+#endif
+  if (veils) {
+    append_fragment(texel, vec3(0.0), gl_FragCoord.z, false, 1.0 - opacity, 0u);
+  }
+  // No depth.
+  discard;
+}
+#else
 void main()
 {
   if (texelFetch(areas_tx, list_texel(uint(instance_row)), 0).x > 0.0) {
@@ -50,20 +89,13 @@ void main()
   }
   Closure closure = surface_closure();
   float opacity = 1.0;
-  vec2 split = vec2(highlight_buf.split.x, highlight_buf.split.z);
-  vec3 light = highlight_light(closure.radiance, closure.unsplit, split.x, split.y);
 #ifdef TRANSPARENT
   opacity = 1.0 - closure_through(closure);
-#ifndef GLOW_APART
-  // As lens samples split it: the light of a surface that the random opacity keeps.
-  float there = max(opacity, 1e-6);
-  light = highlight_light(closure.radiance / there, closure.unsplit / there, split.x, split.y);
-  light *= opacity;
 #endif
-#endif
+  vec3 light = listed_light(closure, opacity);
   if (max(light.r, max(light.g, light.b)) > 0.0) {
     append_fragment(ivec2(gl_FragCoord.xy), light, gl_FragCoord.z, opacity >= OPAQUE_FROM,
-                    uint(instance_row) + 1u);
+                    1.0 - opacity, uint(instance_row) + 1u);
   }
 #ifdef TRANSPARENT
   if (opacity < OPAQUE_FROM) {
@@ -71,4 +103,5 @@ void main()
   }
 #endif
 }
+#endif
 #endif

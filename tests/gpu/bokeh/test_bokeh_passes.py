@@ -35,7 +35,8 @@ void main()
   }
   vec4 color = texelFetch(color_tx, texel, 0);
   if (max(color.r, max(color.g, color.b)) > 0.0) {
-    append_fragment(texel, color.rgb, texelFetch(depth_tx, texel, 0).x, color.a > 0.5, 0u);
+    float depth = texelFetch(depth_tx, texel, 0).x;
+    append_fragment(texel, color.rgb, depth, color.a == 0.0, color.a, 0u);
   }
 }
 """
@@ -58,7 +59,8 @@ def fragments_of(seed, parallel, width=21, height=13):
         )
         color = (10.0 ** rng.uniform(-2, 5, (*shape, 3))).astype(np.float32)
         color[rng.random(shape) < 0.7] = 0.0
-        fragments.append((color, window(depth), rng.random(shape) < 0.5))
+        through = np.maximum(rng.uniform(-1.0, 1.0, shape), 0.0).astype(np.float32)
+        fragments.append((color, window(depth), through))
     scene = window(rng.uniform(1, 9, shape))
     raster = Raster(projection, parallel, FOCUS, COC_SCALE, LEAST, SUBPIXELS, 2)
     return fragments, scene, raster
@@ -97,9 +99,9 @@ def list_on_device(fragments, scene, raster, capacity=4096):
     )
     lists = highlights.FragmentLists(width, height, raster.subpixels, capacity)
     lists.clear()
-    for color, depth, opaque in fragments:
+    for color, depth, through in fragments:
         append.bind()
-        texels = texture_2d(np.concatenate([color, opaque[..., None]], axis=2))
+        texels = texture_2d(np.concatenate([color, through[..., None]], axis=2))
         depths = texture_2d(depth[..., None], "R32F")
         append.uniform_sampler("color_tx", texels)
         append.uniform_sampler("depth_tx", depths)
@@ -135,7 +137,7 @@ def test_highlights_are_listed_as_by_the_twin(parallel):
 def test_the_list_holds_the_energy_of_the_picture():
     fragments, scene, raster = fragments_of(4, False)
     # Nothing in front, nothing opaque, and every light is blurred more than nothing.
-    fragments = [(color, depth, np.zeros_like(opaque)) for color, depth, opaque in fragments]
+    fragments = [(color, depth, np.ones_like(through)) for color, depth, through in fragments]
     found, _ = list_on_device(
         fragments, np.ones_like(scene), replace(raster, least_coc=1e-6, layers=3)
     )
