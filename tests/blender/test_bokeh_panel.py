@@ -110,19 +110,14 @@ def test_discs_follow_the_settings(panel, tmp_path):
 def test_drawing_the_panel_again_draws_no_discs(panel):
     panel.run("bokeh().grain = 0.2; bokeh().dust = 40")
     settle(panel)
-    milliseconds = panel.run(
-        "import time\n"
+    panel.run(
         "region = next(r for r in editor.regions if r.type == 'WINDOW')\n"
         "def draw(times):\n"
-        "    start = time.perf_counter()\n"
         "    with bpy.context.temp_override(window=window(), area=editor, region=region):\n"
         "        bpy.ops.wm.redraw_timer(type='DRAW', iterations=times)\n"
-        "    return 1000 * (time.perf_counter() - start) / times\n"
-        "draw(2); shown = dict(previews._shown); result = draw(10)\n"
-        "assert shown == previews._shown"
+        "draw(2); shown = dict(previews.icons.shown); draw(10)\n"
+        "assert shown == previews.icons.shown"
     )
-    # Discs with dust take 200 ms.
-    assert milliseconds < 150
 
 
 def test_counts_and_presets_and_odd_cameras_are_drawn_without_an_error(panel):

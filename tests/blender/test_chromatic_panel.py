@@ -105,22 +105,17 @@ def test_previews_follow_the_settings(panel, tmp_path):
     assert orange(turning) < orange(rising)
 
 
-def test_drawing_the_panel_again_costs_little(panel):
+def test_drawing_the_panel_again_makes_no_picture(panel):
     panel.run("chromatic().lateral_then = 'EXP'; chromatic().axial_first = 'CURVE'")
     settle(panel)
-    milliseconds = panel.run(
-        "import time\n"
+    panel.run(
         "region = next(r for r in editor.regions if r.type == 'WINDOW')\n"
         "def draw(times):\n"
-        "    start = time.perf_counter()\n"
         "    with bpy.context.temp_override(window=window(), area=editor, region=region):\n"
         "        bpy.ops.wm.redraw_timer(type='DRAW', iterations=times)\n"
-        "    return 1000 * (time.perf_counter() - start) / times\n"
-        "draw(2); shown = dict(previews._shown); result = draw(10)\n"
-        "assert shown == previews._shown"
+        "draw(2); shown = dict(previews.icons.shown); draw(10)\n"
+        "assert shown == previews.icons.shown"
     )
-    # Loose, because machines are busy; that no picture is made anew is told above.
-    assert milliseconds < 150
 
 
 def test_a_curve_is_dragged_with_the_mouse_and_undone(panel, tmp_path):

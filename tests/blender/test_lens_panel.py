@@ -28,7 +28,7 @@ def camera():
     return bpy.data.objects["Camera"].data
 
 def drawn(lens_id):
-    return thumbnails._icons().get(f"lens:{lens_id}") is not None
+    return thumbnails.icons.icon_id(f"lens:{lens_id}") != 0
 
 bpy.context.scene.render.engine = "APLANAT"
 bpy.context.view_layer.objects.active = bpy.data.objects["Camera"]

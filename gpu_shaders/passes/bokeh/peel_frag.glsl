@@ -68,6 +68,7 @@ void main()
   if (imageLoad(heads_img, texel).x == 0u) {
     discard;
   }
+#if defined(TRANSPARENT) && !defined(HOLDOUT)
   Closure closure = surface_closure();
   float opacity = 1.0 - closure_through(closure);
   bool veils = opacity > 0.0 && opacity < OPAQUE_FROM;
@@ -78,6 +79,7 @@ void main()
   if (veils) {
     append_fragment(texel, vec3(0.0), gl_FragCoord.z, false, 1.0 - opacity, 0u);
   }
+#endif
   // No depth.
   discard;
 }
