@@ -141,5 +141,10 @@ def test_counts_and_presets_and_odd_cameras_are_drawn_without_an_error(panel):
     ):
         panel.run(change)
         settle(panel)
-    presets = panel.run("result = bpy.utils.preset_paths('aplanat/bokeh')")
-    assert presets, "the extension came without its presets"
+    panel.run("camera().type = 'PERSP'; scene = bpy.context.scene")
+    applied = panel.run(
+        "scene.camera = bpy.data.objects['Camera']\n"
+        "bpy.ops.scene.aplanat_preset(kind='bokeh', preset='Swirl')\n"
+        "result = abs(bokeh().hardness - 0.2) < 1e-6"
+    )
+    assert applied, "the extension came without its presets"
