@@ -103,10 +103,10 @@ def test_generated_coordinates_are_those_of_cycles(make, scene, aplanat_bpy):
 
 def warnings_of(bpy, scene):
     """Return what Aplanat's render of a scene has to tell."""
-    from addon.engine import outcome
+    from addon.engine.shared_resources import listen
 
     scene.render.engine = "APLANAT"
-    with outcome.listen() as heard:
+    with listen() as heard:
         bpy.ops.render.render(scene=scene.name)
     assert heard.error is None
     return heard.report
