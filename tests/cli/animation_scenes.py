@@ -3,9 +3,6 @@
 import imageio.v3 as iio
 import numpy as np
 import OpenEXR
-import pytest
-
-from tests.cli.conftest import build_scene
 
 
 def read_exr(path):
@@ -118,39 +115,6 @@ def multilayer(bpy, scene):
     one_node(bpy, scene)
     scene.render.image_settings.media_type = "MULTI_LAYER_IMAGE"
     scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
-
-
-@pytest.fixture
-def both(aplanat_bpy, aplanat, tmp_path):
-    """Render the frames 1 to 3 of a scene both ways.
-
-    Returns the files of Cycles' animation render, those of ours, each by its path within the folder
-    of the .blend file, and our command's answer.
-    """
-
-    def run(change, *words):
-        bpy = aplanat_bpy
-        scene = build_scene(bpy)
-        scene.render.filepath = "//frames/main_"
-        change(bpy, scene)
-        scene.frame_start, scene.frame_end = 1, 3
-        scene.cycles.samples = 1
-        folders = tmp_path / "cycles", tmp_path / "ours"
-        for folder, engine in zip(folders, ("CYCLES", "APLANAT"), strict=True):
-            folder.mkdir()
-            scene.render.engine = engine
-            bpy.ops.wm.save_as_mainfile(filepath=str(folder / "shot.blend"), copy=True)
-        bpy.ops.wm.open_mainfile(filepath=str(folders[0] / "shot.blend"))
-        bpy.ops.render.render(animation=True)
-        words = words or ("--frames", "1..3")
-        done = aplanat("render", folders[1] / "shot.blend", *words, "--json")
-        assert done.code == 0, done.err
-        found = [
-            {p.relative_to(folder) for p in folder.rglob("*") if p.is_file()} for folder in folders
-        ]
-        return *(files - {folders[0] / "shot.blend"} for files in found), done.answer, folders[1]
-
-    return run
 
 
 def png_of(folder):
