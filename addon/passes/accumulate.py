@@ -7,6 +7,7 @@ pixel filter (see `sampling.pixel_filter`).
 from ..device import shader_source, state
 from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
+from ..sampling.pixel_filter import MOST_SUBPIXELS
 from .surface import chromatic
 
 # Name, fragment shader, output and sampler of each kind of sum.
@@ -18,7 +19,7 @@ _FOCUS = ("aplanat_accumulate_focus", "passes/focus_frag.glsl", ("FLOAT", "out_s
     # The focus matte has one channel and no tint.
     allowed=lambda kind, subpixels, tinted: kind is _PICTURE or not tinted,
     kind=(_PICTURE, _FOCUS),
-    subpixels=(1, 2, 3, 4),
+    subpixels=range(1, MOST_SUBPIXELS + 1),
     tinted=(False, True),
 )
 def _info(kind, subpixels, tinted=False):

@@ -14,6 +14,7 @@ SIGGRAPH 2015.
 from ..device import shader_source
 from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader, dispatch
+from ..sampling.pixel_filter import MOST_SUBPIXELS
 from ..sampling.tile_control import TILE
 from .accumulate import padded
 
@@ -23,8 +24,9 @@ CHANNELS = {"CryptoObject": 0, "CryptoMaterial": 1}
 _GROUP = 8
 _TILED = (("TILED", "1"), ("TILE", str(TILE)))
 _SPARE_PAIRS = 1
-# Blender offers 2 to 16 levels, two to a pass.
-_PAIRS = tuple(passes + _SPARE_PAIRS for passes in range(1, 9))
+# Levels that Blender offers, two to a pass, and the pairs of slots that they may need.
+MOST_LEVELS = 16
+_PAIRS = tuple(passes + _SPARE_PAIRS for passes in range(1, MOST_LEVELS // 2 + 1))
 
 
 def slot_pairs(kinds):
@@ -38,7 +40,7 @@ def slot_pairs(kinds):
     return max(kinds.values()) + _SPARE_PAIRS
 
 
-@variants(pairs=_PAIRS, subpixels=(1, 2, 3, 4), tiled=(False, True))
+@variants(pairs=_PAIRS, subpixels=range(1, MOST_SUBPIXELS + 1), tiled=(False, True))
 def _count_info(pairs, subpixels, tiled):
     return ShaderInfo(
         name="aplanat_cryptomatte_count",

@@ -7,7 +7,7 @@ confusion `C` (px) is divided into
 
 ``base = I (1 - share(C)) + share(C) kept(I)`` and ``highlight = I - base``,
 
-``share(C) = smoothstep(c0, 1.5 c0, |C|)``, ``c0 = max(2, sqrt(samples / (4 pi)))``.
+``share(C) = smoothstep(c0, 1.5 c0, |C|)``, ``c0 = max(1, sqrt(samples / (16 pi)))``.
 
 ``kept(I)`` is ``I`` up to the threshold and 0 from twice the threshold on: light of a lamp that
 samples kept would be a bright dot in each of them, and most of the noise. A gain multiplies
@@ -18,11 +18,13 @@ The same functions for the graphics device are in ``lib/bokeh/highlight_lib.glsl
 
 import numpy as np
 
-# Least radius of a disc that is splatted, px: smaller ones are hardly larger than the pixel filter.
-_LEAST_COC = 2.0
-# Lens samples for each pixel of a disc that show it without dots. Subsamples do not count: they
-# only see what their lens sample shows, which may miss a light that is smaller than a pixel.
-_SAMPLES_A_PIXEL = 4.0
+# Least radius of a disc that is splatted, px: the splat of a smaller one errs by more than 10 % of
+# the peak of a lamp of a pixel.
+_LEAST_COC = 1.0
+# Lens samples for each pixel of a disc that show it without dots: the picture of a lamp of a pixel
+# then has an error of a quarter, its splat one of 2 %. Subsamples do not count: they only see what
+# their lens sample shows, which may miss a light that is smaller than a pixel.
+_SAMPLES_A_PIXEL = 16.0
 # The share grows from 0 to 1 while the circle grows by this factor, so that nothing pops.
 _TRANSITION = 1.5
 

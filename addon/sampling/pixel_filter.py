@@ -14,6 +14,9 @@ import numpy as np
 # The table's resolution: its error in position is below 1/1000 of the filter width.
 _TABLE_SIZE = 2048
 
+# Most sub-pixels along a side of a pixel: two vectors of weights hold as many.
+MOST_SUBPIXELS = 4
+
 # Four-term Blackman-Harris window, Harris, Proc. IEEE 66(1), 1978, table of windows.
 _COEFFICIENTS = (0.35875, -0.48829, 0.14128, -0.01168)
 

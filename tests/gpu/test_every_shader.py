@@ -15,6 +15,7 @@ from addon.device import shader_variants, shaders
 from addon.device.shaders import ShaderInfo, compile_shader, dispatch
 from addon.device.uniforms import uniform_buffer
 from addon.errors import ShaderResourceError
+from addon.passes import cryptomatte
 from tests.every_shader import every_info, give, make_texture, resources_of, try_every_shader
 
 pytestmark = pytest.mark.usefixtures("gpu_context")
@@ -107,6 +108,11 @@ def test_every_function_that_makes_a_shader_names_its_variants():
             ):
                 makers.add(f"{module}.{function.name}")
     assert makers == shader_variants.marked() | _ENUMERATED_ELSEWHERE
+
+
+def test_every_number_of_cryptomatte_levels_that_blender_offers_has_its_variant(aplanat_bpy):
+    levels = aplanat_bpy.types.ViewLayer.bl_rna.properties["pass_cryptomatte_depth"]
+    assert levels.hard_max == cryptomatte.MOST_LEVELS
 
 
 def test_what_a_frame_compiles_is_among_the_variants():

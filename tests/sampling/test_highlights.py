@@ -79,9 +79,9 @@ def test_share_rises_smoothly_from_least_radius():
 
 
 def test_more_samples_leave_larger_discs_to_the_samples():
-    assert least_coc(1) == least_coc(32) == 2.0
-    # 4 samples a pixel: 4 pi C^2 = n.
-    assert 4 * np.pi * least_coc(4096) ** 2 == pytest.approx(4096)
+    assert least_coc(1) == least_coc(50) == 1.0
+    # 16 samples a pixel: 16 pi C^2 = n.
+    assert 16 * np.pi * least_coc(4096) ** 2 == pytest.approx(4096)
 
 
 def test_amplification_leaves_darkness_and_multiplies_white():

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...sampling.pixel_filter import filter_support
+from ...sampling.pixel_filter import MOST_SUBPIXELS, filter_support
 from ...sampling.rounds import first_look
 from ...sampling.spectral_samples import GROUP
 from .bokeh_plan import plan_bokeh
@@ -22,8 +22,6 @@ _SHARP_CIRCLES_PER_DIAGONAL = 1500.0
 # Samples whose wavelengths reach as far as those of many, for bounds.
 _TYPICAL_SAMPLES = 64
 
-# Most sub-pixels along a side of a pixel: two vectors of weights hold as many.
-_MOST_SUBPIXELS = 4
 # Largest raster of a lens sample, in pixels (20 bytes each), and its longest side: any device has
 # room for that.
 _LARGEST_RASTER = 1 << 24
@@ -73,7 +71,7 @@ def subpixels(content, width, height, support=1.0):
         Sub-pixels along each side of a pixel.
     """
     triangles = sum(len(content.meshes[g.mesh].triangles) * g.count for g in content.groups)
-    wanted = min(int(np.ceil(np.sqrt(triangles / (width * height)))), _MOST_SUBPIXELS)
+    wanted = min(int(np.ceil(np.sqrt(triangles / (width * height)))), MOST_SUBPIXELS)
     wanted = int(wanted * min(support, 1.0))
     affordable = min(
         int(np.sqrt(_LARGEST_RASTER / (width * height))), _LONGEST_RASTER // max(width, height)

@@ -7,8 +7,7 @@
 // Source: methods 1, 8, 13.
 #include "lib/lens_lib.glsl"
 #include "lib/bokeh/visibility_lib.glsl"
-#include "lib/bokeh/opening_lib.glsl"
-#include "lib/bokeh/bokeh_look_lib.glsl"
+#include "lib/bokeh/disc_lib.glsl"
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
 
@@ -83,6 +82,38 @@ float band_width(vec2 xy, float depth, vec2 place)
 }
 #endif
 
+// Discs up to this radius, px, are brought to their energy on the grid of pixels.
+#define GRID_RADIUS 5.0
+// Least part of a disc's energy that a grid may show: a disc that is thinner than a pixel may lie
+// between its pixels.
+#define GRID_LEAST 0.25
+
+// Radius of the disc that has the variance of one with this radius and blur, where a disc can have a
+// blur of `most` times its radius at most: along an axis the variance of a disc is radius^2 / 4, that
+// of a box of side `blur` blur^2 / 12.
+float widened(float radius, float blur, float most)
+{
+  if (blur <= most * radius) {
+    return radius;
+  }
+  return sqrt((3.0 * radius * radius + blur * blur) / (3.0 + most * most));
+}
+
+// Sum of the disc's density over pixel centres, whose places on the opening are
+// `origin + axes * offset`, with the offset from the disc's centre, px; `reach` in px.
+vec3 grid_sum(vec2 center, vec2 origin, mat2 axes, float reach)
+{
+  vec3 sum = vec3(0.0);
+  vec2 lens;
+  vec2 low = ceil(center - reach - 0.5) + 0.5;
+  int count = int(2.0 * reach) + 1;
+  for (int i = 0; i < count * count; i++) {
+    vec2 offset = low + vec2(i % count, i / count) - center;
+    sum += disc_density(origin + axes * offset, lens);
+  }
+  return sum;
+}
+
 void main()
 {
   ivec2 texel = ivec2(gl_InstanceID % SOURCE_COLUMNS, gl_InstanceID / SOURCE_COLUMNS);
@@ -122,7 +153,10 @@ void main()
                    v_row * float(TILE_DEPTHS - 1));
   vec3 pattern = tile_place(places_tx, v_tile_at) * (radius + splat_buf.rows.z);
   pattern = mix(vec3(0.0, radius, radius), pattern, splat_buf.rows.w);
-  v_blur = blur * inversesqrt(pattern.y * pattern.z);
+  radius = sqrt(pattern.y * pattern.z);
+  float wide = widened(radius, blur, TILE_BLUR_SOFT.w);
+  pattern.yz *= wide / radius;
+  v_blur = min(blur / wide, TILE_BLUR_SOFT.w);
   v_upright = (coc < 0.0) ? -1.0 : 1.0;
   v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (pattern.y * pattern.z));
   if (splat_buf.field.w > 0.5) {
@@ -142,13 +176,21 @@ void main()
   vec2 away = azimuth_of(v_chief);
   vec2 local = v_place * pattern.yz + vec2(0.0, pattern.x);
   vec2 offset = (local.x * vec2(away.y, -away.x) + local.y * away) / vec2(ratio, 1.0);
+  vec2 origin = vec2(0.0, -pattern.x / pattern.z);
+  mat2 axes = mat2(vec2(away.y, away.x) * ratio / pattern.yz, vec2(-away.x, away.y) / pattern.yz);
+  float farthest = abs(pattern.x) + max(pattern.y, pattern.z) * max(reach.x, reach.y);
 #else
-  v_blur = blur / radius;
+  float most = OPENING_LEAST_BLUR * exp2(float(textureSize(opening_tx, 0).z) - 1.0);
+  float wide = widened(radius, blur, most);
+  v_blur = min(blur / wide, most);
   // Reach: the disc, the wider layer of its blur, and half a pixel.
-  vec2 reach = radius * vec2(splat_buf.opening.z / ratio, splat_buf.opening.z) + 1.42 * blur + 0.5;
+  vec2 reach = wide * vec2(splat_buf.opening.z / ratio, splat_buf.opening.z) + 1.42 * blur + 0.5;
   vec2 offset = (pos * 2.0 - 1.0) * reach;
-  v_place = offset / ((coc < 0.0) ? -radius : radius) * vec2(ratio, 1.0);
-  v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (radius * radius));
+  vec2 origin = vec2(0.0);
+  mat2 axes = mat2(ratio, 0.0, 0.0, 1.0) / ((coc < 0.0) ? -wide : wide);
+  v_place = axes * offset;
+  v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (wide * wide));
+  float farthest = max(reach.x, reach.y);
 #endif
 #ifdef RIMS
   float layers = float(textureSize(opening_tx, 0).z);
@@ -163,11 +205,10 @@ void main()
   v_left_upper = rims_left(
       left_tx, min(lower + 1.0, layers - 1.0), splat_buf.field.z, row, field, v_chief);
 #endif
+  bool is_dot = false;
 #ifdef CHROMATIC
-#ifdef TILES
-  radius = sqrt(pattern.y * pattern.z);
-#endif
-  v_dot = (radius < blur) ? 1.0 : 0.0;
+  is_dot = radius < blur;
+  v_dot = is_dot ? 1.0 : 0.0;
   if (v_dot > 0.5) {
     // The layers have no blur wider than the disc: a tent with the variance of both instead.
     vec2 radii = vec2(radius / ratio, radius);
@@ -178,6 +219,11 @@ void main()
     v_density = b.rgb * splat_buf.wavelength.rgb / max(sum.x * sum.y, 1e-6);
   }
 #endif
+  if (wide < GRID_RADIUS && !is_dot && v_tile.w != SOURCE_DROP) {
+    // What the sum is where pixels are small.
+    float area = abs(1.0 / determinant(axes));
+    v_density *= area / max(grid_sum(center, origin, axes, farthest), vec3(GRID_LEAST * area));
+  }
   if (v_tile.w == SOURCE_DROP) {
     // No disc: a triangle without area.
     offset = vec2(0.0);

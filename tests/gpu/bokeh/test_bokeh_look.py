@@ -56,6 +56,19 @@ def test_every_look_keeps_the_light(name, coc):
     assert mean_energy(plan, coc, chief=chief) == pytest.approx([1.0] * 3, abs=1e-3)
 
 
+@pytest.mark.parametrize("name", [*LOOKS, "profile", "pupil"])
+def test_the_smallest_discs_keep_the_light_wherever_they_lie_among_pixels(name):
+    look = LOOKS.get(name) or {"lens": library_lens(LENS)}
+    if name == "pupil":
+        look["vignetting"] = "LENS"
+    plan = plan_of(size=40, focal_px=2000.0, **look)
+    chief = (0.05, 0.07) if "cat" in name or name == "pupil" else (0.0, 0.0)
+    for coc, place in ((1.2, (0.0, 0.0)), (-2.1, (0.5, 0.5)), (4.0, (0.3, 0.1))):
+        window = np.asarray(chief) * plan.focal_px + place
+        found = energy(splatted(plan, depth_of(plan, coc), chief=chief, window=window))
+        assert found == pytest.approx([1.0] * 3, abs=1e-3), coc
+
+
 @pytest.mark.parametrize("coc", [-30.0, 30.0])
 @pytest.mark.parametrize("edge", [1.0, -0.6])
 def test_the_edge_control_matches_the_sprite_and_turns_round_in_front_of_the_focus(edge, coc):

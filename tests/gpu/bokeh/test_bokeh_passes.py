@@ -197,7 +197,7 @@ def splatted(
         return readback.read_color(targets.framebuffer("bokeh"), size, size)
 
 
-@pytest.mark.parametrize("radius", [3.0, 3.3, -4.1, 7.5, 20.0, -55.0, 110.0, 200.0])
+@pytest.mark.parametrize("radius", [1.0, 1.5, -2.2, 3.3, -4.1, 7.5, 20.0, -55.0, 110.0, 200.0])
 def test_a_splat_holds_all_light(radius):
     size = int(2 * abs(radius)) + 8
     shares = []
@@ -206,15 +206,17 @@ def test_a_splat_holds_all_light(radius):
         shares.append(energy(picture) / [1.0, 2.0, 4.0])
         if radius > 30.0:
             break
-    # What one disc of few pixels loses or wins by their grid, others win or lose.
+    # Wherever it lies on the grid of pixels; without the sum over them a disc of one pixel misses
+    # 3 %, and one of few pixels up to 1 %.
+    assert np.array(shares) == pytest.approx(1.0, abs=5e-4 if abs(radius) < 5.0 else 3e-3)
     assert np.mean(shares, axis=0) == pytest.approx([1.0] * 3, abs=1e-3)
-    assert np.array(shares) == pytest.approx(1.0, abs=0.05 * abs(radius) ** -1.5 + 1e-3)
 
 
 @pytest.mark.parametrize(("iris", "ratio"), [(BladedIris(5, 0.3, 0.0), 1.0), (BladedIris(), 2.0)])
 def test_a_splat_of_any_opening_holds_all_light(iris, ratio):
-    picture = splatted(25.0, (32.3, 31.6), iris, ratio)
-    assert energy(picture) == pytest.approx([1.0, 2.0, 4.0], rel=1e-3)
+    for radius in (1.2, 25.0):
+        picture = splatted(radius, (32.3, 31.6), iris, ratio)
+        assert energy(picture) == pytest.approx([1.0, 2.0, 4.0], rel=1e-3)
 
 
 def test_a_splat_ends_at_its_radius():
