@@ -197,7 +197,7 @@ def test_an_own_preset_keeps_everything_and_its_curves(chromatic, aplanat_bpy, p
     assert other.aplanat.chromatic.curves != chromatic.curves
 
 
-def test_a_lens_remembers_its_chromatic_settings(camera, chromatic):
+def test_a_lens_remembers_drawn_curves_too(camera, chromatic):
     chromatic.use, chromatic.axial = True, 2.0
     camera.aplanat.lens = TESSAR
     # A new lens takes over what is there.
@@ -223,31 +223,6 @@ def test_a_lens_remembers_its_chromatic_settings(camera, chromatic):
     camera.aplanat.lens = TESSAR
     camera.aplanat.lens = TESSAR
     assert all_values(chromatic) == of_tessar
-
-
-def test_what_a_lens_remembers_is_saved_and_copied(camera, chromatic, aplanat_bpy, tmp_path):
-    bpy = aplanat_bpy
-    chromatic.axial = 2.0
-    camera.aplanat.lens = TESSAR
-    chromatic.axial = 4.0
-    copy = camera.copy()
-    copy.aplanat.lens = ""
-    assert copy.aplanat.chromatic.axial == 2.0
-    path = str(tmp_path / "scene.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=path)
-    bpy.ops.wm.open_mainfile(filepath=path)
-    loaded = bpy.data.cameras["Camera"].aplanat
-    assert loaded.chromatic.axial == 4.0
-    loaded.lens = ""
-    assert loaded.chromatic.axial == 2.0
-
-
-def test_a_damaged_memory_does_no_harm(camera, chromatic):
-    for damage in ("{", "[]", '{"": 3}', '{"": {"mode": "NO_MODE", "axial": "x", "glass": 3}}'):
-        camera.aplanat.chromatic_memory = damage
-        chromatic.axial = 1.5
-        camera.aplanat.lens = TESSAR if camera.aplanat.lens == "" else ""
-        assert chromatic.mode == "SPECTRAL" and chromatic.axial == 1.5
 
 
 def test_operators_can_be_undone_and_explain_themselves():

@@ -162,7 +162,8 @@ class _Presets(PresetPanel):
                 APLANAT_OT_preset.bl_idname, text=preset.name, translate=False
             )
             button.kind, button.preset = self.kind, preset.name
-        layout.separator()
+        if bpy.utils.preset_paths(self.preset_subdir):
+            layout.separator()
         super().draw(context)
 
     def path_menu(self, searchpaths, operator, **options):

@@ -4,51 +4,32 @@ import imageio.v3 as iio
 import numpy as np
 import pytest
 
-# Runs inside Blender: a wide properties editor that shows the camera.
-STAGE = """
-import importlib
-import bpy
+from .camera_editor import STAGE, camera_editor
 
-ADDON = "bl_ext.user_default.aplanat"
-
-def module(name):
-    return importlib.import_module(f"{ADDON}.addon.{name}")
-
+# Runs inside Blender.
+NAMES = """
 background = module("ui.jobs.background")
 thumbnails = module("ui.previews.lens_thumbnails")
 library = module("engine.shared_resources").shelf()
-
-def window():
-    return bpy.context.window_manager.windows[0]
-
-def editor():
-    return max(window().screen.areas, key=lambda area: area.width * area.height)
-
-def camera():
-    return bpy.data.objects["Camera"].data
+editor = largest
 
 def drawn(lens_id):
     return thumbnails.icons.icon_id(f"lens:{lens_id}") != 0
-
-bpy.context.scene.render.engine = "APLANAT"
-bpy.context.view_layer.objects.active = bpy.data.objects["Camera"]
-for thing in bpy.context.selected_objects:
-    thing.select_set(thing.name == "Camera")
-editor().type = "PROPERTIES"
-editor().spaces.active.context = "DATA"
 """
+
+
+def show_again(window):
+    window.run(STAGE)
+    window.run("show_camera(largest())")
+    window.run(NAMES)
 
 
 @pytest.fixture
 def panel(blender, display, tmp_path):
-    # A cache of its own: every picture is made.
-    env = {"APLANAT_CACHE": str(tmp_path / "cache")}
-    with blender.window(display, folder=tmp_path / "panel", env=env) as window:
-        assert window.run("result = 'matplotlib' not in __import__('sys').modules")
-        window.run(STAGE)
+    # The cache is a new one: every picture is made.
+    with camera_editor(blender, display, tmp_path, slow_library="matplotlib") as window:
+        window.run(NAMES)
         yield window
-        log = window.log.read_text()
-        assert "Traceback" not in log, log
 
 
 def below_blenders_lens_panel(window):
@@ -139,7 +120,7 @@ def test_a_lens_file_is_opened_in_a_text_editor(panel):
 def test_work_ends_with_the_file_the_extension_and_blender(panel):
     panel.wait_for("background.progress() is not None", timeout=30)
     panel.run("bpy.ops.wm.read_homefile(use_factory_startup=True, load_ui=False)")
-    panel.run(STAGE)
+    show_again(panel)
     panel.wait_for("background.progress() is not None", timeout=30)
     panel.run(
         "import addon_utils, threading\n"
@@ -151,7 +132,7 @@ def test_work_ends_with_the_file_the_extension_and_blender(panel):
         "result = not any(t.name == 'aplanat-background' for t in threading.enumerate())"
     )
     panel.run("addon_utils.enable(ADDON)")
-    panel.run(STAGE)
+    show_again(panel)
     panel.wait_for("background.progress() is not None", timeout=30)
     panel.run("bpy.app.timers.register(lambda: bpy.ops.wm.quit_blender(), first_interval=0.2)")
     assert panel.process.wait(60) == 0

@@ -1,28 +1,19 @@
 """The Chromatic Aberration panel in Blender's window: curves, previews, and a curve dragged."""
 
-import imageio.v3 as iio
 import numpy as np
 import pytest
 
-# Runs inside Blender: a properties editor that shows nothing of the camera but this panel, opened.
-STAGE = """
-import importlib
-import bpy
+from .camera_editor import (
+    camera_editor,
+    check_that_redrawing_makes_no_picture,
+    picture_of_editor,
+    settle,
+)
 
-ADDON = "bl_ext.user_default.aplanat"
-
-def module(name):
-    return importlib.import_module(f"{ADDON}.addon.{name}")
-
-panel = module("ui.panels.chromatic_panel")
+# Runs inside Blender.
+NAMES = """
 previews = module("ui.previews.chromatic_previews")
 bar = module("ui.previews.spectrum_bar")
-
-def window():
-    return bpy.context.window_manager.windows[0]
-
-def camera():
-    return bpy.data.objects["Camera"].data
 
 def chromatic():
     return camera().aplanat.chromatic
@@ -30,59 +21,17 @@ def chromatic():
 def override():
     return bpy.context.temp_override(window=window(), area=editor, camera=camera())
 
-bpy.context.scene.render.engine = "APLANAT"
-bpy.context.view_layer.objects.active = bpy.data.objects["Camera"]
-for thing in bpy.context.selected_objects:
-    thing.select_set(thing.name == "Camera")
-panel.unregister()
-for cls in panel.CLASSES:
-    cls.bl_options = set()
-panel.register()
-for name in dir(bpy.types):
-    cls = getattr(bpy.types, name)
-    if getattr(cls, "bl_context", "") == "data" and "PT_" in name and cls not in panel.CLASSES:
-        if name != "DATA_PT_context_camera" and cls.is_registered:
-            bpy.utils.unregister_class(cls)
-view = max(window().screen.areas, key=lambda area: area.width * area.height)
-with bpy.context.temp_override(window=window(), area=view, region=view.regions[-1]):
-    bpy.ops.screen.area_split(direction="VERTICAL", factor=0.42)
-"""
-EDITOR = """
-editor = min((a for a in window().screen.areas if a.type == "VIEW_3D"), key=lambda area: area.x)
-editor.type = "PROPERTIES"
-editor.spaces.active.context = "DATA"
 camera().dof.use_dof = chromatic().use = True
 """
 
 
 @pytest.fixture
 def panel(blender, display, tmp_path):
-    env = {"APLANAT_CACHE": str(tmp_path / "cache")}
-    with blender.window(display, folder=tmp_path / "panel", env=env) as window:
-        # The library that knows colours is slow to load: not before a panel needs it.
-        assert window.run("result = 'colour' not in __import__('sys').modules")
-        window.run(STAGE)
-        window.run(EDITOR)
+    panels = "ui.panels.chromatic_panel"
+    # The library that knows colours is slow to load.
+    with camera_editor(blender, display, tmp_path, panels, slow_library="colour") as window:
+        window.run(NAMES)
         yield window
-        log = window.log.read_text()
-        assert "Traceback" not in log, log
-
-
-def picture_of_editor(window, path):
-    """Return the editor's pixels, the first row at its top."""
-    x, top, width, height = window.run(
-        "result = [editor.x, window().height - editor.y - editor.height, editor.width,"
-        " editor.height]"
-    )
-    return iio.imread(window.screenshot(path))[top : top + height, x : x + width, :3].astype(int)
-
-
-def settle(window):
-    """Wait until what was set is drawn."""
-    window.run("editor.tag_redraw()")
-    window.run("result = 1")
-    window.run("editor.tag_redraw()")
-    window.run("result = 1")
 
 
 def orange(picture):
@@ -108,14 +57,7 @@ def test_previews_follow_the_settings(panel, tmp_path):
 def test_drawing_the_panel_again_makes_no_picture(panel):
     panel.run("chromatic().lateral_then = 'EXP'; chromatic().axial_first = 'CURVE'")
     settle(panel)
-    panel.run(
-        "region = next(r for r in editor.regions if r.type == 'WINDOW')\n"
-        "def draw(times):\n"
-        "    with bpy.context.temp_override(window=window(), area=editor, region=region):\n"
-        "        bpy.ops.wm.redraw_timer(type='DRAW', iterations=times)\n"
-        "draw(2); shown = dict(previews.icons.shown); draw(10)\n"
-        "assert shown == previews.icons.shown"
-    )
+    check_that_redrawing_makes_no_picture(panel)
 
 
 def test_a_curve_is_dragged_with_the_mouse_and_undone(panel, tmp_path):

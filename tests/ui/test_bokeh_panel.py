@@ -1,4 +1,4 @@
-"""Bokeh of a camera as Blender keeps it: what a lens remembers, pictures."""
+"""The Bokeh panel: counts in words, pictures of discs, the legend of its debug view."""
 
 import numpy as np
 import pytest
@@ -13,9 +13,7 @@ from addon.ui.panels import bokeh_panel
 from addon.ui.panels.bokeh_panel import counts_as_lines
 from addon.ui.previews.bokeh_previews import disc_pictures
 from addon.ui.properties.bokeh_properties import APPEARANCE_NAMES
-from addon.ui.properties.lens_memory import values_of
 
-TESSAR, PLANAR = "tessar-50mm-f2.8", "planar-50mm-f1.4"
 COUNTS = dict.fromkeys(
     ("found", "clustered", "culled_size", "culled_occlusion", "culled_cone", "masked", "splatted"),
     0,
@@ -25,52 +23,6 @@ COUNTS = dict.fromkeys(
 @pytest.fixture
 def bokeh(camera):
     return camera.aplanat.bokeh
-
-
-def appearance(bokeh):
-    return values_of(bokeh, APPEARANCE_NAMES)
-
-
-def test_a_lens_remembers_its_appearance_and_the_camera_keeps_the_rest(camera, bokeh):
-    bokeh.hardness, bokeh.threshold = 0.5, 2.0
-    camera.aplanat.lens = TESSAR
-    # A new lens takes over what is there.
-    assert bokeh.hardness == 0.5
-    bokeh.onion, bokeh.vignetting, bokeh.threshold = 0.25, "NONE", 3.0
-    of_tessar = appearance(bokeh)
-    camera.aplanat.lens = PLANAR
-    bokeh.onion, bokeh.vignetting = 0.0, "LENS"
-    of_planar = appearance(bokeh)
-    camera.aplanat.lens = TESSAR
-    assert appearance(bokeh) == of_tessar
-    camera.aplanat.lens_choice = f"lens:{PLANAR}"
-    assert appearance(bokeh) == of_planar
-    camera.aplanat.lens = ""
-    assert (bokeh.hardness, bokeh.onion, bokeh.vignetting) == (0.5, 0.0, "LENS")
-    assert bokeh.threshold == 3.0
-
-
-def test_what_a_lens_remembers_is_saved(camera, bokeh, aplanat_bpy, tmp_path):
-    bpy = aplanat_bpy
-    bokeh.grain = 0.25
-    camera.aplanat.lens = TESSAR
-    bokeh.grain = 0.5
-    path = str(tmp_path / "scene.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=path)
-    bpy.ops.wm.open_mainfile(filepath=path)
-    loaded = bpy.data.cameras["Camera"].aplanat
-    assert loaded.bokeh.grain == 0.5
-    loaded.lens = ""
-    assert loaded.bokeh.grain == 0.25
-
-
-def test_a_damaged_memory_does_no_harm(camera, bokeh):
-    damages = ("{", "[]", '{"": 3}', '{"": {"vignetting": "X", "grain": "x", "dust": 99999999999}}')
-    for damage in damages:
-        camera.aplanat.bokeh_memory = damage
-        bokeh.hardness = 0.5
-        camera.aplanat.lens = TESSAR if camera.aplanat.lens == "" else ""
-        assert (bokeh.hardness, bokeh.vignetting, bokeh.grain) == (0.5, "LENS", 0.0)
 
 
 def test_counts_are_told_in_words():
