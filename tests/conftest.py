@@ -11,6 +11,18 @@ settings.load_profile("house")
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
+# Folders whose tests share what takes long to make: an installed Blender, files of scenes.
+_TOGETHER = [REPOSITORY / "tests" / name for name in ("blender", "cases")]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Say which tests stay in one process where several run them."""
+    for item in items:
+        folders = [folder for folder in _TOGETHER if folder in item.path.parents]
+        group = folders[0] if folders else item.path
+        item.add_marker(pytest.mark.xdist_group(group.relative_to(REPOSITORY).as_posix()))
+
 
 def pytest_addoption(parser):
     parser.addoption(

@@ -1,5 +1,6 @@
 """The test scenes and reference pictures that may lie in a folder ``shared`` beside a checkout."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -47,7 +48,8 @@ def shared_scene(name, look, console):
         raise InputError(f"scene '{name}' is built with scripts/aplanat only; give a .blend file")
     console.say(f"building scene {name} ({look})")
     BUILT_FOLDER.mkdir(parents=True, exist_ok=True)
-    part = file.with_name(f"part-{file.name}")
+    # Two processes may build one scene at once: each into a file of its own.
+    part = file.with_name(f"part-{os.getpid()}-{file.name}")
     words = [sys.executable, builder, "--scene", name, "--look", look, "--out", part]
     # -B: nothing is written into the shared folder.
     words.insert(1, "-B")
