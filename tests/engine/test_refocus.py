@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from addon.engine.refocus import RefocusSettings, lens_of, refocus
+from addon.engine.refocus.refocusing import Refocusing, refocus
+from addon.engine.refocus.settings import RefocusSettings, lens_of
 from addon.errors import FocusError
 from addon.layers.layer_stack import DepthLayer, LayerCamera, LayerStack
 
@@ -85,6 +86,27 @@ def test_a_small_aperture_gives_the_layers_laid_over_each_other(aplanat_bpy, sta
     picture = refocus(stack, RefocusSettings(f_stop=1000.0, samples=4))
     expected = traced(stack, lens_of(stack, RefocusSettings()), np.zeros((1, 2)))
     assert np.allclose(picture, expected, atol=2e-3)
+
+
+def test_what_was_seen_before_changes_no_bit(aplanat_bpy, stack):
+    from addon.device.context import ensure_context
+
+    ensure_context()
+    wanted = RefocusSettings(focus_distance=3.0, samples=8)
+    refocusing = Refocusing(stack, RefocusSettings(focus_distance=8.0, f_stop=1.0, samples=4))
+    try:
+        refocusing.advance(4)
+        refocusing.change(wanted)
+        assert refocusing.advance(3)
+        with pytest.raises(FocusError):
+            refocusing.change(RefocusSettings(focus_distance=0.0))
+        refocusing.change(RefocusSettings(focus_distance=3.0, samples=8))
+        assert refocusing.samples_done == 3
+        assert not refocusing.advance(100)
+        picture = refocusing.read()
+    finally:
+        refocusing.release()
+    assert picture.tobytes() == refocus(stack, wanted).tobytes()
 
 
 def test_it_can_be_ended(aplanat_bpy, stack):

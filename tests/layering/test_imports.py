@@ -86,9 +86,14 @@ ROOMS = {
         *("engine.planning", "engine.drawing", "engine.layered"),
         *("engine.visibility", "engine.bokeh"),
     ),
+    # A captured picture instead of a scene.
+    "engine.refocus": (
+        *("sampling", "snapshot", "scene.camera"),
+        *("engine.planning", "engine.drawing", "engine.layered", "engine.frame"),
+    ),
     "engine": (
-        *("device", "sampling", "snapshot", "lens_io", "levels", "scene", "scene.camera"),
-        *("engine.planning", "engine.drawing", "engine.layered", "engine.bokeh", "engine.frame"),
+        *("device", "snapshot", "lens_io", "levels", "scene", "scene.camera"),
+        *("engine.planning", "engine.drawing", "engine.bokeh", "engine.frame"),
     ),
     # Another engine's pictures, or ours, as depth layers.
     "capture": ("files", "sampling", "settings", "layers", "scene.camera"),
@@ -120,7 +125,7 @@ ROOMS = {
         *("cli.words", "cli.render"),
     ),
     "cli.refocus": (
-        *("files", "device", "sampling", "layers", "engine"),
+        *("files", "device", "sampling", "layers", "engine.refocus"),
         *("cli.words", "cli.render"),
     ),
     "cli": (

@@ -8,7 +8,8 @@ import bpy
 import numpy as np
 
 from ...device.context import device_name, ensure_context
-from ...engine.refocus import RefocusSettings, lens_of, refocus
+from ...engine.refocus.refocusing import refocus
+from ...engine.refocus.settings import RefocusSettings, lens_of
 from ...errors import InputError, StrictError, UnfinishedFileError
 from ...files.frame_path import frame_path
 from ...files.version import version

@@ -49,6 +49,8 @@ class SceneBuffers:
         Resources of lit surfaces: lights and world.
     environment_buffer, environment_image : GPUUniformBuf, GPUTexture or None
         The world for the background; no image where it is one colour.
+    captured : engine.layered.stack_layers.StackLayers or None
+        A captured picture, where one takes the place of the content.
     uploads : dict of str to int
         Numbers of meshes, images, materials, instance tables and light tables that were uploaded,
         and of environments that were prefiltered so far.
@@ -62,7 +64,7 @@ class SceneBuffers:
         self.levels_version = 0
         self.shapes = ShapeCache()
         self.expected_pairs = 0
-        self._level_meshes = {}
+        self.captured = None
         self.instances = None
         self.lighting = ()
         self.environment_buffer = None

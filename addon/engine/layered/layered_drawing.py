@@ -18,7 +18,6 @@ from ...device.uniforms import uniform_buffer
 from ...passes.layered import cast, layers
 from ...passes.surface import surface
 from .scene_layers import draw_scene_layers
-from .stack_layers import upload_stack
 
 
 class LayeredDrawing:
@@ -70,7 +69,8 @@ class LayeredDrawing:
             return
         plan = self._plan
         if plan.layered.stack is not None:
-            made = upload_stack(plan, plan.layered.stack)
+            # They outlive the frame.
+            made = self._buffers.captured.on_device(plan)
         else:
             resources = {"highlights": self._highlights, "wavelength": self._wavelengths(None)}
             made = draw_scene_layers(
@@ -83,7 +83,8 @@ class LayeredDrawing:
             )
         self._made, raster = made, made.raster
         size = (raster.width, raster.height)
-        layers.build_pyramids(made.textures, *size, len(made.bounds), made.filtered)
+        if plan.layered.stack is None:
+            layers.build_pyramids(made.textures, *size, len(made.bounds), made.filtered)
         bounds = np.zeros((len(made.bounds), 4))
         bounds[:, :2] = made.bounds
         self._params = uniform_buffer(
@@ -192,9 +193,9 @@ class LayeredDrawing:
 
     def release(self):
         """Give the layers back to the device."""
-        if self._made is not None:
+        if self._made is not None and self._plan.layered.stack is None:
             self._made.textures.release()
-            self._made = None
+        self._made = None
 
 
 def _padded(places):

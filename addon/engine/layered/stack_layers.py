@@ -48,19 +48,46 @@ def buffer_depths(plan, layer):
     return np.where(covered, found, layers.EMPTY).astype(np.float32)
 
 
-def upload_stack(plan, stack):
-    """Send a captured picture to the device.
+class StackLayers:
+    """A captured picture on the device, for as many frames as it is seen in.
 
     Parameters
     ----------
-    plan : FramePlan
-        Of the whole picture, with `layered`.
     stack : LayerStack
-
-    Returns
-    -------
-    DeviceLayers
     """
+
+    def __init__(self, stack):
+        self.stack = stack
+        self._made = None
+
+    def on_device(self, plan):
+        """Return the layers with their pyramids, uploaded by the first frame.
+
+        Parameters
+        ----------
+        plan : FramePlan
+            With `layered`. Its depth buffer is that of all frames of the stack.
+
+        Returns
+        -------
+        DeviceLayers
+        """
+        if self._made is None:
+            self._made = _upload(plan, self.stack)
+            raster = self._made.raster
+            layers.build_pyramids(
+                self._made.textures, raster.width, raster.height, len(self._made.bounds), True
+            )
+        return self._made
+
+    def release(self):
+        """Give the layers back to the device."""
+        if self._made is not None:
+            self._made.textures.release()
+            self._made = None
+
+
+def _upload(plan, stack):
     height, width = stack.layers[0].depth.shape
     count = len(stack.layers)
     depths = np.stack([buffer_depths(plan, layer) for layer in stack.layers])

@@ -1,0 +1,1 @@
+"""Captured pictures seen through the lens again: another focus, f-number, lens, bokeh."""

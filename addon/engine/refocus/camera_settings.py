@@ -1,0 +1,64 @@
+"""The settings of a Blender camera, for a captured picture to be seen through its lens."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...sampling.iris import Iris
+from ...scene.camera.bokeh import read_bokeh
+from ...scene.camera.camera import CameraSources, focus_distance
+from ...scene.camera.chromatic import read_chromatic
+from ...scene.camera.lenses import read_real_lens
+from ..planning.field_table import picture_radius
+from .settings import RefocusSettings
+
+
+def camera_settings(stack, depsgraph, camera, sources=None, samples=128, seed=0):
+    """Read everything that a captured picture takes of a camera.
+
+    Depth of field counts as switched on. Place, framing and focal length are the capture's.
+
+    Parameters
+    ----------
+    stack : LayerStack
+    depsgraph : bpy.types.Depsgraph
+    camera : bpy.types.Object
+        Evaluated in the frame that is seen.
+    sources : CameraSources or None
+        Of the session: its library of lenses, its irises. None: they are read anew.
+    samples, seed : int
+        As of `RefocusSettings`.
+
+    Returns
+    -------
+    settings : RefocusSettings
+    problems : tuple of str
+        Warnings about settings that cannot be met, as lines that name the camera.
+    """
+    sources = sources or CameraSources()
+    data, captured = camera.data, stack.camera
+    real_lens, of_lens = read_real_lens(data, sources.shelf)
+    focus = focus_distance(depsgraph, camera)
+    chromatic, of_chromatic = read_chromatic(data, real_lens, focus)
+    corner = 0.0
+    if captured.orthographic:
+        real_lens = None
+    else:
+        corner = picture_radius(np.array(captured.projection), False)
+    if chromatic is not None:
+        focal_length = 1.0 if captured.orthographic else captured.focal_length_mm / 1000.0
+        chromatic = replace(chromatic, focal_length=focal_length)
+    bokeh, of_bokeh = read_bokeh(data, real_lens, corner, sources.irises)
+    dof = data.dof
+    settings = RefocusSettings(
+        focus_distance=focus,
+        f_stop=dof.aperture_fstop,
+        iris=Iris(dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio),
+        real_lens=real_lens,
+        bokeh=bokeh,
+        chromatic=chromatic,
+        samples=samples,
+        seed=seed,
+    )
+    problems = (*of_lens, *of_chromatic, *of_bokeh)
+    return settings, tuple(f"camera '{camera.name}': {line}" for line in problems)

@@ -1,0 +1,203 @@
+"""A captured picture seen through the lens again: sample by sample, with ever other settings."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...snapshot.camera import Camera
+from ...snapshot.content import InstanceTable, SceneContent
+from ...snapshot.film import Film, Sampling
+from ...snapshot.scene import SceneSnapshot
+from ..drawing.scene_buffers import SceneBuffers
+from ..frame.pipeline import FrameRenderer
+from ..layered.layer_raster import clipped_projection
+from ..layered.stack_layers import StackLayers, stack_far, stack_near
+from ..planning.plan import plan_frame
+from .settings import f_stop_of, lens_of
+
+# Lens samples between two looks at whether to go on.
+_STRETCH = 16
+
+
+def refocus_snapshot(stack, settings, content=None):
+    """Return the snapshot of a captured picture.
+
+    Parameters
+    ----------
+    stack : LayerStack
+    settings : RefocusSettings
+    content : SceneContent, optional
+        An empty one that stays the same from picture to picture.
+
+    Returns
+    -------
+    SceneSnapshot
+        Without any content of its own.
+
+    Raises
+    ------
+    FocusError
+        If the focus distance or the f-number cannot form a picture.
+    """
+    projection = np.array(stack.camera.projection, np.float64)
+    near, far = stack_near(stack), stack_far(stack)
+    if stack.camera.orthographic:
+        projection = clipped_projection(projection, near, far)
+    else:
+        # The far plane at infinity, where the world is.
+        projection[2, 2:] = -1.0, -2.0 * near
+    view = np.eye(4) if stack.camera.view is None else np.array(stack.camera.view, np.float64)
+    real_lens = settings.real_lens
+    if real_lens is not None:
+        real_lens = replace(real_lens, f_number=f_stop_of(stack, settings))
+    camera = Camera(
+        view=view,
+        projection=projection,
+        lens=lens_of(stack, settings),
+        orthographic=stack.camera.orthographic,
+        real_lens=real_lens,
+        bokeh=settings.bokeh,
+        chromatic=settings.chromatic,
+    )
+    sampling = Sampling(method="LAYERED", lens_samples=settings.samples, seed=settings.seed)
+    return SceneSnapshot(
+        content=content or _nothing(),
+        camera=camera,
+        film=Film(stack.width, stack.height, (0, 0, stack.width, stack.height), True, "BOX", 1.0),
+        sampling=sampling,
+        stack=stack,
+    )
+
+
+class Refocusing:
+    """A captured picture on the device, to be seen with one setting after the other.
+
+    The layers are uploaded once; only what a change of the settings asks for is done anew. What
+    was drawn with other settings before changes no bit of a picture. Needs the graphics device, and
+    is used by one thread.
+
+    Parameters
+    ----------
+    stack : LayerStack
+    settings : RefocusSettings
+    look_textures : TextureCache, optional
+        Of the session.
+
+    Attributes
+    ----------
+    settings : RefocusSettings
+    report : tuple of str
+        Warnings about settings that cannot be met; known after a sample.
+
+    Raises
+    ------
+    FocusError
+        If the focus distance or the f-number cannot form a picture.
+    """
+
+    def __init__(self, stack, settings, look_textures=None):
+        self.stack = stack
+        self.settings = settings
+        snapshot = refocus_snapshot(stack, settings)
+        self._content = snapshot.content
+        self._buffers = SceneBuffers(look_textures)
+        self._buffers.update(self._content)
+        self._buffers.captured = StackLayers(stack)
+        self._renderer = FrameRenderer(plan_frame(snapshot), snapshot, self._buffers)
+
+    def change(self, settings):
+        """Begin anew with other settings; the same ones go on where they are.
+
+        Parameters
+        ----------
+        settings : RefocusSettings
+
+        Raises
+        ------
+        FocusError
+            If the focus distance or the f-number cannot form a picture; nothing has changed then.
+        """
+        if settings == self.settings:
+            return
+        snapshot = refocus_snapshot(self.stack, settings, self._content)
+        self._renderer.restart(plan_frame(snapshot), snapshot)
+        self.settings = settings
+
+    @property
+    def samples_done(self):
+        """Lens samples that the picture has so far."""
+        return self._renderer.samples_done
+
+    @property
+    def finished(self):
+        """Whether the picture has all its lens samples."""
+        return self._renderer.finished()
+
+    @property
+    def report(self):
+        """Warnings about settings that cannot be met; known after a sample."""
+        return self._renderer.report
+
+    def advance(self, samples):
+        """Draw up to so many lens samples more, and wait for them.
+
+        The first one also finds and draws the bokeh.
+
+        Parameters
+        ----------
+        samples : int
+
+        Returns
+        -------
+        bool
+            Whether there are more to draw.
+        """
+        self._renderer.advance(samples)
+        self._renderer.wait()
+        return not self.finished
+
+    def read(self):
+        """Return the picture as it is so far; there must be a sample.
+
+        Returns
+        -------
+        ndarray of shape (height, width, 4)
+            Scene linear, premultiplied, bottom row first.
+        """
+        return self._renderer.read_image()
+
+    def release(self):
+        """Give everything back to the device; it cannot be used afterwards."""
+        self._renderer.release()
+        self._buffers.captured.release()
+
+
+def refocus(stack, settings, go_on=lambda share: True):
+    """Return a captured picture as the lens sees it; needs the graphics device.
+
+    Parameters
+    ----------
+    stack : LayerStack
+    settings : RefocusSettings
+    go_on : callable
+        Takes the share that is done; False ends it.
+
+    Returns
+    -------
+    ndarray of shape (height, width, 4) or None
+        Scene linear, premultiplied, bottom row first; None if it was ended.
+    """
+    refocusing = Refocusing(stack, settings)
+    try:
+        while not refocusing.finished:
+            if not go_on(refocusing.samples_done / settings.samples):
+                return None
+            refocusing.advance(_STRETCH)
+        return refocusing.read()
+    finally:
+        refocusing.release()
+
+
+def _nothing():
+    table = InstanceTable(np.zeros((0, 4, 4), np.float32), np.zeros(0, np.float32))
+    return SceneContent({}, {}, {}, table, ())

@@ -1,0 +1,80 @@
+"""How a captured picture is seen through the lens: values, without Blender."""
+
+from dataclasses import dataclass
+
+from ...sampling.chromatic import ChromaticAberration
+from ...sampling.iris import Iris
+from ...sampling.thin_lens import ThinLens, aperture_radius
+from ...snapshot.camera import BokehSettings, LensSettings
+
+
+@dataclass(frozen=True)
+class RefocusSettings:
+    """The lens that a captured picture is seen through, as a camera has it.
+
+    Parameters
+    ----------
+    focus_distance : float or None
+        Along the optical axis, m; None: as captured.
+    f_stop : float or None
+        None: as captured.
+    iris : Iris or None
+        Blades, rotation and ratio of the opening; None: as captured. What else shapes the discs of
+        highlights (curvature of the blades, a picture) is the bokeh's appearance.
+    real_lens : LensSettings or None
+        A real lens, which opens no wider than it can and shapes the discs; None: a thin lens.
+    bokeh : BokehSettings or None
+        None: highlights are sampled like all other light.
+    chromatic : ChromaticAberration or None
+        None: no chromatic aberration.
+    samples : int
+        Lens samples.
+    seed : int
+        Of their pattern.
+    """
+
+    focus_distance: float | None = None
+    f_stop: float | None = None
+    iris: Iris | None = None
+    real_lens: LensSettings | None = None
+    bokeh: BokehSettings | None = None
+    chromatic: ChromaticAberration | None = None
+    samples: int = 128
+    seed: int = 0
+
+
+def f_stop_of(stack, settings):
+    """Return the f-number that a captured picture is seen with; a lens opens as far as it can."""
+    f_stop = stack.camera.f_stop if settings.f_stop is None else settings.f_stop
+    if settings.real_lens is None:
+        return f_stop
+    lens = settings.real_lens
+    return max(f_stop, lens.prescription.configuration(lens.label).f_number)
+
+
+def lens_of(stack, settings):
+    """Return the thin lens that a captured picture is seen through.
+
+    Parameters
+    ----------
+    stack : LayerStack
+    settings : RefocusSettings
+
+    Returns
+    -------
+    ThinLens
+
+    Raises
+    ------
+    FocusError
+        If the focus distance or the f-number cannot form a picture.
+    """
+    camera = stack.camera
+    f_stop = f_stop_of(stack, settings)
+    # Also refuses an f-number that is none.
+    radius = aperture_radius(camera.focal_length_mm / 1000.0, f_stop)
+    if camera.aperture_radius is not None:
+        radius = camera.aperture_radius * camera.f_stop / f_stop
+    iris = settings.iris or Iris(camera.blades, camera.blade_rotation, camera.aperture_ratio)
+    focus = settings.focus_distance
+    return ThinLens(radius, camera.focus_distance if focus is None else focus, iris)
