@@ -13,14 +13,21 @@ from .capture.capture_arguments import add_capture, check_capture
 from .lens.lens_arguments import add_lens, check_lens
 from .refocus.refocus_arguments import add_refocus, check_refocus
 from .render.sampling_arguments import add_sampling, bounds, check_sampling
-from .words.frame_values import MAX_FRAME, frame_number, frame_range
+from .words.frame_values import (
+    FRAMES_HELP,
+    MAX_FRAME,
+    check_frames,
+    frame_number,
+    frame_range,
+)
 from .words.option_values import (
     file_with_ending,
+    further_words,
     joined_negatives,
     positive_number,
     whole_number,
 )
-from .words.parser import RESOLUTION, Parser, add_output_options
+from .words.parser import RESOLUTION, Parser, add_farm_options, add_output_options
 
 ENDINGS = (".exr", ".png")
 
@@ -54,6 +61,7 @@ def parse(words, program="aplanat"):
             f"{program} bench measures in a checkout of the sources; an installed Aplanat has none:"
             " get the sources (see README.md) and call scripts/aplanat bench there"
         )
+    words = further_words(words, "--options")
     arguments = _parser(program).parse_args(joined_negatives(words, _MAY_BE_NEGATIVE))
     if arguments.command is None:
         raise InputError(f"no command given (see `{program} --help`)")
@@ -75,14 +83,7 @@ def wants_json(words):
 
 def _check_render(arguments):
     check_sampling(arguments)
-    if arguments.frame_step is not None and arguments.frames is None:
-        raise InputError("--frame-step belongs to --frames; give the first and the last frame, too")
-    several = arguments.frames is not None and arguments.frames[0] != arguments.frames[1]
-    for path in arguments.output:
-        if several and "#" not in path.name:
-            raise InputError(
-                f"-o {path}: several frames need #### in the file's name for the frame number"
-            )
+    check_frames(arguments.frames, arguments.output, arguments.frame_step)
     if len(set(arguments.output)) < len(arguments.output):
         raise InputError(f"-o {arguments.output[0]} is given twice; give two different names")
 
@@ -139,12 +140,12 @@ def _add_render(commands):
     frames.add_argument(
         "--frame", metavar="N", type=frame_number, help="default: the file's current one"
     )
-    frames.add_argument("--frames", metavar="A..B", type=frame_range, help="first and last frame")
+    frames.add_argument("--frames", metavar="FRAMES", type=frame_range, help=FRAMES_HELP)
     add(
         "--frame-step",
         metavar="N",
         type=whole_number(1, MAX_FRAME),
-        help="of --frames: render every Nth only; default: the scene's frame step",
+        help="of --frames A..B: render every Nth only; default: the scene's frame step",
     )
     add("--camera", metavar="NAME", help="camera object to render from")
     add("--resolution", metavar="WxH", type=RESOLUTION, help="in pixels, at 100 %%")
@@ -182,3 +183,4 @@ def _add_render(commands):
     )
     add("--stats", metavar="FILE", type=Path, help="write statistics as JSON")
     add_output_options(parser)
+    add_farm_options(parser)

@@ -25,8 +25,13 @@ FAN = [*TRACE, "--object-to-first-vertex-mm", "1000"]
         ([*RENDER, "-o", "a.png", "-o", "a.png"], "twice"),
         ([*RENDER, "--frame", "one"], "not a whole number"),
         ([*RENDER, "--frame", "99999999"], "not between"),
-        ([*RENDER, "--frames", "5"], "FIRST..LAST"),
-        ([*RENDER, "--frames", "1-5"], "FIRST..LAST"),
+        ([*RENDER, "--frames", "five"], "FIRST..LAST"),
+        ([*RENDER, "--frames", "1-5,"], "FIRST..LAST"),
+        ([*RENDER, "--frames", "1-5:0"], "not between"),
+        ([*RENDER, "--frames", "9-5"], "comes after"),
+        ([*RENDER, "--frames", "1-5", "--frame-step", "2"], "steps of its own"),
+        ([*RENDER, "--frames", "1-5", "-o", "a.png"], "####"),
+        ([*RENDER, "--options", "--lens 'mine"], "no closing quotation"),
         ([*RENDER, "--frames", "5..1"], "comes after"),
         ([*RENDER, "--frames", "1..99999999"], "not between"),
         ([*RENDER, "--frame", "1", "--frames", "1..2"], "not allowed with"),
@@ -117,11 +122,36 @@ def test_all_words_of_render_are_understood():
             *("--fstop", "1.4", "--focus", "2.5", "--stats", "s.json", "--json"),
         ]
     )
-    assert arguments.frames == (-2, 3)
+    assert list(arguments.frames.numbers(2)) == [-2, 0, 2]
     assert arguments.resolution == (64, 48)
     assert arguments.focus == 2.5
     assert arguments.fstop == 1.4
     assert [path.name for path in arguments.output] == ["a_####.exr", "a_####.PNG"]
+
+
+@pytest.mark.parametrize(
+    ("text", "frames"),
+    [
+        ("5", [5]),
+        ("7-7", [7]),
+        ("1-5", [1, 2, 3, 4, 5]),
+        ("1-10:3", [1, 4, 7, 10]),
+        ("-5--3", [-5, -4, -3]),
+        ("20, 10-12", [10, 11, 12, 20]),
+        ("1..3,8", [1, 2, 3, 8]),
+    ],
+)
+def test_a_list_of_frames_is_exactly_those_frames(text, frames):
+    # As Open Job Description and Flamenco write chunks; a scene's own step skips none of them.
+    assert list(parse([*RENDER, "--frames", text]).frames.numbers(2)) == frames
+
+
+def test_one_word_may_bring_further_options():
+    options = "--strict --lens 'my lens.toml' --level-bias -1"
+    arguments = parse([*RENDER, "--options", options, "--seed", "3"])
+    assert (arguments.strict, arguments.lens, arguments.seed) == (True, "my lens.toml", 3)
+    assert arguments.level_bias == -1.0
+    assert parse([*RENDER, "--options="]).strict is False
 
 
 def test_focus_may_be_an_object():

@@ -3,10 +3,15 @@
 from pathlib import Path
 
 from ...capture.settings import ENGINES, MOST_LAYERS, MOST_OVERSCAN
-from ...errors import InputError
-from ..words.frame_values import MAX_FRAME, frame_number, frame_range
+from ..words.frame_values import (
+    FRAMES_HELP,
+    MAX_FRAME,
+    check_frames,
+    frame_number,
+    frame_range,
+)
 from ..words.option_values import file_with_ending, number_between, whole_number
-from ..words.parser import RESOLUTION, add_output_options
+from ..words.parser import RESOLUTION, add_farm_options, add_output_options
 
 
 def add_capture(commands):
@@ -40,12 +45,12 @@ def add_capture(commands):
     frames.add_argument(
         "--frame", metavar="N", type=frame_number, help="default: the file's current one"
     )
-    frames.add_argument("--frames", metavar="A..B", type=frame_range, help="first and last frame")
+    frames.add_argument("--frames", metavar="FRAMES", type=frame_range, help=FRAMES_HELP)
     add(
         "--frame-step",
         metavar="N",
         type=whole_number(1, MAX_FRAME),
-        help="of --frames: every Nth only; default: the scene's frame step",
+        help="of --frames A..B: every Nth only; default: the scene's frame step",
     )
     add("--resolution", metavar="WxH", type=RESOLUTION, help="in pixels, without the overscan")
     add(
@@ -63,6 +68,7 @@ def add_capture(commands):
     )
     add("--stats", metavar="FILE", type=Path, help="write statistics as JSON")
     add_output_options(parser)
+    add_farm_options(parser)
 
 
 def check_capture(arguments):
@@ -72,11 +78,4 @@ def check_capture(arguments):
     ------
     InputError
     """
-    if arguments.frame_step is not None and arguments.frames is None:
-        raise InputError("--frame-step belongs to --frames; give the first and the last frame, too")
-    several = arguments.frames is not None and arguments.frames[0] != arguments.frames[1]
-    if several and "#" not in arguments.output.name:
-        raise InputError(
-            f"-o {arguments.output}: several frames need #### in the file's name for the frame"
-            " number"
-        )
+    check_frames(arguments.frames, [arguments.output], arguments.frame_step)

@@ -21,7 +21,9 @@ from ...scene.unsupported import missing_files, missing_links
 from ..render import statistics
 from ..render.render_command import Warnings
 from ..render.scene_setup import load_scene
+from ..words.frame_values import first_frame, frame_numbers, telling_frame
 from ..words.json_file import write_json
+from ..words.parser import make_folders
 
 
 def capture(arguments, console):
@@ -44,8 +46,8 @@ def capture(arguments, console):
     """
     start = time.perf_counter()
     with removed_on_signals():
-        first = arguments.frames[0] if arguments.frames else arguments.frame or 0
-        check_writable(frame_path(arguments.output, first))
+        make_folders(arguments, [arguments.output])
+        check_writable(frame_path(arguments.output, first_frame(arguments)))
         if arguments.stats:
             check_writable(arguments.stats)
         scene = load_scene(arguments.scene)
@@ -58,33 +60,24 @@ def capture(arguments, console):
         program = software()
         frames = []
         with HeldFiles() as held:
-            for frame in _frame_numbers(scene, arguments):
-                path = frame_path(arguments.output, frame)
-                half = " half" if arguments.half else ""
-                digest = settings.digest(frame, source, program + half)
-                if is_captured(path, digest):
-                    console.say(f"frame {frame}: {path} is there, whole and of these settings")
-                    frames.append({"frame": frame, "file": str(path), "kept": True})
-                    continue
-                begun = time.perf_counter()
-                stack, words, renders = _capture_frame(
-                    scene, frame, settings, held.room("slices"), console, warnings
-                )
-                write_capture(path, stack, digest, program, words, arguments.half)
-                seconds = round(time.perf_counter() - begun, 6)
-                console.say(f"frame {frame}: {path} ({seconds:.1f} s)")
-                frames.append(
-                    {
-                        "frame": frame,
-                        "file": str(path),
-                        "kept": False,
-                        "layers": len(stack.layers),
-                        "cuts_m": [layer.near for layer in stack.layers[1:]],
-                        "renders": renders,
-                        "report": list(stack.report),
-                        "seconds": {**_timed(renders), "total": seconds},
-                    }
-                )
+            numbers = frame_numbers(scene, arguments)
+            for frame in numbers:
+                with telling_frame(frame, len(numbers)):
+                    path = frame_path(arguments.output, frame)
+                    half = " half" if arguments.half else ""
+                    digest = settings.digest(frame, source, program + half)
+                    if is_captured(path, digest):
+                        console.say(f"frame {frame}: {path} is there, whole and of these settings")
+                        frames.append({"frame": frame, "file": str(path), "kept": True})
+                        continue
+                    begun = time.perf_counter()
+                    stack, words, renders = _capture_frame(
+                        scene, frame, settings, held.room("slices"), console, warnings
+                    )
+                    write_capture(path, stack, digest, program, words, arguments.half)
+                    seconds = round(time.perf_counter() - begun, 6)
+                    console.say(f"frame {frame}: {path} ({seconds:.1f} s)")
+                    frames.append(_told(frame, path, stack, renders, seconds))
         summary = _summary(arguments, settings, frames, warnings.lines)
         summary["seconds"] = round(time.perf_counter() - start, 6)
         if arguments.stats:
@@ -108,14 +101,6 @@ def _settings(scene, arguments):
         overscan=round(overscan, 6),
         resolution=arguments.resolution,
     )
-
-
-def _frame_numbers(scene, arguments):
-    if arguments.frames:
-        first, last = arguments.frames
-        return range(first, last + 1, arguments.frame_step or scene.frame_step)
-    frame = scene.frame_current if arguments.frame is None else arguments.frame
-    return range(frame, frame + 1)
 
 
 def _capture_frame(scene, frame, settings, folder, console, warnings):
@@ -153,8 +138,20 @@ def _render(step, warnings):
     warnings.add(heard.report)
 
 
-def _timed(renders):
-    return {"render": round(sum(render["seconds"] for render in renders), 6)}
+def _told(frame, path, stack, renders, seconds):
+    return {
+        "frame": frame,
+        "file": str(path),
+        "kept": False,
+        "layers": len(stack.layers),
+        "cuts_m": [layer.near for layer in stack.layers[1:]],
+        "renders": renders,
+        "report": list(stack.report),
+        "seconds": {
+            "render": round(sum(render["seconds"] for render in renders), 6),
+            "total": seconds,
+        },
+    }
 
 
 def _summary(arguments, settings, frames, warnings):

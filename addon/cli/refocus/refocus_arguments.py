@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 
 from ...errors import InputError
-from ..words.frame_values import frame_range
+from ..words.frame_values import FRAMES_HELP, check_frames, frame_range
 from ..words.option_values import file_with_ending, positive_number, whole_number
-from ..words.parser import add_output_options
+from ..words.parser import add_farm_options, add_output_options
 
 _MOST_SAMPLES = 65536
 _MOST_BLADES = 64
@@ -35,9 +35,9 @@ def add_refocus(commands):
     )
     add(
         "--frames",
-        metavar="A..B",
+        metavar="FRAMES",
         type=frame_range,
-        help="first and last frame; default: every captured file that there is",
+        help=f"{FRAMES_HELP}; default: every captured file that there is",
     )
     add("--focus", metavar="DISTANCE", type=positive_number(), help="in m along the optical axis")
     add("--fstop", metavar="X", type=positive_number(), help="f-number")
@@ -81,6 +81,7 @@ def add_refocus(commands):
     add("--strict", action="store_true", help="take warnings for errors: exit code 2")
     add("--stats", metavar="FILE", type=Path, help="write statistics as JSON")
     add_output_options(parser)
+    add_farm_options(parser)
 
 
 def _depth_range(text):
@@ -105,9 +106,4 @@ def check_refocus(arguments):
             f"--frames chooses among files with a frame number; '{arguments.layers}' has no #### in"
             " its name"
         )
-    first, last = arguments.frames or (0, 0)
-    if first != last and "#" not in arguments.output.name:
-        raise InputError(
-            f"-o {arguments.output}: several frames need #### in the file's name for the frame"
-            " number"
-        )
+    check_frames(arguments.frames, [arguments.output])

@@ -19,7 +19,9 @@ from ...layers.layer_file import is_layer_file, load_layers
 from ...sampling.iris import Iris
 from ..render.pictures import set_png
 from ..render.statistics import peak_memory
+from ..words.frame_values import telling_frame
 from ..words.json_file import write_json
+from ..words.parser import make_folders
 
 
 def refocus_files(arguments, console):
@@ -48,12 +50,14 @@ def refocus_files(arguments, console):
             " number"
         )
     with removed_on_signals():
+        make_folders(arguments, [arguments.output])
         for path in filter(None, (frame_path(arguments.output, min(files)), arguments.stats)):
             check_writable(path)
         ensure_context()
         frames, warnings = [], []
         for frame, file in sorted(files.items()):
-            frames.append(_refocus_frame(frame, file, arguments, console, warnings))
+            with telling_frame(frame, len(files)):
+                frames.append(_refocus_frame(frame, file, arguments, console, warnings))
         summary = {
             "command": "refocus",
             "files": [told["file"] for told in frames],
@@ -77,8 +81,8 @@ def captured_files(path, frames):
     ----------
     path : Path
         Its last run of # stands for a frame number.
-    frames : tuple of 2 int or None
-        First and last frame; None: all that there are.
+    frames : Frames or None
+        None: all that there are.
 
     Returns
     -------
@@ -95,7 +99,7 @@ def captured_files(path, frames):
             raise InputError(f"captured file '{path}' does not exist")
         return {0: path}
     if frames is not None:
-        found = {frame: frame_path(path, frame) for frame in range(frames[0], frames[1] + 1)}
+        found = {frame: frame_path(path, frame) for frame in frames.numbers()}
         missing = [frame for frame, file in found.items() if not file.is_file()]
         if missing:
             raise InputError(

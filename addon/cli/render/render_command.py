@@ -14,7 +14,9 @@ from ...engine.shared_resources import listen, resources
 from ...errors import AplanatError, DeviceLimitError, InputError, RenderCancelledError, StrictError
 from ...files.frame_path import frame_path
 from ...files.whole_file import check_writable, removed_on_signals
+from ..words.frame_values import first_frame, frame_numbers, telling_frame
 from ..words.json_file import write_json
+from ..words.parser import make_folders
 from . import statistics
 from .frame_files import FrameFiles
 from .scene_setup import apply_frame, apply_options, load_scene
@@ -52,14 +54,16 @@ def render(arguments, console):
         _leave_out(scene, warnings)
         frames = []
         with FrameFiles(scene, arguments.output, keeps_back=arguments.strict) as files:
-            for frame in _frame_numbers(scene, arguments):
-                apply_frame(scene, frame, arguments)
-                if not files.begin(frame):
-                    console.say(f"frame {frame}: left as it is; the scene's Overwrite is off")
-                    continue
-                frames.append(
-                    _render_frame(scene, frame, arguments, console, warnings, files, session)
-                )
+            numbers = frame_numbers(scene, arguments)
+            for frame in numbers:
+                with telling_frame(frame, len(numbers)):
+                    apply_frame(scene, frame, arguments)
+                    if not files.begin(frame):
+                        console.say(f"frame {frame}: left as it is; the scene's Overwrite is off")
+                        continue
+                    frames.append(
+                        _render_frame(scene, frame, arguments, console, warnings, files, session)
+                    )
             files.publish_all()
         if arguments.strict:
             _tell_files(frames, console)
@@ -148,9 +152,9 @@ def heard_render(keep_pictures=False, progress=None, strict=False, frame=None, s
 
 
 def _check_outputs(arguments):
-    frame = arguments.frames[0] if arguments.frames else arguments.frame or 0
+    make_folders(arguments, arguments.output)
     for path in arguments.output:
-        check_writable(frame_path(path, frame))
+        check_writable(frame_path(path, first_frame(arguments)))
     if arguments.stats:
         check_writable(arguments.stats)
 
@@ -173,14 +177,6 @@ def _leave_out(scene, warnings):
         render.use_sequencer = False
         what = "the video sequencer is left out; the 3D scene is rendered"
         warnings.add([f"scene '{scene.name}': {what}"])
-
-
-def _frame_numbers(scene, arguments):
-    if arguments.frames:
-        first, last = arguments.frames
-        return range(first, last + 1, arguments.frame_step or scene.frame_step)
-    frame = scene.frame_current if arguments.frame is None else arguments.frame
-    return range(frame, frame + 1)
 
 
 def _render_frame(scene, frame, arguments, console, warnings, files, session):

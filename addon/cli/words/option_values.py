@@ -3,7 +3,10 @@
 import argparse
 import math
 import re
+import shlex
 from pathlib import Path
+
+from ...errors import InputError
 
 
 def whole_number(low, high):
@@ -123,6 +126,38 @@ def joined_negatives(words, options):
         else:
             joined.append(word)
     return joined
+
+
+def further_words(words, option):
+    """Put the words that an option brings in one word in its place.
+
+    Parameters
+    ----------
+    words : list of str
+    option : str
+        Such as ``--options``, before a word with words in it, quoted as in a shell.
+
+    Returns
+    -------
+    list of str
+
+    Raises
+    ------
+    InputError
+        If a quote is not closed.
+    """
+    split, waiting = [], iter(words)
+    for word in waiting:
+        name, equals, text = word.partition("=")
+        text = text if equals else (next(waiting, None) if name == option else None)
+        if name != option or text is None:
+            split.append(word)
+            continue
+        try:
+            split += shlex.split(text)
+        except ValueError as error:
+            raise InputError(f"{option} {text}: {str(error).lower()}; close it") from error
+    return split
 
 
 def _number(text):
