@@ -12,16 +12,20 @@ settings.load_profile("house")
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 # Folders whose tests share what takes long to make: an installed Blender, files of scenes.
-_TOGETHER = [REPOSITORY / "tests" / name for name in ("blender", "cases")]
+_TOGETHER = ("tests/blender", "tests/cases")
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
-    """Say which tests stay in one process where several run them."""
-    for item in items:
-        folders = [folder for folder in _TOGETHER if folder in item.path.parents]
-        group = folders[0] if folders else item.path
-        item.add_marker(pytest.mark.xdist_group(group.relative_to(REPOSITORY).as_posix()))
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Say which tests stay in one process where several run them: those of a file or a folder."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Scheduling(LoadScopeScheduling):
+        def _split_scope(self, nodeid):
+            file = nodeid.split("::")[0]
+            return next((name for name in _TOGETHER if file.startswith(f"{name}/")), file)
+
+    return Scheduling(config, log)
 
 
 def pytest_addoption(parser):
