@@ -2,7 +2,7 @@
 
 from .cli import blender_command
 from .engine import render_engine, shared_resources
-from .ui.jobs import background
+from .ui.jobs import background, live_refocus
 from .ui.operators import (
     capture_operator,
     chromatic_curves,
@@ -10,6 +10,8 @@ from .ui.operators import (
     lens_import,
     lens_operators,
     level_operators,
+    refocus_operators,
+    refocus_writing,
 )
 from .ui.panels import (
     blender_panels,
@@ -18,6 +20,7 @@ from .ui.panels import (
     chromatic_panel,
     lens_panel,
     panels,
+    refocus_panel,
     sampling_panel,
 )
 from .ui.presets import presets
@@ -48,6 +51,10 @@ _MODULES = (
     chromatic_panel,
     capture_operator,
     capture_panel,
+    live_refocus,
+    refocus_operators,
+    refocus_writing,
+    refocus_panel,
     blender_command,
 )
 

@@ -14,11 +14,11 @@ import bpy
 from ..device import context
 from ..device.shaders import compiled_count
 from ..levels.choosing import meshes_with_levels
+from .frame.pacing import Pacer
 from .frame.pipeline import FrameRenderer
 from .frame.render_passes import cryptomatte_metadata, fill_layer, render_pass
 from .gpu_thread import gpu_of_render
 from .outcome import LayerPicture, PassPicture
-from .pacing import Pacer
 from .planning.plan import plan_frame
 from .report import frame_report
 from .views import views_of

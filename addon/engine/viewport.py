@@ -15,8 +15,8 @@ from ..scene.view import read_view
 from ..snapshot.changes import Change, compare
 from ..snapshot.scene import SceneSnapshot
 from .bokeh.marks import shows_marks
+from .frame.pacing import Pacer
 from .frame.pipeline import FrameRenderer
-from .pacing import Pacer
 from .planning.plan import plan_frame
 from .report import frame_report, in_short
 from .shared_resources import resources

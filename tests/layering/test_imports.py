@@ -88,7 +88,7 @@ ROOMS = {
     ),
     # A captured picture instead of a scene.
     "engine.refocus": (
-        *("sampling", "snapshot", "scene.camera"),
+        *("files", "layers", "device", "sampling", "snapshot", "scene.camera"),
         *("engine.planning", "engine.drawing", "engine.layered", "engine.frame"),
     ),
     "engine": (
@@ -98,16 +98,16 @@ ROOMS = {
     # Another engine's pictures, or ours, as depth layers.
     "capture": ("files", "sampling", "settings", "layers", "scene.camera"),
     # What a user meets.
-    "ui.jobs": (),
+    "ui.jobs": ("layers", "engine", "engine.refocus"),
     "ui.previews": ("lens_bokeh.look", "plots", "scene.camera", "ui.jobs"),
     "ui.operators": (
         *("optics", "sampling", "lens_io", "lens_io.importers.draft"),
-        *("files", "scene.camera", "engine", "capture", "ui.jobs"),
+        *("files", "layers", "scene.camera", "engine", "engine.refocus", "capture", "ui.jobs"),
     ),
     "ui.properties": (*("lens_io.glasses", "settings", "engine", "ui.operators", "ui.previews"),),
     "ui.presets": ("settings", "ui.operators", "ui.properties"),
     "ui.panels": (
-        *("optics", "scene.camera", "engine", "capture"),
+        *("optics", "scene.camera", "engine", "engine.refocus", "capture"),
         *("ui.jobs", "ui.operators", "ui.presets", "ui.previews"),
     ),
     "ui": (),
@@ -160,7 +160,6 @@ BLENDER_FREE = {
     "cli.command",
     "cli.render.sampling_arguments",
     "engine.outcome",
-    "engine.pacing",
     "engine.report",
     "engine.views",
 }

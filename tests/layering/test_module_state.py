@@ -90,6 +90,11 @@ OTHERS = {
         "work for panels, and what the user stopped of it",
         ("_errors", "_queue", "_stopped"),
     ),
+    "ui.jobs.live_refocus": (
+        "live pictures of Image editors, by scene: each is what its file and the scene's settings"
+        " make it, and is gone with the editor, the file or Aplanat",
+        ("_draw_handle", "_held", "_lives"),
+    ),
     "ui.previews.bokeh_previews": ("icons of panels", ("icons",)),
     "ui.previews.chromatic_previews": ("icons of panels", ("icons",)),
     "ui.previews.lens_thumbnails": ("icons of panels", ("icons",)),

@@ -15,6 +15,7 @@ from addon.scene.camera.bokeh import describe_bokeh
 from addon.scene.settings import read_preview_sampling, read_sampling
 from addon.settings.bokeh_settings import BOKEH
 from addon.settings.chromatic_settings import CHROMATIC
+from addon.settings.refocus_settings import DEPTH_PASS, REFOCUS
 from addon.settings.scene_part_settings import LAMP, LENS, MATERIAL, WORLD
 from addon.settings.scene_settings import CAPTURE, MEASURING, PREVIEW, SCENE, VIEW_LAYER
 from addon.settings.setting import settings_of
@@ -28,6 +29,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 GROUPS = {
     "AplanatSceneSettings": SCENE,
     "AplanatCaptureSettings": (CAPTURE,),
+    "AplanatRefocusSettings": (REFOCUS, DEPTH_PASS),
     "AplanatViewLayerSettings": VIEW_LAYER,
     "AplanatCameraSettings": (LENS,),
     "AplanatBokehSettings": BOKEH,
@@ -44,7 +46,7 @@ ALL = [
 IDS = [f"{group}.{setting.name}" for group, setting in ALL]
 # Shown, but stored elsewhere, or stored, but no setting.
 UNDECLARED = {
-    "AplanatSceneSettings": {"settings_version", "capture"},
+    "AplanatSceneSettings": {"settings_version", "capture", "refocus"},
     "AplanatCameraSettings": {
         *("lens_choice", "zoom", "bokeh", "chromatic"),
         *("bokeh_lens", "bokeh_memory", "chromatic_lens", "chromatic_memory"),
@@ -54,7 +56,10 @@ UNDECLARED = {
 # A menu with pictures stands for the first, a menu of the lens' positions for the second.
 SHOWN_AS = {"zoom_label": "zoom"}
 # Blender has no overrides of scenes.
-NOT_OVERRIDABLE = {"AplanatSceneSettings", "AplanatCaptureSettings", "AplanatViewLayerSettings"}
+NOT_OVERRIDABLE = {
+    *("AplanatSceneSettings", "AplanatCaptureSettings", "AplanatRefocusSettings"),
+    "AplanatViewLayerSettings",
+}
 KINDS = {bool: "BOOLEAN", int: "INT", float: "FLOAT", str: "STRING", type(None): "POINTER"}
 
 
@@ -134,6 +139,7 @@ def context(aplanat_bpy, empty_scene):
         material=bpy.data.materials.new("Material"),
         light=bpy.data.lights.new("Light", "POINT"),
         world=world,
+        space_data=SimpleNamespace(image=None),
         region=SimpleNamespace(width=400),
         preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
     )
@@ -155,12 +161,17 @@ def states(context):
     settings.method = "REFERENCE"
     yield
     settings.method = "LAYERED"
+    own_refocus = settings.refocus
+    own_refocus.path, own_refocus.depth_values = "layers.exr", "SCALED"
+    yield
+    own_refocus.depth_values = "NORMALISED"
     yield
 
 
 def test_panels_show_every_setting(context):
     panels = [cls for module in _MODULES for cls in getattr(module, "CLASSES", ())]
-    panels = [cls for cls in panels if "_PT_" in cls.__name__ and cls.bl_space_type == "PROPERTIES"]
+    editors = {"PROPERTIES", "IMAGE_EDITOR"}
+    panels = [cls for cls in panels if "_PT_" in cls.__name__ and cls.bl_space_type in editors]
     shown = set()
     for _ in states(context):
         for panel in panels:
@@ -168,6 +179,8 @@ def test_panels_show_every_setting(context):
                 shown |= set(draw(panel, context, header=True).drawn)
     wanted = {(group, SHOWN_AS.get(setting.name, setting.name)) for group, setting in ALL}
     wanted -= {("AplanatSceneSettings", name) for name in settings_of(MEASURING)}
+    # The editor itself shows it.
+    wanted -= {("AplanatRefocusSettings", "image")}
     assert wanted <= shown, sorted(wanted - shown)
 
 

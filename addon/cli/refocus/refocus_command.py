@@ -1,23 +1,20 @@
 """`aplanat refocus`: files of depth layers to pictures."""
 
-import re
 import time
-from pathlib import Path
 
 import bpy
-import numpy as np
 
 from ...device.context import device_name, ensure_context
+from ...engine.refocus.pictures import save_picture
 from ...engine.refocus.refocusing import refocus
 from ...engine.refocus.settings import RefocusSettings, lens_of
-from ...errors import InputError, StrictError, UnfinishedFileError
+from ...errors import InputError, StrictError
 from ...files.frame_path import frame_path
 from ...files.version import version
-from ...files.whole_file import check_writable, removed_on_signals, whole_file
-from ...layers.flat_input import FlatOptions, load_flat
-from ...layers.layer_file import is_layer_file, load_layers
+from ...files.whole_file import check_writable, removed_on_signals
+from ...layers.captured_files import captured_files, load_captured
+from ...layers.flat_input import FlatOptions
 from ...sampling.iris import Iris
-from ..render.pictures import set_png
 from ..render.statistics import peak_memory
 from ..words.frame_values import telling_frame
 from ..words.json_file import write_json
@@ -43,7 +40,7 @@ def refocus_files(arguments, console):
         If a picture is not made.
     """
     start = time.perf_counter()
-    files = captured_files(arguments.layers, arguments.frames)
+    files = captured_files(arguments.layers, arguments.frames and arguments.frames.numbers())
     if len(files) > 1 and "#" not in arguments.output.name:
         raise InputError(
             f"-o {arguments.output}: {len(files)} frames need #### in the file's name for the frame"
@@ -74,54 +71,9 @@ def refocus_files(arguments, console):
     return summary
 
 
-def captured_files(path, frames):
-    """Find the captured files that a name stands for.
-
-    Parameters
-    ----------
-    path : Path
-        Its last run of # stands for a frame number.
-    frames : Frames or None
-        None: all that there are.
-
-    Returns
-    -------
-    dict of int to Path
-        By frame; a file without a number is frame 0.
-
-    Raises
-    ------
-    InputError
-        If there are none, or one is missing.
-    """
-    if "#" not in path.name:
-        if not path.is_file():
-            raise InputError(f"captured file '{path}' does not exist")
-        return {0: path}
-    if frames is not None:
-        found = {frame: frame_path(path, frame) for frame in frames.numbers()}
-        missing = [frame for frame, file in found.items() if not file.is_file()]
-        if missing:
-            raise InputError(
-                f"captured file '{found[missing[0]]}' does not exist"
-                + (f" ({len(missing)} of {len(found)} frames are missing)" * (len(missing) > 1))
-            )
-        return found
-    first, last = list(re.finditer("#+", path.name))[-1].span()
-    pattern = re.compile(
-        re.escape(path.name[:first]) + r"(-?\d+)" + re.escape(path.name[last:]), re.IGNORECASE
-    )
-    names = sorted(path.parent.iterdir()) if path.parent.is_dir() else []
-    matches = [(pattern.fullmatch(file.name), file) for file in names]
-    found = {int(match[1]): file for match, file in matches if match and file.is_file()}
-    if not found:
-        raise InputError(f"no captured file is called '{path}', whatever its number")
-    return found
-
-
 def _refocus_frame(frame, file, arguments, console, warnings):
     begun = time.perf_counter()
-    stack = load_layers(file) if is_layer_file(file) else load_flat(file, _flat(arguments))
+    stack = load_captured(file, _flat(arguments))
     new = [line for line in stack.report if line not in warnings]
     if new and arguments.strict:
         raise StrictError(new)
@@ -137,10 +89,7 @@ def _refocus_frame(frame, file, arguments, console, warnings):
 
     picture = refocus(stack, settings, go_on)
     output = frame_path(arguments.output, frame)
-    if output.suffix.lower() == ".png":
-        save_png(output, picture)
-    else:
-        save_exr(output, picture, stack)
+    save_picture(output, picture, stack, bpy.context.scene)
     seconds = round(time.perf_counter() - begun, 6)
     console.say(f"frame {frame}: {output} ({seconds:.1f} s)")
     lens = lens_of(stack, settings)
@@ -181,57 +130,3 @@ def _settings(stack, arguments):
         samples=arguments.samples,
         seed=arguments.seed,
     )
-
-
-def save_exr(path, picture, stack):
-    """Write a picture as EXR: float RGBA, scene linear; whole or not at all.
-
-    Parameters
-    ----------
-    path : Path
-    picture : ndarray of shape (height, width, 4)
-        Premultiplied, bottom row first.
-    stack : LayerStack
-        That it was made of.
-    """
-    import OpenEXR
-
-    header = {
-        "type": OpenEXR.scanlineimage,
-        "compression": OpenEXR.ZIP_COMPRESSION,
-        "pixelAspectRatio": 1.0 / stack.pixel_aspect,
-        "Software": f"Aplanat {version()}",
-    }
-    pixels = np.ascontiguousarray(picture[::-1], np.float32)
-    with whole_file(path) as place:
-        try:
-            OpenEXR.File(header, {"RGBA": pixels}).write(place)
-        except RuntimeError as error:
-            raise UnfinishedFileError(
-                f"cannot write '{path}': {' '.join(str(error).split())}; is the disk full?"
-            ) from error
-
-
-def save_png(path, picture):
-    """Write a picture as PNG, with the view transform of Blender's own default scene.
-
-    Parameters
-    ----------
-    path : Path
-    picture : ndarray of shape (height, width, 4)
-        Premultiplied, scene linear, bottom row first.
-    """
-    height, width = picture.shape[:2]
-    scene = bpy.context.scene
-    scene.render.film_transparent = bool((picture[..., 3] < 0.999).any())
-    set_png(scene, "INDIVIDUAL")
-    image = bpy.data.images.new("refocused", width, height, alpha=True, float_buffer=True)
-    try:
-        image.alpha_mode = "PREMUL"
-        image.pixels.foreach_set(np.ascontiguousarray(picture, np.float32).ravel())
-        with whole_file(path) as place:
-            image.save_render(str(place), scene=scene)
-            if not Path(place).stat().st_size:
-                raise UnfinishedFileError(f"cannot write '{path}'; is the disk full?")
-    finally:
-        bpy.data.images.remove(image)

@@ -1,5 +1,6 @@
 """What the panels of the properties editor have in common."""
 
+from ...engine.refocus.scene_refocus import refocus_camera
 from ...engine.render_engine import ENGINE_ID
 from ..presets.presets import PRESET_CLASSES
 
@@ -60,6 +61,13 @@ class PresetsHeader:
         listing.draw_panel_header(self.layout)
 
 
+def is_refocused(context):
+    """Whether a captured picture is seen through the camera in the editor, whatever the engine."""
+    own, chosen = context.scene.aplanat.refocus, refocus_camera(context.scene)
+    shown = bool(own.path) and own.use_camera_lens and chosen is not None
+    return shown and chosen.data == context.camera
+
+
 class CameraPanel(EnginePanel):
     """A panel of the camera in the editor.
 
@@ -74,8 +82,10 @@ class CameraPanel(EnginePanel):
 
     @classmethod
     def poll(cls, context):
-        """Whether the editor shows a camera."""
-        return super().poll(context) and context.camera is not None
+        """Whether the editor shows a camera, of Aplanat or of the scene's refocused picture."""
+        if context.camera is None:
+            return False
+        return super().poll(context) or is_refocused(context)
 
     def owner(self, context):
         """Return the settings of the camera."""

@@ -12,6 +12,7 @@ from .capture_properties import AplanatCaptureSettings
 from .chromatic_properties import AplanatChromaticSettings
 from .declared import properties
 from .overrides import OVERRIDABLE, SHARED
+from .refocus_properties import AplanatRefocusSettings
 
 
 class AplanatSceneSettings(bpy.types.PropertyGroup):
@@ -22,6 +23,11 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
             name="Depth Layers",
             description="How depth layers of the scene are captured",
             type=AplanatCaptureSettings,
+        ),
+        "refocus": PointerProperty(
+            name="Refocus",
+            description="How a captured picture is seen through the lens again",
+            type=AplanatRefocusSettings,
         ),
         "settings_version": IntProperty(
             name="Version of the Settings",
@@ -63,6 +69,7 @@ class AplanatWorldSettings(bpy.types.PropertyGroup):
 
 CLASSES = (
     AplanatCaptureSettings,
+    AplanatRefocusSettings,
     AplanatSceneSettings,
     AplanatViewLayerSettings,
     AplanatMaterialSettings,

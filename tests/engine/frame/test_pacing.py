@@ -1,6 +1,6 @@
 """How many samples a stretch of work takes."""
 
-from addon.engine.pacing import Pacer
+from addon.engine.frame.pacing import Pacer
 
 
 def test_slow_samples_are_drawn_one_at_a_time():

@@ -1,0 +1,130 @@
+"""A captured picture that follows its settings: refined piece by piece, begun anew by a change.
+
+Pieces are small, so that whoever draws them between other work never waits long; the picture is
+shown after the first set of lens samples, and then from time to time until it has them all.
+"""
+
+import time
+
+from ...device import context as device_context
+from ...device import state
+from ..frame.pacing import Pacer
+from .refocusing import Refocusing
+
+# Lens samples of the first picture that is worth a look.
+FIRST_SAMPLES = 16
+# Seconds of a piece, and between two pictures that are shown. A single sample may take longer.
+PIECE_SECONDS = 0.04
+SHOWN_SECONDS = 0.15
+
+
+class LivePicture:
+    """A stack of layers on the device, and the picture of it that is being refined.
+
+    Nothing is on the device before the first piece, or after `release`.
+
+    Parameters
+    ----------
+    stack : LayerStack
+    look_textures : TextureCache, optional
+        Of the session.
+
+    Attributes
+    ----------
+    settings : RefocusSettings or None
+        That the picture is made with.
+    """
+
+    def __init__(self, stack, look_textures=None):
+        self.stack = stack
+        self.settings = None
+        self._look_textures = look_textures
+        self._refocusing = None
+        self._pacer = Pacer(PIECE_SECONDS)
+        self._shown, self._shown_at, self._finished = 0, 0.0, False
+
+    @property
+    def samples_done(self):
+        """Lens samples of the picture so far."""
+        return self._refocusing.samples_done if self._refocusing else 0
+
+    @property
+    def finished(self):
+        """Whether the picture has all its samples, and was handed out."""
+        return self._finished
+
+    @property
+    def report(self):
+        """Warnings about settings that cannot be met, as a tuple of str."""
+        return tuple(self._refocusing.report) if self._refocusing else ()
+
+    def change(self, settings):
+        """Begin the picture anew with the next piece, if its settings are others.
+
+        Parameters
+        ----------
+        settings : RefocusSettings
+        """
+        if settings != self.settings:
+            self.settings = settings
+            self.show_again()
+
+    def show_again(self):
+        """Hand out the picture again: who had it last has lost it."""
+        self._shown, self._finished = 0, False
+
+    def refine(self):
+        """Draw a piece.
+
+        Returns
+        -------
+        ndarray of shape (height, width, 4) or None
+            Scene linear, premultiplied, bottom row first; None if there is nothing new that is
+            worth a look.
+
+        Raises
+        ------
+        AplanatError
+            If the settings cannot form a picture, or the device has no room for it.
+        """
+        if self._finished:
+            return None
+        device_context.ensure_context()
+        with state.preserved():
+            if self._refocusing is None:
+                self._refocusing = Refocusing(self.stack, self.settings, self._look_textures)
+            refocusing = self._refocusing
+            refocusing.change(self.settings)
+            if not refocusing.finished:
+                # The first picture is no later than it must, and a change waits for a piece only.
+                self._pacer.samples = min(self._pacer.samples, FIRST_SAMPLES)
+                self._advance(refocusing)
+            self._finished = refocusing.finished
+            if not (self._finished or self._is_worth_a_look(refocusing.samples_done)):
+                return None
+            picture = refocusing.read()
+        self._shown, self._shown_at = refocusing.samples_done, time.perf_counter()
+        return picture
+
+    def _advance(self, refocusing):
+        start, before = time.perf_counter(), refocusing.samples_done
+        refocusing.advance(self._pacer.samples)
+        self._pacer.measured(refocusing.samples_done - before, time.perf_counter() - start)
+
+    def _is_worth_a_look(self, samples):
+        if samples < FIRST_SAMPLES:
+            return False
+        return self._shown == 0 or time.perf_counter() - self._shown_at >= SHOWN_SECONDS
+
+    def read(self):
+        """Return the picture as it is so far, as `refine`; there must have been one."""
+        device_context.ensure_context()
+        with state.preserved():
+            return self._refocusing.read()
+
+    def release(self):
+        """Give back what the device holds; the next piece begins anew."""
+        self.show_again()
+        if self._refocusing:
+            self._refocusing.release()
+            self._refocusing = None
