@@ -43,6 +43,8 @@ def surface_targets():
             made = surface_target.without_highlights(target) if splits else target
             made = surface_target.in_wavelengths(made) if disperses else made
             yield f"color {splits=} {disperses=}", made
+    for target in (surface_target.COLOR, surface_target.COLOR_AND_MATTES):
+        yield "layer", surface_target.of_layers(target)
     for number in range(3):
         for names in combinations(("Vector", "Detail"), number):
             yield f"data {names}", data.target(names)

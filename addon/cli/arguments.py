@@ -12,7 +12,7 @@ from ..files.version import version
 from .capture.capture_arguments import add_capture, check_capture
 from .lens.lens_arguments import add_lens, check_lens
 from .refocus.refocus_arguments import add_refocus, check_refocus
-from .render.sampling_arguments import add_sampling, bounds, check_sampling
+from .render.sampling_arguments import add_sampling, check_sampling
 from .words.frame_values import (
     FRAMES_HELP,
     MAX_FRAME,
@@ -150,12 +150,6 @@ def _add_render(commands):
     add("--camera", metavar="NAME", help="camera object to render from")
     add("--resolution", metavar="WxH", type=RESOLUTION, help="in pixels, at 100 %%")
     add("--method", choices=("reference", "adaptive", "layered"), help="default: the scene's")
-    add(
-        "--layers",
-        metavar="K",
-        type=whole_number(*bounds("layers")),
-        help="layered method: depth layers; default: the scene's",
-    )
     add_sampling(parser)
     add("--no-bokeh", action="store_true", help="without separate highlights")
     add("--no-chromatic", action="store_true", help="without chromatic aberration")

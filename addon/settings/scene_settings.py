@@ -77,6 +77,16 @@ ADVANCED = Section("Sampling of both", "Render Properties > Sampling > Advanced"
     Setting("layers", 8, "Layers", "Depth layers of the layered method. More keep more of what"
             " hides behind one another, and take more time and memory", limits=(1, 64),
             soft=(4, 16), field="layers", told="layers"),
+    Setting("layer_source", "SLICES", "Layers From", "What a layer of the layered method is",
+            field="layer_source", told="layer_source", items=(
+        Item(0, "SLICES", "Slices", "What lies between two depths: layers in equal steps of blur"),
+        Item(1, "PEELING", "Depth Peeling", "What lies behind the layer before: nothing that is"
+             " among the first surfaces is lost, however near one another they are"),
+    )),
+    Setting("use_view_dependence", False, "View-Dependent Shading", "Draw the colours of each layer"
+            " as they are seen from five places on the lens, so that reflections move as they do in"
+            " a real picture; takes five times the time and memory for the layers",
+            field="layers_from_eyes", told="view_dependent_layers"),
     Setting("seed", 0, "Seed", "Chooses another pattern of samples; the same seed gives the same"
             " picture", limits=(0, None), field="seed", told="seed"),
     Setting("pixel_filter", "BLACKMAN_HARRIS", "Pixel Filter", "How samples are gathered into a"

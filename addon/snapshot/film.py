@@ -61,6 +61,10 @@ class Sampling:
         The reference method, too, splats highlights as bokeh, instead of sampling them.
     layers : int
         Depth layers of the layered method.
+    layer_source : {'SLICES', 'PEELING'}
+        What a layer is: a slice of depth, or what lies behind the layer before in each texel.
+    layers_from_eyes : bool
+        The layers' colours depend on the place on the lens that they are seen from.
     cones : bool
         Its rays are as thick as their distance from one another asks for.
     """
@@ -80,4 +84,6 @@ class Sampling:
     progressive: bool = False
     reference_bokeh: bool = False
     layers: int = 8
+    layer_source: str = "SLICES"
+    layers_from_eyes: bool = False
     cones: bool = True

@@ -6,4 +6,6 @@ struct LayeredParams {
                         // layer on the left of and below the sample's raster
   vec4 sampling;        // x: layers; y: levels of their pyramids; z: 1 if colours are filtered between
                         // texels; w: side of the part of the lens that a ray stands for, m; 0: a thin ray
+  vec4 eyes;            // xy: one over the distance on the lens of the places that colours are seen from
+                        // beside its middle, 1/m; z: 1 if layers lie in no order; w: unused
 };

@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 from tests.pictures import energy_ratio, save_side_by_side, ssim
-from tests.render.test_adaptive import TRUTH, combined, passes, render, scene, surface_of
+from tests.render.test_adaptive import (
+    FOCUS,
+    TRUTH,
+    blob,
+    combined,
+    passes,
+    render,
+    scene,
+    surface_of,
+)
 
 __all__ = ["scene"]
 
@@ -124,3 +133,51 @@ def test_highlights_are_splatted_over_it(scene):
     pictures = [combined(render(scene, method, 64)) for method in ("LAYERED", "ADAPTIVE")]
     assert energy_ratio(*pictures) == pytest.approx(1.0, abs=0.01)
     assert ssim(*pictures) > 0.98
+
+
+def test_peeled_layers_are_the_reference(scene, tmp_path):
+    scene.aplanat.layer_source = "PEELING"
+    scene.aplanat.layers = 4
+    check(scene, tmp_path, 0.97)
+
+
+def test_peeling_keeps_what_one_slice_holds_twice(scene, aplanat_bpy, monkeypatch):
+    # The far ball, seen by parts of the lens past a wall that is in the same slice.
+    blob(aplanat_bpy, "Wall", (0.4, FOCUS + 1.2, 0.0), 1.0, ((0.9, 0.1, 0.6), (0.1, 0.0, 0.2)))
+    # Front and back of two balls.
+    scene.aplanat.layers = 4
+    reference = combined(render(scene, "REFERENCE", TRUTH))
+    slices = combined(render(scene, "LAYERED", 32))
+    scene.aplanat.layer_source = "PEELING"
+    culled = combined(render(scene, "LAYERED", 32))
+    rim = np.s_[8:50, 108:124]
+    lost = [np.abs((seen - reference)[rim].mean(axis=(0, 1))) for seen in (culled, slices)]
+    assert lost[0].max() < 0.5 * lost[1].max()
+    changed_plan(monkeypatch, culls=False)
+    assert combined(render(scene, "LAYERED", 32)).tobytes() == culled.tobytes()
+
+
+def test_reflections_depend_on_the_place_on_the_lens(scene, aplanat_bpy, tmp_path):
+    # Lamps mirrored in polished balls: each place on the lens sees their reflections elsewhere.
+    bpy = aplanat_bpy
+    for thing in scene.objects:
+        if thing.type == "MESH":
+            thing.data.shade_smooth()
+            tree = surface_of(thing)
+            polished = tree.node("BsdfPrincipled", {"Roughness": 0.3, "Metallic": 1.0})
+            tree.tree.links.new(polished.outputs[0], tree.output.inputs[0])
+    for place in ((-2.0, 0.0, 1.0), (3.0, 2.0, -1.0)):
+        lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+        lamp.data.energy = 200.0
+        lamp.location = place
+        scene.collection.objects.link(lamp)
+    scene.camera.data.aplanat.bokeh.use = False
+    reference = combined(render(scene, "REFERENCE", TRUTH))
+    fixed = combined(render(scene, "LAYERED", 64))
+    scene.aplanat.use_view_dependence = True
+    moving = combined(render(scene, "LAYERED", 64))
+    save_side_by_side(tmp_path / "layered_reference_difference.png", moving, reference)
+    # The near ball is left out: there noise is more than the difference.
+    right = np.s_[:, 50:]
+    fixed, moving = (np.abs(found - reference)[right].mean() for found in (fixed, moving))
+    assert moving < 0.5 * fixed, tmp_path

@@ -22,12 +22,14 @@ _OF_SETTING = {
     "min_triangles": "least_triangles",
     "seed": "seed",
     "layers": "layers",
+    "view_dependent": "use_view_dependence",
 }
 # Options of the adaptive method only, by their names in the namespace.
 _ADAPTIVE = (
     *("subsamples", "target_error", "min_samples", "max_samples", "level_bias", "no_levels"),
     *("min_triangles", "sharing_cells"),
 )
+_LAYERED = ("layers", "layer_source", "view_dependent")
 # Options that need a noise threshold, and options that need a fixed number of samples.
 _AUTOMATIC = ("target_error", "min_samples", "max_samples")
 _FIXED = ("samples", "subsamples")
@@ -91,6 +93,23 @@ def add_sampling(parser):
         type=whole_number(*bounds("min_triangles")),
         help="adaptive method: no level of detail has fewer",
     )
+    add(
+        "--layers",
+        metavar="K",
+        type=whole_number(*bounds("layers")),
+        help="layered method: depth layers; default: the scene's",
+    )
+    add(
+        "--layer-source",
+        choices=("slices", "peeling"),
+        help="layered method: a layer is a slice of depth, or what lies behind the layer before",
+    )
+    add(
+        "--view-dependent",
+        action="store_const",
+        const=True,
+        help="layered method: reflections depend on the place on the lens that they are seen from",
+    )
     add("--seed", metavar="N", type=whole_number(0, MAX_SEED), help="pattern of samples")
     add("--filter", choices=("box", "blackman-harris"), help="pixel filter")
     add(
@@ -124,8 +143,9 @@ def check_sampling(arguments):
                 f"{name} belongs to --method adaptive; the layered method casts --samples rays a"
                 " pixel through --layers drawings in full detail"
             )
-    if arguments.layers is not None and arguments.method not in (None, "layered"):
-        raise InputError(f"--layers belongs to --method layered, not to {arguments.method}")
+    if arguments.method not in (None, "layered"):
+        for name in _given(arguments, _LAYERED):
+            raise InputError(f"{name} belongs to --method layered, not to {arguments.method}")
     automatic, fixed = _given(arguments, _AUTOMATIC), _given(arguments, _FIXED)
     if automatic and fixed:
         raise InputError(
@@ -175,6 +195,8 @@ def apply_sampling(settings, render, arguments):
     if arguments.sharing_cells is not None:
         settings.use_sharing = arguments.sharing_cells > 0
         settings.sharing_cells = max(arguments.sharing_cells, 1)
+    if arguments.layer_source:
+        settings.layer_source = arguments.layer_source.upper()
     if arguments.filter:
         settings.pixel_filter = arguments.filter.upper().replace("-", "_")
     if arguments.filter_size:

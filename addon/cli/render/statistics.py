@@ -115,7 +115,7 @@ def _sampling(scene):
     if sampling.method != "ADAPTIVE":
         numbers["subsamples"] = 0
     if sampling.method != "LAYERED":
-        numbers["layers"] = None
+        numbers |= dict.fromkeys(("layers", "layer_source", "view_dependent_layers"))
     return numbers
 
 

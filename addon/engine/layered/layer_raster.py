@@ -48,7 +48,8 @@ def layer_raster(plan, nearest, farthest):
     most = int(plan.layered.overscan * max(plan.width, plan.height))
     margin = tuple(int(min(np.ceil(side), most)) for side in reach)
     width, height = plan.width + 2 * margin[0], plan.height + 2 * margin[1]
-    affordable = int(np.sqrt(_MOST_TEXELS / (width * height * plan.layered.count)))
+    slices = plan.layered.count * len(plan.layered.eyes)
+    affordable = int(np.sqrt(_MOST_TEXELS / (width * height * slices)))
     fine = int(np.clip(affordable, 1, _FINEST))
     return LayerRaster(width * fine, height * fine, fine, margin)
 

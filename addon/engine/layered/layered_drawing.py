@@ -16,7 +16,7 @@ from ...device.targets import TargetSpec
 from ...device.textures import texture_2d
 from ...device.uniforms import uniform_buffer
 from ...passes.layered import cast, layers
-from ...passes.surface import surface
+from ...passes.surface import surface, surface_target
 from .scene_layers import draw_scene_layers
 
 
@@ -49,7 +49,6 @@ class LayeredDrawing:
         self._surroundings = surroundings
         self._made = None
         draws = drawing.full_detail_draws(target)
-        self._solid = [draw for draw in draws if not draw.transparent]
         self._by_chance = [draw for draw in draws if draw.transparent]
         self._places = texture_2d(_padded(plan.layered.places))
         self._nothing = texture_2d(np.array([[surroundings]], np.float32))
@@ -73,18 +72,21 @@ class LayeredDrawing:
             made = self._buffers.captured.on_device(plan)
         else:
             resources = {"highlights": self._highlights, "wavelength": self._wavelengths(None)}
+            target = surface_target.of_layers(self._target)
+            solid = self._drawing.full_detail_draws(target)
             made = draw_scene_layers(
                 plan,
                 self._drawing,
-                self._solid,
+                [draw for draw in solid if not draw.transparent],
                 self._buffers.instances,
                 "MATTES" in self._target.defines,
                 resources,
             )
         self._made, raster = made, made.raster
         size = (raster.width, raster.height)
+        eyes = plan.layered.eyes
         if plan.layered.stack is None:
-            layers.build_pyramids(made.textures, *size, len(made.bounds), made.filtered)
+            layers.build_pyramids(made.textures, *size, len(made.bounds), made.filtered, len(eyes))
         bounds = np.zeros((len(made.bounds), 4))
         bounds[:, :2] = made.bounds
         self._params = uniform_buffer(
@@ -97,6 +99,11 @@ class LayeredDrawing:
                     layers.level_count(*size),
                     float(made.filtered),
                     plan.layered.cell,
+                ),
+                eyes=(
+                    *(1.0 / np.abs(eyes).max(axis=0) if len(eyes) > 1 else (0.0, 0.0)),
+                    float(plan.layered.peeled and not made.filtered),
+                    0.0,
                 ),
             )
         )
@@ -160,6 +167,7 @@ class LayeredDrawing:
             empty_focus=(sharp / max(abs(plan.empty_coc), sharp)) ** 2,
             gain=self._gain,
             wavelength=self._wavelengths(index),
+            eyes=len(plan.layered.eyes) > 1,
             culls=plan.layered.culls,
             counts=counts,
         )

@@ -1,4 +1,4 @@
-"""Depth layers of a scene: drawn from the middle of the lens, a slice of the scene each.
+"""Depth layers of a scene: drawn from the middle of the lens, a slice or a peel of the scene each.
 
 What chance makes transparent is left out: it is drawn anew for every lens sample.
 """
@@ -33,7 +33,7 @@ def draw_scene_layers(plan, drawing, draws, instances, mattes, resources):
     drawing : SceneDrawing
         Aimed at the frame.
     draws : list of Draw
-        Of what is drawn.
+        Of what is drawn, for `passes.surface.surface_target.of_layers`.
     instances : GPUTexture
     mattes : bool
         The draws have a second target, of mattes.
@@ -53,15 +53,18 @@ def draw_scene_layers(plan, drawing, draws, instances, mattes, resources):
     nearest = max(near, nearest * (1.0 - _ROUNDING))
     farthest = min(far, farthest * (1.0 + _ROUNDING))
     count = plan.layered.count
-    cuts = layer_cuts(count, nearest, farthest, plan.orthographic)
-    planes = [_planes(cuts, number, plan.orthographic) for number in range(count)]
+    if plan.layered.peeled:
+        planes = [(nearest, farthest)] * count
+    else:
+        cuts = layer_cuts(count, nearest, farthest, plan.orthographic)
+        planes = [_planes(cuts, number, plan.orthographic) for number in range(count)]
     raster = layer_raster(plan, nearest, farthest)
-    textures = Targets(
-        raster.width, raster.height, layers.specs(raster.width, raster.height, count, mattes)
-    )
-    _draw_slices(plan, raster, planes, draws, instances, textures, resources)
-    drawing.counts.draw_calls += count * len(draws)
-    drawing.counts.triangles += count * sum(d.triangles * d.count for d in draws)
+    eyes = len(plan.layered.eyes)
+    sides = (raster.width, raster.height)
+    textures = Targets(*sides, layers.specs(*sides, count, mattes, eyes))
+    _draw_layers(plan, raster, planes, draws, instances, textures, resources)
+    drawing.counts.draw_calls += count * eyes * len(draws)
+    drawing.counts.triangles += count * eyes * sum(d.triangles * d.count for d in draws)
     bounds = np.array([[window_depth(plan, depth) for depth in pair] for pair in planes])
     return DeviceLayers(textures, raster, bounds, filtered=False)
 
@@ -79,7 +82,7 @@ def _planes(cuts, number, orthographic):
     return float(near), float(far)
 
 
-def _draw_slices(plan, raster, planes, draws, instances, textures, resources):
+def _draw_layers(plan, raster, planes, draws, instances, textures, resources):
     sides = (raster.width, raster.height)
     grown = [
         size * raster.fine / side
@@ -87,7 +90,10 @@ def _draw_slices(plan, raster, planes, draws, instances, textures, resources):
     ]
     projection = np.diag([*grown, 1.0, 1.0]) @ plan.projection
     mattes = "mattes" in textures
-    specs = [TargetSpec("color", "RGBA32F"), TargetSpec("depth", "DEPTH_COMPONENT32F")]
+    # Peeled layers take turns with the depths: what is drawn lies behind the one before.
+    depths = ("depth", "front")
+    specs = [TargetSpec("color", "RGBA32F")]
+    specs += [TargetSpec(name, "DEPTH_COMPONENT32F") for name in depths]
     if mattes:
         specs.append(TargetSpec("mattes", "RGBA32F"))
     slots = ("color", "mattes")[: 1 + mattes]
@@ -96,7 +102,10 @@ def _draw_slices(plan, raster, planes, draws, instances, textures, resources):
     ]
     lens = (plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius)
     with Targets(*sides, specs) as drawn:
+        with drawn.framebuffer(depth="front").bind():
+            drawn.framebuffer(depth="front").clear(depth=0.0)
         for number, pair in enumerate(planes):
+            depth, front = depths
             clipped = clipped_projection(projection, *pair)
             view = uniform_buffer(
                 surface.VIEW_PARAMS.pack(
@@ -107,11 +116,19 @@ def _draw_slices(plan, raster, planes, draws, instances, textures, resources):
                     film=(*sides, *origin),
                 )
             )
-            for name in slots:
-                drawn.clear(name, (0.0, 0.0, 0.0, 0.0))
-            framebuffer = drawn.framebuffer(*slots, depth="depth")
-            with framebuffer.bind():
-                framebuffer.clear(depth=1.0)
-                state.opaque()
-                surface.draw_sample(draws, view, instances, (0.0,) * 4, 0, **resources)
-            layers.pack(drawn, number, textures, clipped, plan.projection)
+            for turn, eye in enumerate(plan.layered.eyes):
+                for name in slots:
+                    drawn.clear(name, (0.0, 0.0, 0.0, 0.0))
+                framebuffer = drawn.framebuffer(*slots, depth=depth)
+                bindings = (("front_tx", drawn[front]), ("eye", tuple(eye.tolist())))
+                with framebuffer.bind():
+                    framebuffer.clear(depth=1.0)
+                    state.opaque()
+                    surface.draw_sample(
+                        draws, view, instances, (0.0,) * 4, 0, bindings, **resources
+                    )
+                color_layer = turn * len(planes) + number
+                seen = {name: drawn[name] for name in slots} | {"depth": drawn[depth]}
+                layers.pack(seen, number, textures, clipped, plan.projection, color_layer)
+            if plan.layered.peeled:
+                depths = (front, depth)

@@ -1,6 +1,6 @@
 """The part of a frame plan that concerns depth layers (methods 7)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -28,7 +28,12 @@ class LayeredPlan:
     culls : bool
         Layers that a ray cannot meet are skipped.
     stack : LayerStack or None
-        The layers, of a captured picture; None: slices of the scene.
+        The layers, of a captured picture; None: those of the scene.
+    peeled : bool
+        Layers of the scene are what lies behind one another in each texel; else slices of depth.
+    eyes : ndarray of shape (E, 2)
+        Places on the lens that the layers' colours are seen from, m: its middle, or that and four
+        places round it, right, left, up and down.
     """
 
     count: int
@@ -37,6 +42,8 @@ class LayeredPlan:
     overscan: float = 0.25
     culls: bool = True
     stack: LayerStack | None = None
+    peeled: bool = False
+    eyes: np.ndarray = field(default_factory=lambda: np.zeros((1, 2)))
 
 
 def plan_layered(sampling, source, stack=None):
@@ -62,4 +69,15 @@ def plan_layered(sampling, source, stack=None):
         different = len(np.unique(places[0], axis=0))
         extent = source.lens.aperture_radius**2 / source.lens.iris.ratio
         cell = float(np.sqrt(np.pi * extent / different))
-    return LayeredPlan(sampling.layers, places, cell, stack=stack)
+    eyes = np.zeros((1, 2))
+    extent = np.abs(places).max(axis=(0, 1))
+    if sampling.layers_from_eyes and stack is None and extent.min() > 0.0:
+        eyes = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)]) * extent
+    return LayeredPlan(
+        sampling.layers,
+        places,
+        cell,
+        stack=stack,
+        peeled=sampling.layer_source == "PEELING",
+        eyes=eyes,
+    )

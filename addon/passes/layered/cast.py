@@ -18,12 +18,13 @@ _SAMPLERS = (
 
 
 @variants(
-    allowed=lambda mattes, colored, counted: not (counted and mattes),
+    allowed=lambda mattes, colored, eyes, counted: not (counted and mattes),
     mattes=(False, True),
     colored=(False, True),
+    eyes=(False, True),
     counted=(False, True),
 )
-def _info(mattes=False, colored=False, counted=False):
+def _info(mattes=False, colored=False, eyes=False, counted=False):
     info = ShaderInfo(
         name="aplanat_layered",
         vertex=shader_source.load("passes/fullscreen_vert.glsl"),
@@ -40,7 +41,11 @@ def _info(mattes=False, colored=False, counted=False):
             ("INT", "culls"),
             *[("FLOAT", "empty_focus")] * mattes,
         ),
-        defines=(("MATTES", "1"),) * mattes + (("COUNTED", "1"),) * counted,
+        defines=(
+            *(("MATTES", "1"),) * mattes,
+            *(("EYES", "1"),) * eyes,
+            *(("COUNTED", "1"),) * counted,
+        ),
         writes_depth=True,
     )
     return chromatic.declared(info, (("VEC4", "gain"),)) if colored else info
@@ -59,6 +64,7 @@ def cast(
     empty_focus,
     gain=None,
     wavelength=None,
+    eyes=False,
     culls=True,
     counts=False,
 ):
@@ -85,6 +91,8 @@ def cast(
     gain : sequence of 4 float, optional
         With chromatic aberration: of the sweep, by the inverse of the focus distance.
     wavelength : chromatic.ChromaticSample, optional
+    eyes : bool
+        Layers have colours from five places on the lens, whose first is the middle.
     culls : bool
         Layers that a ray cannot meet are skipped; the picture is the same without.
     counts : bool
@@ -92,7 +100,7 @@ def cast(
     """
     state.always()
     mattes = "mattes" in layers and not counts
-    shader = compile_shader(_info(mattes, wavelength is not None, counts))
+    shader = compile_shader(_info(mattes, wavelength is not None, eyes, counts))
     shader.bind()
     for name in ("colors", "depths", "means", "ranges"):
         shader.uniform_sampler(f"{name}_tx", layers[name])

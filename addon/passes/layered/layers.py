@@ -36,7 +36,12 @@ def _pack_info(mattes=False):
         compute=shader_source.load("passes/layered/layer_pack_comp.glsl"),
         samplers=tuple(samplers),
         images=tuple(images),
-        push_constants=(("INT", "layer"), ("VEC4", "slice"), ("VEC4", "whole")),
+        push_constants=(
+            ("INT", "layer"),
+            ("INT", "color_layer"),
+            ("VEC4", "slice"),
+            ("VEC4", "whole"),
+        ),
         defines=(("MATTES", "1"),) * mattes,
         local_size=(_GROUP, _GROUP, 1),
     )
@@ -50,7 +55,7 @@ _PYRAMID = ShaderInfo(
         (*_COLORS, "means_img", ("READ", "WRITE")),
         (*_RANGES, "ranges_img", ("READ", "WRITE")),
     ),
-    push_constants=(("INT", "level"), ("INT", "alpha_covers")),
+    push_constants=(("INT", "level"), ("INT", "alpha_covers"), ("INT", "eyes")),
     local_size=(_GROUP, _GROUP, 1),
 )
 
@@ -78,8 +83,16 @@ def atlas_size(width, height):
     )
 
 
-def specs(width, height, layers, mattes=False):
+def specs(width, height, layers, mattes=False, eyes=1):
     """Return the targets that layers of a size need.
+
+    Parameters
+    ----------
+    width, height, layers : int
+    mattes : bool
+    eyes : int
+        Places on the lens that each layer's colours are seen from. Those from the first one come
+        first, a slice a layer.
 
     Returns
     -------
@@ -88,9 +101,9 @@ def specs(width, height, layers, mattes=False):
     """
     atlas = atlas_size(width, height)
     found = [
-        TargetSpec("colors", _COLORS[0], layers),
+        TargetSpec("colors", _COLORS[0], layers * eyes),
         TargetSpec("depths", _DEPTHS[0], layers),
-        TargetSpec("means", _COLORS[0], layers, size=atlas),
+        TargetSpec("means", _COLORS[0], layers * eyes, size=atlas),
         TargetSpec("ranges", _RANGES[0], layers, size=atlas),
     ]
     if mattes:
@@ -108,7 +121,7 @@ def depth_rows(projection):
     return tuple(np.asarray(projection)[2:, 2:].ravel().tolist())
 
 
-def pack(drawn, layer, textures, slice_projection, projection):
+def pack(drawn, layer, textures, slice_projection, projection, color_layer=None):
     """Put a drawn slice into a layer.
 
     Parameters
@@ -120,6 +133,8 @@ def pack(drawn, layer, textures, slice_projection, projection):
         Of `specs`.
     slice_projection, projection : ndarray of shape (4, 4)
         Of the slice's depth buffer, and of the frame's.
+    color_layer : int, optional
+        Slice of ``colors`` that the colour goes to; default: `layer`.
     """
     mattes = "mattes" in textures
     shader = compile_shader(_pack_info(mattes))
@@ -132,12 +147,13 @@ def pack(drawn, layer, textures, slice_projection, projection):
         shader.image("mattes_img", textures["mattes"])
         shader.uniform_sampler("mattes_tx", drawn["mattes"])
     shader.uniform_int("layer", layer)
+    shader.uniform_int("color_layer", layer if color_layer is None else color_layer)
     shader.uniform_float("slice", depth_rows(slice_projection))
     shader.uniform_float("whole", depth_rows(projection))
     dispatch(shader, -(-drawn["depth"].width // _GROUP), -(-drawn["depth"].height // _GROUP))
 
 
-def build_pyramids(textures, width, height, layers, alpha_covers):
+def build_pyramids(textures, width, height, layers, alpha_covers, eyes=1):
     """Fill the pyramids of all layers.
 
     Parameters
@@ -147,6 +163,8 @@ def build_pyramids(textures, width, height, layers, alpha_covers):
     width, height, layers : int
     alpha_covers : bool
         A texel is covered as much as its colour's alpha says, else wholly where it has a surface.
+    eyes : int
+        See `specs`.
     """
     shader = compile_shader(_PYRAMID)
     shader.bind()
@@ -155,6 +173,7 @@ def build_pyramids(textures, width, height, layers, alpha_covers):
     shader.image("means_img", textures["means"])
     shader.image("ranges_img", textures["ranges"])
     shader.uniform_int("alpha_covers", int(alpha_covers))
+    shader.uniform_int("eyes", eyes)
     for level in range(1, level_count(width, height) + 1):
         shader.uniform_int("level", level)
         across, up = (-(-side // 2**level) for side in (width, height))

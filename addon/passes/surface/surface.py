@@ -298,8 +298,8 @@ def draw_sample(
     lens_sample : sequence of 4 float
         Place on the lens in m, jitter in clip units.
     sample_index : int
-    bindings : iterable of (str, GPUUniformBuf, GPUTexture or int)
-        Of the target's own uniform blocks, samplers, images and whole numbers.
+    bindings : iterable of (str, GPUUniformBuf, GPUTexture, int or tuple of float)
+        Of the target's own uniform blocks, samplers, images, whole numbers and vectors.
     highlights : GPUUniformBuf or None
         `HighlightParams`, for a target that splits light.
     wavelength : chromatic.ChromaticSample, optional

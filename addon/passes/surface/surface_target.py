@@ -85,6 +85,20 @@ def whole(target):
     return replace(target, splits=False, defines=defines)
 
 
+def of_layers(target):
+    """Return a target of what lies behind a depth, shaded as it is seen from elsewhere on the lens.
+
+    It reads ``front_tx``, depths that surfaces must lie behind, and ``eye``, a place on the lens in
+    m, or the focus distance's share of it as `lens_sample` has with a parallel projection.
+    """
+    return replace(
+        target,
+        defines=(*target.defines, "OF_LAYER"),
+        samplers=(*target.samplers, ("FLOAT_2D", "front_tx")),
+        push_constants=(*target.push_constants, ("VEC2", "eye")),
+    )
+
+
 def in_wavelengths(target):
     """Return a target whose surfaces are drawn at one wavelength a lens sample."""
     return replace(

@@ -1,7 +1,8 @@
 // Puts a drawn slice of the scene into a layer: colours as they are, depths in the depth buffer's
 // values of the whole frame.
-// Inputs: color_tx, depth_tx, MATTES: mattes_tx (the slice's); layer; slice, whole (rows of the
-// projections that make clip z and w of z in camera space: z's factor and offset, w's factor and offset).
+// Inputs: color_tx, depth_tx, MATTES: mattes_tx (the slice's); layer; color_layer (that of its colour);
+// slice, whole (rows of the projections that make clip z and w of z in camera space: z's factor and
+// offset, w's factor and offset).
 // Outputs: colors_img, depths_img, MATTES: mattes_img; a texel without a surface has depth 2.
 
 void main()
@@ -18,7 +19,7 @@ void main()
     depth = 0.5 * (whole.x * z + whole.y) / (whole.z * z + whole.w) + 0.5;
   }
   ivec3 place = ivec3(texel, layer);
-  imageStore(colors_img, place, clamp(texelFetch(color_tx, texel, 0), -65504.0, 65504.0));
+  imageStore(colors_img, ivec3(texel, color_layer), clamp(texelFetch(color_tx, texel, 0), -65504.0, 65504.0));
   imageStore(depths_img, place, vec4(depth, 0.0, 0.0, 0.0));
 #ifdef MATTES
   imageStore(mattes_img, place, texelFetch(mattes_tx, texel, 0));

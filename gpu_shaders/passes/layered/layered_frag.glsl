@@ -5,6 +5,7 @@
 // MATTES: mattes_tx; behind_tx (what surrounds the scene, of one texel where it is one colour);
 // places_tx (row: one of 16 sets of places on the lens, m; column: sample), sample_index; offset
 // (of the sample in its pixel, texels); layered_buf; sweep (texels of the sample's raster a metre).
+// EYES: colours as they are seen from the middle of the lens, and from four places round it.
 // CHROMATIC: as in surface_vert, and gain (of the sweep, by 1 / focus distance).
 // Outputs: the sample's colour, premultiplied; MATTES: what the first surface met has; the depth
 // buffer's value of the first surface that hides what is behind it.
@@ -21,8 +22,10 @@
 #define EMPTY 1.5
 // Least share of the light that is followed further.
 #define LEAST_THROUGH 0.002
-// Depth reads along a ray's way through a layer; then the bracket is narrowed by false position.
+// Depth reads along a ray's way through a layer; then the bracket is narrowed by false position. Layers
+// that are no slices reach over all depths.
 #define MOST_STEPS 24
+#define MOST_STEPS_UNORDERED 96
 #define FALSE_POSITIONS 3
 // How often the depths that a ray may meet are asked for again.
 #define APPROACHES 2
@@ -34,7 +37,12 @@
 // The ray: its place in a layer's raster is start - along * depth.
 vec2 ray_start, ray_along;
 ivec2 size;
-int reads = 0;
+int reads = 0, layers;
+bool unordered;
+#ifdef EYES
+// Where the sample is on the lens, as a share of the way to the places that colours are seen from.
+vec2 seen_from;
+#endif
 
 vec2 ray_place(float depth)
 {
@@ -101,7 +109,7 @@ Hit meet(vec2 between, int layer)
   vec2 from = ray_place(between.x), way = ray_place(between.y) - from;
   float extent = between.y - between.x;
   float texels = max(abs(way.x), abs(way.y));
-  int steps = clamp(int(ceil(texels)), 1, MOST_STEPS);
+  int steps = clamp(int(ceil(texels)), 1, unordered ? MOST_STEPS_UNORDERED : MOST_STEPS);
   // Texels that the ray passes while its depth changes by one.
   float pace = max(abs(ray_along.x), abs(ray_along.y));
   float stretch = max(SURFACE_STRETCH, texels / float(steps * (1 << FALSE_POSITIONS)));
@@ -162,12 +170,34 @@ vec4 mean_of(sampler2DArray atlas, vec2 place, int level, int layer)
   return mix(mix(a, b, part.x), mix(c, d, part.x), part.y);
 }
 
+// A colour as this sample sees it, of those in a layer from all eyes: along each axis of the lens the
+// parabola through the colours from three of them.
+#ifdef EYES
+#define ALONG(x, middle, right, left) \
+  ((x) * (0.5 * ((right) - (left)) + (x) * (0.5 * ((right) + (left)) - (middle))))
+#define SEEN(color_of, layer) \
+  parabolas(color_of(layer), \
+            color_of(layer + layers), \
+            color_of(layer + 2 * layers), \
+            color_of(layer + 3 * layers), \
+            color_of(layer + 4 * layers))
+
+vec4 parabolas(vec4 middle, vec4 right, vec4 left, vec4 up, vec4 down)
+{
+  vec4 color = middle + ALONG(seen_from.x, middle, right, left) + ALONG(seen_from.y, middle, up, down);
+  return max(color, vec4(0.0));
+}
+#else
+#define SEEN(color_of, layer) color_of(layer)
+#endif
+
 // A layer's colour round a place, and how much of the texel has a surface.
 vec4 color_at(vec2 place, int layer, out float covered)
 {
   if (layered_buf.sampling.z < 0.5) {
     covered = 1.0;
-    return texelFetch(colors_tx, ivec3(texel_at(place), layer), 0);
+#define TEXEL(slice) texelFetch(colors_tx, ivec3(texel_at(place), slice), 0)
+    return SEEN(TEXEL, layer);
   }
   vec2 at = place - 0.5;
   ivec2 low = clamp(ivec2(floor(at)), ivec2(0), size - 1), high = min(low + 1, size - 1);
@@ -197,10 +227,31 @@ vec4 cone_color(Hit hit, int layer, vec2 wide, out float covered)
     vec4 range = range_of(texel_at(hit.place) >> level, level, layer);
     if ((range.y - range.x) * abs(wide.y) <= MOVES_ALIKE) {
       float share = mean_of(ranges_tx, hit.place, level, layer).w;
-      return mean_of(means_tx, hit.place, level, layer) * (covered / max(share, 1e-6));
+#define MEAN(slice) mean_of(means_tx, hit.place, level, slice)
+      return SEEN(MEAN, layer) * (covered / max(share, 1e-6));
     }
   }
   return light;
+}
+
+// What the ray has met: light, what is left of it, the first depth that hides what is behind.
+vec4 color = vec4(0.0);
+float through = 1.0, first = 1.0;
+bool met = false;
+
+void add_surface(Hit hit, int layer, vec2 wide)
+{
+  float covered;
+  vec4 light = cone_color(hit, layer, wide, covered);
+  color += through * light;
+  through *= 1.0 - covered;
+  first = (covered > 0.5) ? min(first, hit.depth) : first;
+#ifdef MATTES
+  if (!met) {
+    out_mattes = texelFetch(mattes_tx, ivec3(texel_at(hit.place), layer), 0);
+  }
+#endif
+  met = true;
 }
 
 void main()
@@ -225,15 +276,21 @@ void main()
   ray_along = lens * moves.zw / scale * fine;
   // Texels that a ray's part of the lens moves a surface by: constant, and by the depth.
   vec2 wide = layered_buf.sampling.w * max(fine.x, fine.y) * vec2(moves.x, moves.z);
-  vec4 color = vec4(0.0);
-  float through = 1.0, first = 1.0;
 #ifdef MATTES
   out_mattes = vec4(0.0, 0.0, 0.0, empty_focus);
-  bool met = false;
 #endif
-  int looked = 0, layers = int(layered_buf.sampling.x);
+  int looked = 0, nearest_layer = -1;
+  layers = int(layered_buf.sampling.x);
+  unordered = layered_buf.eyes.z > 0.5;
+#ifdef EYES
+  seen_from = lens * layered_buf.eyes.xy;
+#endif
+  Hit nearest;
   for (int layer = 0; layer < layers && through > LEAST_THROUGH; layer++) {
     vec2 between = layered_buf.bounds[layer].xy;
+    if (nearest_layer >= 0) {
+      between.y = min(between.y, nearest.depth);
+    }
     bool possible = true;
     for (int i = 0; i < APPROACHES && possible; i++) {
       vec2 seen = depths_between(ray_place(between.x), ray_place(between.y), layer);
@@ -249,19 +306,20 @@ void main()
     }
     looked++;
     Hit hit = meet(between, layer);
-    if (hit.found) {
-      float covered;
-      vec4 light = cone_color(hit, layer, wide, covered);
-      color += through * light;
-      through *= 1.0 - covered;
-      first = (covered > 0.5) ? min(first, hit.depth) : first;
-#ifdef MATTES
-      if (!met) {
-        out_mattes = texelFetch(mattes_tx, ivec3(texel_at(hit.place), layer), 0);
-        met = true;
-      }
-#endif
+    if (!hit.found) {
+      continue;
     }
+    if (!unordered) {
+      add_surface(hit, layer, wide);
+    }
+    else if (nearest_layer < 0 || hit.depth < nearest.depth) {
+      // Whatever layer it is in, the nearest surface is seen.
+      nearest = hit;
+      nearest_layer = layer;
+    }
+  }
+  if (nearest_layer >= 0) {
+    add_surface(nearest, nearest_layer, wide);
   }
 #ifdef COUNTED
   out_color = vec4(float(layers), float(looked), float(reads), 1.0);

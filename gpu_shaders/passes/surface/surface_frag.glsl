@@ -3,7 +3,8 @@
 // opacity without its light (GLOW_APART), then its light on top (GLOW), wherever nothing is in front.
 // Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads. HIGHLIGHTS:
 // highlight_buf; the light that is splatted as bokeh is left out; with CHROMATIC also chromatic_buf and
-// field_tx, so that the splatted share is the same at all wavelengths.
+// field_tx, so that the splatted share is the same at all wavelengths. OF_LAYER: front_tx (depths that
+// it must lie behind) and eye (place on the lens that it is shaded for, m).
 // Outputs: premultiplied scene-linear colour; with MATTES also Cryptomatte ids of object (x) and
 // material (y), and the focus matte (w).
 // Source: methods 1; stochastic transparency after Enderton et al., I3D 2010.
@@ -42,6 +43,11 @@ vec3 without_highlights(Closure closure)
 
 void main()
 {
+#ifdef OF_LAYER
+  if (gl_FragCoord.z <= texelFetch(front_tx, ivec2(gl_FragCoord.xy), 0).x) {
+    discard;
+  }
+#endif
 #ifdef HOLDOUT
   out_color = vec4(0.0);
 #ifdef MATTES

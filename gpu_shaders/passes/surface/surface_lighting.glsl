@@ -1,7 +1,7 @@
 // Lighting of closures: reflection of lights (without shadows) and of the world.
 // Included into shaders that draw surfaces. Without SHADES only the transmittance is computed, and no
 // light is read.
-// Inputs: world_position, world_normal where the mesh has normals; view_buf, lens_sample;
+// Inputs: world_position, world_normal where the mesh has normals; view_buf, lens_sample (OF_LAYER: eye);
 // lights_tx (light table); environment_buf, environment_tx (image), environment_levels_tx
 // (prefiltered), ggx_tx (albedo table).
 // Source: split-sum environment, Karis, SIGGRAPH 2013 course; closures as Cycles composes them.
@@ -47,8 +47,12 @@ Shading surface_shading()
 {
   Shading s;
   s.position = world_position;
-  vec3 view = (view_buf.lens.y > 0.5) ? vec3(lens_sample.xy / view_buf.lens.x, 1.0) :
-                                        vec3(lens_sample.xy, 0.0);
+#ifdef OF_LAYER
+  vec2 from = eye;
+#else
+  vec2 from = lens_sample.xy;
+#endif
+  vec3 view = (view_buf.lens.y > 0.5) ? vec3(from / view_buf.lens.x, 1.0) : vec3(from, 0.0);
   if (view_buf.lens.y > 0.5) {
     s.view = normalize(mat3(view_buf.view_inverse) * view);
   }
