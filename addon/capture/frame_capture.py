@@ -185,7 +185,10 @@ class FrameCapture:
         try:
             picture = read_render(self._path, self._shot.layer)
         except InputError as error:
-            raise UnfinishedFileError(f"frame {self._frame}, {text}: {error}") from error
+            raise UnfinishedFileError(
+                f"frame {self._frame}: {self._settings.engine} left no whole picture of {text}"
+                f" ({error}); is the disk full? TMPDIR names another place"
+            ) from error
         self.words |= picture.words
         passes = {name: pixels for name, pixels in picture.passes.items() if self._wanted(name)}
         return replace(picture, passes=passes)

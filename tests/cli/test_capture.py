@@ -1,12 +1,6 @@
 """`aplanat capture`: files of layers, a run that goes on, and what is refused."""
 
 import os
-import random
-import signal
-import subprocess
-import sys
-import time
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +9,6 @@ from addon.errors import InputError
 from addon.layers.layer_file import load_layers, load_words
 from tests.capture.conftest import build
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 FEW = ("--layers", "2", "--overscan", "0")
 
 
@@ -88,28 +81,6 @@ def test_what_is_there_stays_and_what_is_broken_or_other_is_made_anew(aplanat, s
     assert kept("--half") == [False, False]
     cut.write_bytes(b"something else")
     assert kept("--half") == [True, False]
-
-
-def test_a_killed_run_goes_on_where_it_stopped(shot, tmp_path):
-    environment = os.environ | {"PYTHONPATH": str(REPOSITORY), "PYTHONDONTWRITEBYTECODE": "1"}
-    words = [sys.executable, "-P", "-m", "addon.cli", "capture", str(shot), *FEW]
-    words += ["--frames", "1..4", "-o", str(tmp_path / "l_#.exr")]
-    rng = random.Random(4)
-    process = subprocess.Popen(words, env=environment, stderr=subprocess.DEVNULL)
-    while not (tmp_path / "l_1.exr").exists():
-        assert process.poll() is None
-        time.sleep(0.02)
-    time.sleep(rng.uniform(0.0, 0.5))
-    process.send_signal(signal.SIGKILL)
-    process.wait()
-    there = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
-    for name in there:
-        load_layers(tmp_path / name)
-    done = subprocess.run(words, env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    assert {p.name for p in tmp_path.iterdir()} == {f"l_{n}.exr" for n in range(1, 5)}
-    assert {name: (tmp_path / name).stat().st_mtime_ns for name in there} == there
-    assert [load_layers(tmp_path / f"l_{n}.exr").frame for n in range(1, 5)] == [1, 2, 3, 4]
 
 
 def test_refused(refused, shot, make_blend, tmp_path):

@@ -6,6 +6,7 @@ import pytest
 
 from addon.layers.layer_file import save_layers
 from tests.engine.test_refocus import stack
+from tests.layers.test_layer_file import rewritten
 
 __all__ = ["stack"]
 
@@ -82,3 +83,43 @@ def test_a_picture_with_a_depth_pass_is_one_layer(aplanat, tmp_path):
     with OpenEXR.File(str(tmp_path / "b.exr")) as found:
         assert np.allclose(found.channels()["RGBA"].pixels[..., :3], 0.5, atol=2e-3)
     assert aplanat(*words, "--strict").code == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (lambda number, _h, _c: number != 1, "lacks layer 1"),
+        (lambda _n, _h, channels: channels.pop("Z") is not None, "lacks channel 'Z'"),
+        (lambda _n, _h, channels: channels["Z"].fill(np.nan), "no numbers"),
+        (lambda number, header, _c: header.update(stack="{") if number == 0 else None, "damaged"),
+    ],
+    ids=["layer", "channel", "NaN", "header"],
+)
+def test_a_damaged_frame_is_one_line_with_its_number(aplanat, captured, tmp_path, change, told):
+    rewritten(tmp_path / "layers_0002.exr", change)
+    done = aplanat("refocus", captured, "-o", tmp_path / "out_####.exr", "--samples", "1")
+    assert done.code == 2, done
+    line = done.err.splitlines()[-1]
+    assert line.startswith("aplanat: ") and told in line and "layers_0002.exr" in line, done.err
+    # What was finished before stays, whole; nothing half-written is beside it.
+    assert [path.name for path in tmp_path.glob("out_*")] == ["out_0001.exr"]
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_foreign_depths_that_are_no_numbers(aplanat, tmp_path):
+    header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
+    pixels = np.full((24, 32, 4), 0.5, np.float32)
+    depth = np.full((24, 32), 4.0, np.float32)
+    depth[3:9, 5:11], depth[10:12] = np.nan, np.inf
+    OpenEXR.File(dict(header), {"RGBA": pixels, "Depth.Z": depth}).write(str(tmp_path / "a.exr"))
+    words = ("-o", tmp_path / "b.exr", "--samples", "4", "--fstop", "0.5")
+    done = aplanat("refocus", tmp_path / "a.exr", *words, "--json")
+    assert done.code == 0, done.err
+    assert any("36 pixels have a depth that is no number" in w for w in done.answer["warnings"])
+    with OpenEXR.File(str(tmp_path / "b.exr")) as found:
+        assert np.isfinite(found.channels()["RGBA"].pixels).all()
+    depth[:] = np.nan
+    OpenEXR.File(dict(header), {"RGBA": pixels, "Depth.Z": depth}).write(str(tmp_path / "c.exr"))
+    done = aplanat("refocus", tmp_path / "c.exr", "-o", tmp_path / "d.exr")
+    assert done.code == 2 and done.err.count("\n") == 1, done.err
+    assert "no depth that is a finite number" in done.err and not (tmp_path / "d.exr").exists()

@@ -17,6 +17,7 @@ from ...files.claims import Claims
 from ...files.frame_path import frame_path
 from ...files.held_files import HeldFiles, publish
 from ...files.whole_file import check_writable
+from ...files.whole_picture import is_whole_picture
 from . import pictures
 from .file_outputs import FileOutputs
 
@@ -269,15 +270,15 @@ class FrameFiles:
             pictures.set_png(self._scene, self._views_format)
             pictures.save_render_result(shown[0], self._scene)
         for held, real in pairs:
-            if held not in self._moved and (not held.is_file() or held.stat().st_size == 0):
-                raise UnfinishedFileError(
-                    f"cannot write '{real}': Blender wrote nothing into '{held.parent}'; is the"
-                    " disk full? TMPDIR names another place"
-                )
             self._keep(held, real)
 
     def _keep(self, held, real):
         if held not in self._moved:
+            if not is_whole_picture(held):
+                raise UnfinishedFileError(
+                    f"cannot write '{real}': Blender wrote no whole file into '{held.parent}'; is"
+                    " the disk full? TMPDIR names another place"
+                )
             kept = self._held.room("kept") / str(len(self._kept))
             shutil.move(held, kept)
             self._moved[held] = kept

@@ -5,11 +5,10 @@ they hold what Blender holds (its compositor, stereoscopic views, borders, greas
 as programs expect of Blender.
 """
 
-from pathlib import Path
-
 import bpy
 
 from ...errors import UnfinishedFileError
+from ...files.whole_picture import is_whole_picture
 
 RENDER_RESULT = "Render Result"
 
@@ -82,9 +81,9 @@ def save_render_result(path, scene):
         bpy.data.images[RENDER_RESULT].save_render(str(path), scene=scene)
     except RuntimeError as error:
         raise UnfinishedFileError(f"cannot write '{path}': {error}") from error
-    if not Path(path).is_file() or Path(path).stat().st_size == 0:
+    if not is_whole_picture(path):
         raise UnfinishedFileError(
-            f"cannot write '{path}': Blender wrote nothing; is the disk full?"
+            f"cannot write '{path}': Blender wrote no whole file; is the disk full?"
         )
 
 

@@ -1,7 +1,6 @@
 """Refocused pictures as files: EXR and PNG, whole or not at all."""
 
 from contextlib import contextmanager
-from pathlib import Path
 
 import bpy
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from ...errors import UnfinishedFileError
 from ...files.version import version
 from ...files.whole_file import whole_file
+from ...files.whole_picture import is_whole_picture
 
 
 def save_picture(path, picture, stack, scene):
@@ -87,8 +87,10 @@ def save_png(path, picture, scene):
                 image.save_render(str(place), scene=displayed)
             except RuntimeError as error:
                 raise UnfinishedFileError(f"cannot write '{path}': {error}".strip()) from error
-            if not Path(place).stat().st_size:
-                raise UnfinishedFileError(f"cannot write '{path}'; is the disk full?")
+            if not is_whole_picture(place):
+                raise UnfinishedFileError(
+                    f"cannot write '{path}' to its end; is the disk full? Nothing of it is left"
+                )
     finally:
         bpy.data.images.remove(image)
 
