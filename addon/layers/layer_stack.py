@@ -5,6 +5,7 @@ premultiplied by the coverage, which is their alpha. Depths are distances along 
 """
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -107,3 +108,12 @@ class LayerStack:
     color_space: str = "Linear Rec.709"
     engine: str = ""
     report: tuple[str, ...] = ()
+
+    @cached_property
+    def depth_range(self):
+        """Least and largest finite depth, m; 2 and 1 where there is none."""
+        depths = [layer.depth[np.isfinite(layer.depth)] for layer in self.layers]
+        held = [found for found in depths if found.size]
+        if not held:
+            return 2.0, 1.0
+        return float(min(d.min() for d in held)), float(max(d.max() for d in held))

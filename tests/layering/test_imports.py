@@ -71,7 +71,7 @@ ROOMS = {
         *("levels", "levels.making"),
     ),
     # The scene through depth layers, in place of a drawing for each lens sample.
-    "engine.layered": ("device", "layers", "passes.layered", "passes.surface"),
+    "engine.layered": ("device", "layers", "passes.bokeh", "passes.layered", "passes.surface"),
     "engine.visibility": (
         *("device", "passes.surface", "passes.visibility", "passes.bokeh"),
         "engine.drawing",
@@ -79,7 +79,7 @@ ROOMS = {
     "engine.bokeh": (
         *("device", "optics", "lens_bokeh.look", "lens_bokeh.tables", "lens_io"),
         *("passes", "passes.surface", "passes.bokeh"),
-        *("engine.planning", "engine.visibility"),
+        *("engine.planning", "engine.layered", "engine.visibility"),
     ),
     "engine.frame": (
         *("device", "sampling", "snapshot", "passes", "passes.surface", "passes.bokeh"),

@@ -17,6 +17,7 @@ from .clusters import similarity_of
 from .listing import HighlightSearch
 from .look import make_look
 from .marks import draw_marks, fates, with_sharp
+from .stack_listing import StackHighlightSearch
 
 # Size of the list of highlights at first.
 _FIRST_LIST = 1 << 16
@@ -178,14 +179,7 @@ class BokehStage:
         while True:
             specs = [TargetSpec(name, "RGBA32F") for name in "ab"]
             lists = Targets(highlights.COLUMNS, room // highlights.COLUMNS, specs)
-            search = HighlightSearch(
-                self._plan,
-                self._drawing,
-                self._buffers,
-                self._highlights,
-                (lists["a"], lists["b"]),
-                self._field,
-            )
+            search = self._search((lists["a"], lists["b"]))
             search.run(fullscreen)
             self.bytes = max(self.bytes, search.bytes)
             if search.count <= room:
@@ -196,6 +190,12 @@ class BokehStage:
         self.counts.found = search.count + search.sharp
         self.counts.culled_size = search.sharp
         return (lists["a"], lists["b"]), search.count
+
+    def _search(self, sources):
+        split, field = self._highlights, self._field
+        if self._plan.layered and self._plan.layered.stack:
+            return StackHighlightSearch(self._plan, self._buffers, split, sources, field)
+        return HighlightSearch(self._plan, self._drawing, self._buffers, split, sources, field)
 
     def _with_sharp(self):
         """Return a stage that also lists highlights that are too sharp to be splatted."""

@@ -69,7 +69,9 @@ class LayeredDrawing:
         plan = self._plan
         if plan.layered.stack is not None:
             # They outlive the frame.
-            made = self._buffers.captured.on_device(plan)
+            reference = self._wavelengths(None)
+            field = reference and reference.resources
+            made = self._buffers.captured.prepare(plan, self._highlights, field)
         else:
             resources = {"highlights": self._highlights, "wavelength": self._wavelengths(None)}
             target = surface_target.of_layers(self._target)
@@ -87,13 +89,16 @@ class LayeredDrawing:
         eyes = plan.layered.eyes
         if plan.layered.stack is None:
             layers.build_pyramids(made.textures, *size, len(made.bounds), made.filtered, len(eyes))
+        margin = [raster.fine * side for side in raster.margin]
+        if plan.layered.stack is not None:
+            margin = plan.layered.origin
         bounds = np.zeros((len(made.bounds), 4))
         bounds[:, :2] = made.bounds
         self._params = uniform_buffer(
             cast.LAYERED_PARAMS.pack(
                 bounds=bounds,
                 surroundings=self._surroundings,
-                raster=(raster.fine, raster.fine, *(raster.fine * side for side in raster.margin)),
+                raster=(raster.fine, raster.fine, *margin),
                 sampling=(
                     len(bounds),
                     layers.level_count(*size),

@@ -1,11 +1,18 @@
 """Depth layers of a captured picture, sent to the device."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...device.targets import Targets
-from ...device.textures import texture_array
+from ...device.textures import texture_2d, texture_array
+from ...device.uniforms import uniform_buffer
+from ...passes.bokeh import layer_highlights
 from ...passes.layered import layers
+from ...passes.surface import surface
 from .layer_raster import DeviceLayers, LayerRaster
+from .stack_highlights import find_highlights, runs_of
+from .stack_occluders import occluding_surfaces
 
 # Of a depth buffer's value: what lies on a layer's bounds is inside.
 _ROUNDING = 1e-6
@@ -13,16 +20,12 @@ _ROUNDING = 1e-6
 
 def stack_near(stack):
     """Return the near plane that a captured picture is kept with: half its least depth, m."""
-    depths = [layer.depth[np.isfinite(layer.depth)] for layer in stack.layers]
-    nearest = min((float(found.min()) for found in depths if found.size), default=2.0)
-    return 0.5 * max(nearest, 1e-6)
+    return 0.5 * max(stack.depth_range[0], 1e-6)
 
 
 def stack_far(stack):
     """Return a depth behind everything that a captured picture has, m."""
-    depths = [layer.depth[np.isfinite(layer.depth)] for layer in stack.layers]
-    farthest = max((float(found.max()) for found in depths if found.size), default=1.0)
-    return 2.0 * farthest
+    return 2.0 * stack.depth_range[1]
 
 
 def buffer_depths(plan, layer):
@@ -51,6 +54,9 @@ def buffer_depths(plan, layer):
 class StackLayers:
     """A captured picture on the device, for as many frames as it is seen in.
 
+    What follows from the picture alone is made once. What a frame's lens changes in the layers, the
+    light that they keep of highlights, `prepare` writes for each frame.
+
     Parameters
     ----------
     stack : LayerStack
@@ -58,39 +64,160 @@ class StackLayers:
 
     def __init__(self, stack):
         self.stack = stack
+        self._depths = None
         self._made = None
+        self._occluders = None
+        self._threshold = None
+        self._highlights = None
 
-    def on_device(self, plan):
-        """Return the layers with their pyramids, uploaded by the first frame.
+    def prepare(self, plan, split=None, field=None):
+        """Return the layers with their pyramids, as the samples of a frame see them.
 
         Parameters
         ----------
         plan : FramePlan
             With `layered`. Its depth buffer is that of all frames of the stack.
+        split : GPUUniformBuf or None
+            `HighlightParams`, of a frame with a bokeh.
+        field : tuple of (str, GPUUniformBuf or GPUTexture) or None
+            `passes.surface.chromatic.resources`, with chromatic aberration.
 
         Returns
         -------
         DeviceLayers
         """
-        if self._made is None:
-            self._made = _upload(plan, self.stack)
-            raster = self._made.raster
-            layers.build_pyramids(
-                self._made.textures, raster.width, raster.height, len(self._made.bounds), True
-            )
+        fresh = self._made is None
+        if fresh:
+            self._made = _upload(self._depths_of(plan), self.stack)
+        textures, raster = self._made.textures, self._made.raster
+        if plan.bokeh:
+            highlights = self.highlights(plan)
+            view = uniform_buffer(stack_view(plan))
+            for entries, number in (highlights.surfaces, highlights.world):
+                if number:
+                    layer_highlights.leave_base(
+                        entries, number, textures["colors"], split, view, field
+                    )
+                    fresh = True
+        else:
+            fresh = self._forget_highlights() or fresh
+        if fresh:
+            count = len(self._made.bounds)
+            layers.build_pyramids(textures, raster.width, raster.height, count, True)
         return self._made
 
+    def highlights(self, plan):
+        """Return the highlights of the picture at a frame's threshold.
+
+        Parameters
+        ----------
+        plan : FramePlan
+            With a `bokeh`.
+
+        Returns
+        -------
+        HighlightTextures
+        """
+        threshold = plan.bokeh.settings.threshold
+        if threshold != self._threshold:
+            self._forget_highlights()
+            found = find_highlights(self.stack, self._depths_of(plan), threshold)
+            self._threshold, self._highlights = threshold, _textures(found)
+        return self._highlights
+
+    def occluders(self, plan):
+        """Return the foremost surfaces of each pixel; the stack keeps and releases them.
+
+        Returns
+        -------
+        Targets
+            ``layers`` and ``opacity``, see `passes.visibility.visibility_warp.pack`.
+        """
+        if self._occluders is None:
+            surfaces, opacity = occluding_surfaces(self.stack, self._depths_of(plan))
+            self._occluders = Targets(surfaces.shape[1], surfaces.shape[0], [])
+            self._occluders.textures["layers"] = texture_2d(surfaces)
+            self._occluders.textures["opacity"] = texture_2d(opacity, "RGBA8")
+        return self._occluders
+
+    def _depths_of(self, plan):
+        if self._depths is None:
+            self._depths = np.stack([buffer_depths(plan, layer) for layer in self.stack.layers])
+        return self._depths
+
+    def _forget_highlights(self):
+        """Give the layers back what the samples of earlier frames did not see; whether any."""
+        found, self._highlights, self._threshold = self._highlights, None, None
+        changed = False
+        if found is not None and self._made is not None:
+            for entries, number in (found.surfaces, found.world):
+                if number:
+                    layer_highlights.give_back(entries, number, self._made.textures["colors"])
+                    changed = True
+        return changed
+
     def release(self):
-        """Give the layers back to the device."""
+        """Give everything back to the device."""
         if self._made is not None:
             self._made.textures.release()
-            self._made = None
+        if self._occluders is not None:
+            self._occluders.release()
+        self._made = self._occluders = self._highlights = self._threshold = None
 
 
-def _upload(plan, stack):
-    height, width = stack.layers[0].depth.shape
-    count = len(stack.layers)
-    depths = np.stack([buffer_depths(plan, layer) for layer in stack.layers])
+@dataclass(frozen=True, eq=False)
+class HighlightTextures:
+    """The highlights of a captured picture on the device; see `StackHighlights`.
+
+    Parameters
+    ----------
+    surfaces, world : tuple of (tuple of 3 GPUTexture, int)
+        As `passes.bokeh.layer_highlights` takes them, and how many there are.
+    runs : tuple of tuple of (int, int)
+        Of `surfaces` and of `world`: first and number of those that are listed together.
+    nearest : GPUTexture
+        R32F.
+    """
+
+    surfaces: tuple
+    world: tuple
+    runs: tuple
+    nearest: object
+
+
+def _textures(found):
+    parts = (found.surfaces, found.world)
+    surfaces, world = (
+        (layer_highlights.entry_textures(part.place, part.light, part.front), len(part.place))
+        for part in parts
+    )
+    nearest = texture_2d(found.nearest[..., None], "R32F")
+    return HighlightTextures(surfaces, world, tuple(map(runs_of, parts)), nearest)
+
+
+def stack_view(plan):
+    """Return the bytes of the `ViewParams` of the raster of a captured picture.
+
+    Parameters
+    ----------
+    plan : FramePlan
+        With `layered` and a `bokeh`.
+
+    Returns
+    -------
+    bytes
+    """
+    return surface.VIEW_PARAMS.pack(
+        view=plan.view,
+        view_inverse=np.linalg.inv(plan.view),
+        projection=plan.bokeh.projection,
+        lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
+        film=(plan.bokeh.width, plan.bokeh.height, 0.0, 0.0),
+    )
+
+
+def _upload(depths, stack):
+    count, height, width = depths.shape
     # Half precision ends there.
     colors = np.stack([np.clip(layer.color, -65504.0, 65504.0) for layer in stack.layers])
     textures = Targets(width, height, layers.specs(width, height, count)[2:])

@@ -30,7 +30,7 @@ from .bokeh_search import (
 )
 
 # Depth that represents infinity, in focus distances: the circle of confusion differs by 1e-6.
-_INFINITY = 1e6
+INFINITY = 1e6
 # Least margin around the frame, px, for the edges of discs just outside.
 _RIM = 2
 # Limits of drafts: layers of highlights, and sub-pixels of the raster.
@@ -154,14 +154,11 @@ def plan_bokeh(snapshot, plan):
         None where nothing is splatted: bokeh is off, or everything is sharp.
     """
     settings, lens = snapshot.camera.bokeh, snapshot.camera.lens
-    real_lens = snapshot.camera.real_lens
-    if plan.orthographic or (real_lens and not real_lens.shapes_bokeh):
-        real_lens = None
     sampling = snapshot.sampling
     wanted = sampling.method != "REFERENCE" or sampling.reference_bokeh
     if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
         return None
-    least = least_coc(plan.samples / (plan.chromatic.samples_for_one if plan.chromatic else 1.0))
+    least = least_splatted(plan)
     shining = _shining(snapshot.content, settings.threshold)
     rows, _ = rows_of(snapshot.content, shining)
     seen = extents(corners_of(snapshot.content, rows), plan.view)
@@ -203,12 +200,23 @@ def plan_bokeh(snapshot, plan):
         part=part,
         world=world,
         world_share=float(highlight_share(plan.empty_coc, least)) if world else 0.0,
-        world_depth=_INFINITY * max(plan.focus_distance, 1.0),
+        world_depth=INFINITY * max(plan.focus_distance, 1.0),
         iris=lens.iris,
-        real_lens=real_lens,
+        real_lens=shaping_lens(snapshot.camera),
         filter_width=filter_width(film.filter_kind, film.filter_size_px),
         colors=colors,
     )
+
+
+def least_splatted(plan):
+    """Return the radius of the circle of confusion from which on a frame splats light, px."""
+    return least_coc(plan.samples / (plan.chromatic.samples_for_one if plan.chromatic else 1.0))
+
+
+def shaping_lens(camera):
+    """Return the traced lens that shapes a camera's discs, as `LensSettings`, or None."""
+    lens = camera.real_lens
+    return lens if lens and lens.shapes_bokeh and not camera.orthographic else None
 
 
 def draft_of(bokeh):

@@ -149,6 +149,9 @@ def plan_distortion(snapshot):
     radius = camera.field_radius or picture_radius(camera.projection, camera.orthographic)
     # Chosen for the whole frame, so that render regions have the same pixels.
     fineness = min(max(1.0, (1.0 + k) ** 2 / (1.0 - k)), _FINEST)
+    if snapshot.stack is not None:
+        # A captured picture is as fine as its pixels.
+        fineness = 1.0
     to_field = field_of_raster(camera.projection, film)
     whole = field_of_raster(camera.projection, replace(film, region=(0, 0, *film.region[2:])))
     from_field = np.concatenate([fineness / whole[:2], -fineness * whole[2:] / whole[:2]])

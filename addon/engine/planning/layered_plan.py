@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...layers.layer_stack import LayerStack
+from .field_table import field_of_clip
 
 # Sets of places on the lens: the pixels of a square of 4 x 4 have one each, so that what few
 # samples leave is fine noise instead of bands.
@@ -34,6 +35,8 @@ class LayeredPlan:
     eyes : ndarray of shape (E, 2)
         Places on the lens that the layers' colours are seen from, m: its middle, or that and four
         places round it, right, left, up and down.
+    origin : tuple of 2 int
+        Of a captured picture: pixels of its layers on the left of and below what is drawn.
     """
 
     count: int
@@ -44,9 +47,10 @@ class LayeredPlan:
     stack: LayerStack | None = None
     peeled: bool = False
     eyes: np.ndarray = field(default_factory=lambda: np.zeros((1, 2)))
+    origin: tuple[int, int] = (0, 0)
 
 
-def plan_layered(sampling, source, stack=None):
+def plan_layered(sampling, source, stack=None, projection=None):
     """Plan the depth layers of a frame.
 
     Parameters
@@ -55,6 +59,8 @@ def plan_layered(sampling, source, stack=None):
     source : SampleSource
         Of the frame's lens samples.
     stack : LayerStack or None
+    projection : ndarray of shape (4, 4), optional
+        Of what is drawn of a captured picture.
 
     Returns
     -------
@@ -69,15 +75,22 @@ def plan_layered(sampling, source, stack=None):
         different = len(np.unique(places[0], axis=0))
         extent = source.lens.aperture_radius**2 / source.lens.iris.ratio
         cell = float(np.sqrt(np.pi * extent / different))
+    if stack is not None:
+        origin = _origin(stack, projection)
+        return LayeredPlan(len(stack.layers), places, cell, stack=stack, origin=origin)
     eyes = np.zeros((1, 2))
     extent = np.abs(places).max(axis=(0, 1))
-    if sampling.layers_from_eyes and stack is None and extent.min() > 0.0:
+    if sampling.layers_from_eyes and extent.min() > 0.0:
         eyes = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)]) * extent
-    return LayeredPlan(
-        sampling.layers,
-        places,
-        cell,
-        stack=stack,
-        peeled=sampling.layer_source == "PEELING",
-        eyes=eyes,
-    )
+    peeled = sampling.layer_source == "PEELING"
+    return LayeredPlan(sampling.layers, places, cell, peeled=peeled, eyes=eyes)
+
+
+def _origin(stack, projection):
+    """Return where the lower left corner of what is drawn lies in the layers, px."""
+    captured = np.array(stack.camera.projection)
+    corner = field_of_clip(np.array([-1.0, -1.0]), projection)
+    # A field's place is affine in that of the clip space.
+    none, one = (field_of_clip(np.full(2, place), captured) for place in (-1.0, 1.0))
+    place = (corner - none) / (one - none) * (stack.width, stack.height) + stack.overscan
+    return tuple(np.round(place).astype(int).tolist())

@@ -14,6 +14,7 @@ from .frame_plan import AutomaticSampling, FramePlan
 from .frame_samples import SampleSource
 from .layered_plan import plan_layered
 from .quality import LEAST_ERROR, settle
+from .stack_bokeh import plan_stack_bokeh
 
 # Diagonals of the picture over the diameter of the largest circle of confusion that counts as
 # sharp: the usual criterion of depth-of-field tables (0.029 mm for 36 x 24 mm).
@@ -159,6 +160,8 @@ def _plan_raster(snapshot):
         sampling = settle(sampling, snapshot, first)
         sampling = replace(sampling, lens_samples=first_look(automatic.unit))
     plan = _plan(snapshot, sampling, automatic)
+    if snapshot.stack is not None:
+        return replace(plan, bokeh=plan_stack_bokeh(snapshot, plan))
     plan = replace(plan, bokeh=plan_bokeh(snapshot, plan))
     if plan.chromatic is None or "Fringe" not in snapshot.passes:
         return plan
@@ -232,7 +235,7 @@ def _plan(snapshot, sampling, automatic=None):
         source=source,
         automatic=automatic,
         time_limit=sampling.time_limit,
-        layered=plan_layered(sampling, source, snapshot.stack),
+        layered=plan_layered(sampling, source, snapshot.stack, projection),
     )
 
 

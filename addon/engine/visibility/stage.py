@@ -98,7 +98,8 @@ class BokehVisibility:
         self._plan = plan
         self._occluders = occluders
         self._buffers = buffers
-        self._fine = texels_per_pixel(plan.bokeh)
+        self._captured = bool(plan.layered and plan.layered.stack)
+        self._fine = 1 if self._captured else texels_per_pixel(plan.bokeh)
         self._values = visibility_params(plan, self._fine, reach)
         self._parameters = uniform_buffer(culling.VISIBILITY_PARAMS.pack(**self._values))
 
@@ -124,6 +125,9 @@ class BokehVisibility:
         Visibility
         """
         method = method or self._plan.bokeh.settings.visibility
+        if self._captured and method != "SPLAT":
+            # There are no triangles.
+            method = "WARP"
         if method == "AUTO" and count > _MOST_CONES:
             method = "WARP"
         search = _Search(self, sources, count, drawing, culls)
@@ -141,6 +145,7 @@ class _Search:
         self._occluders = owner._occluders
         self._buffers = owner._buffers
         self._fine = owner._fine
+        self._captured = owner._captured
         self._values = owner._values
         self._parameters = owner._parameters
         self._sources = sources
@@ -170,7 +175,7 @@ class _Search:
         else:
             counts = self._test_by_layers()
             counts.method = method if counts.masked else ""
-        if self._raster:
+        if self._raster and not self._captured:
             targets.append(self._raster)
         base, whole = self._lay_out(counts)
         layout = uniform_buffer(whole.packed())
@@ -253,10 +258,14 @@ class _Search:
     def _test_by_layers(self, again=False):
         plan = self._plan
         self._clear_counts()
-        self._raster = draw_layers(plan, self._drawing, self._buffers.instances, self._fine)
+        if self._captured:
+            self._raster = self._buffers.captured.occluders(plan)
+        else:
+            self._raster = draw_layers(plan, self._drawing, self._buffers.instances, self._fine)
         args = (self._sources, self._count, self._parameters)
         self._own.append(cull_by_layers(*args, self._raster, again, self._tables.states))
-        if self._count <= _MOST_CONES and not plan.bokeh.draft:
+        # Of a captured picture nothing is known outside its raster.
+        if self._count <= _MOST_CONES and not plan.bokeh.draft and not self._captured:
             cones.find_edges(self._scene(), self._tables)
             if not again:
                 room = _LEAST_PAIRS
@@ -311,7 +320,7 @@ class _Search:
 
     def _format(self):
         # More than 8 bits: transmittances of several surfaces are multiplied.
-        return "R16F" if self._occluders.groups else "R8"
+        return "R16F" if self._occluders.groups or self._captured else "R8"
 
     def _draw_masks(self, counts, atlas, base, whole):
         with atlas.bind():
