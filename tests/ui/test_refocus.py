@@ -1,6 +1,8 @@
 """Refocus: opening captures, what a scene asks for, the live picture, and writing."""
 
+import time
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import OpenEXR
@@ -12,6 +14,8 @@ from addon.engine.refocus.settings import RefocusSettings
 from addon.engine.shared_resources import resources
 from addon.layers.layer_file import load_layers, save_layers
 from addon.ui.jobs.live_refocus import LiveRefocus
+from addon.ui.panels.bokeh_panel import APLANAT_CAMERA_PT_bokeh
+from addon.ui.panels.lens_panel import APLANAT_CAMERA_PT_lens
 from tests.engine.test_refocus import stack
 
 __all__ = ["stack"]
@@ -127,11 +131,33 @@ def test_camera_and_own_values(scene, own, camera, stack):
     assert settings == RefocusSettings(samples=32) and "no camera" in problems[0]
 
 
+def test_panels_of_the_camera_work_on_the_capture(scene, own, camera, stack):
+    context = SimpleNamespace(engine="CYCLES", scene=scene, camera=scene.camera.data)
+    data = scene.camera.data.aplanat
+    assert not APLANAT_CAMERA_PT_bokeh.poll(context)
+    own.path = "layers.exr"
+    assert APLANAT_CAMERA_PT_bokeh.poll(context) and APLANAT_CAMERA_PT_lens.poll(context)
+    data.bokeh.use, data.bokeh.gain = True, 3.0
+    data.chromatic.use = True
+    settings, _ = wanted(scene, stack)
+    assert settings.bokeh.gain == 3.0 and settings.chromatic is not None
+    # What does not change is the same: the picture goes on.
+    assert settings == wanted(scene, stack)[0]
+    data.lens = resources().lenses.ids()[0]
+    assert wanted(scene, stack)[0].real_lens.id == data.lens
+    assert wanted(scene, stack)[0] == wanted(scene, stack)[0]
+    own.use_camera_lens = False
+    assert not APLANAT_CAMERA_PT_bokeh.poll(context)
+    assert wanted(scene, stack)[0].bokeh is None
+
+
 def work_on(live, scene):
     depsgraph = scene.view_layers[0].depsgraph
     for _ in range(2000):
         if not live.work(scene, depsgraph) and not live.is_reading:
             return
+        # The file is read by another thread.
+        time.sleep(0.005 * live.is_reading)
     raise AssertionError("it does not end")
 
 

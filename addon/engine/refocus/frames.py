@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ...device import context as device_context
 from ...device import state
+from ...device.textures import TextureCache
 from ...errors import InputError
 from ...files.frame_path import frame_path
 from ...layers.captured_files import load_captured
@@ -16,7 +17,7 @@ from .refocusing import Refocusing
 from .scene_refocus import flat_options, layers_path, read_refocus
 
 
-def write_frames(scene, frames, output, session, depsgraph_of, note):
+def write_frames(scene, frames, output, sources, depsgraph_of, note):
     """Write the refocused pictures of frames, a small piece of work with each step.
 
     Each file is whole or absent. A generator: whoever ends it before its time closes it. The scene
@@ -29,7 +30,8 @@ def write_frames(scene, frames, output, session, depsgraph_of, note):
         If it is the present frame alone, values that were changed and not keyed count.
     output : Path
         Ends in .exr or .png; #### becomes the frame's number.
-    session : RenderSession
+    sources : CameraSources
+        Of the session.
     depsgraph_of : callable
         Returns the depsgraph of the scene's present frame.
     note : callable
@@ -54,24 +56,26 @@ def write_frames(scene, frames, output, session, depsgraph_of, note):
             + (f" ({len(missing)} of {len(files)} frames are missing)" * (len(missing) > 1))
         )
     device_context.ensure_context()
+    # Of the bokeh discs, which many frames have in common.
+    looks = TextureCache()
     for number, (frame, file) in enumerate(files.items()):
         if frame != scene.frame_current:
             scene.frame_set(frame)
         yield frame, number / len(files)
         stack = load_captured(file, flat_options(scene))
-        settings, problems = read_refocus(scene, depsgraph_of(), stack, session.sources)
+        settings, problems = read_refocus(scene, depsgraph_of(), stack, sources)
         for line in (*stack.report, *problems):
             note(line)
-        with closing(_pictures(stack, settings, session, note)) as steps:
+        with closing(_pictures(stack, settings, looks, note)) as steps:
             for picture, share in steps:
                 if picture is None:
                     yield frame, (number + share) / len(files)
         save_picture(Path(frame_path(output, frame)), picture, stack, scene)
 
 
-def _pictures(stack, settings, session, note):
+def _pictures(stack, settings, looks, note):
     """Go through pieces of a picture; give it whole in the end."""
-    refocusing, pacer = Refocusing(stack, settings, session.look_textures), Pacer(PIECE_SECONDS)
+    refocusing, pacer = Refocusing(stack, settings, looks), Pacer(PIECE_SECONDS)
     try:
         while not refocusing.finished:
             yield None, refocusing.samples_done / settings.samples

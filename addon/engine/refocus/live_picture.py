@@ -26,8 +26,6 @@ class LivePicture:
     Parameters
     ----------
     stack : LayerStack
-    look_textures : TextureCache, optional
-        Of the session.
 
     Attributes
     ----------
@@ -35,10 +33,9 @@ class LivePicture:
         That the picture is made with.
     """
 
-    def __init__(self, stack, look_textures=None):
+    def __init__(self, stack):
         self.stack = stack
         self.settings = None
-        self._look_textures = look_textures
         self._refocusing = None
         self._pacer = Pacer(PIECE_SECONDS)
         self._shown, self._shown_at, self._finished = 0, 0.0, False
@@ -92,7 +89,7 @@ class LivePicture:
         device_context.ensure_context()
         with state.preserved():
             if self._refocusing is None:
-                self._refocusing = Refocusing(self.stack, self.settings, self._look_textures)
+                self._refocusing = Refocusing(self.stack, self.settings)
             refocusing = self._refocusing
             refocusing.change(self.settings)
             if not refocusing.finished:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...device import keeping
 from ...snapshot.camera import Camera
 from ...snapshot.content import InstanceTable, SceneContent
 from ...snapshot.film import Film, Sampling
@@ -170,6 +171,9 @@ class Refocusing:
         """Give everything back to the device; it cannot be used afterwards."""
         self._renderer.release()
         self._buffers.captured.release()
+        self._renderer = self._buffers = None
+        # The layers are the largest that there is: they go now.
+        keeping.let_go()
 
 
 def refocus(stack, settings, go_on=lambda share: True):

@@ -172,7 +172,7 @@ class LiveRefocus:
     def _show(self, stack, is_flat):
         self._drop_picture()
         self.stack, self.is_flat, self.error = stack, is_flat, ""
-        self._picture = LivePicture(stack, resources().panels.look_textures)
+        self._picture = LivePicture(stack)
 
     def _drop_picture(self):
         if self._picture is not None:

@@ -116,7 +116,7 @@ class APLANAT_OT_refocus_write(bpy.types.Operator):
             scene,
             frames,
             self._output,
-            resources().panels,
+            resources().panels.sources,
             context.evaluated_depsgraph_get,
             self._note,
         )

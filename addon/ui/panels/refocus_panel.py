@@ -55,7 +55,6 @@ class APLANAT_IMAGE_PT_refocus(_RefocusPanel, bpy.types.Panel):
         row = column.row(align=True)
         row.use_property_split = False
         row.prop(own, "path", text="")
-        row.operator(APLANAT_OT_refocus_open.bl_idname, text="", icon="FILEBROWSER")
         row.operator(APLANAT_OT_refocus_reload.bl_idname, text="", icon="FILE_REFRESH")
         row.operator(APLANAT_OT_refocus_close.bl_idname, text="", icon="X")
         if own.image is None or context.space_data.image != own.image:
