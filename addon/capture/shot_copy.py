@@ -12,6 +12,7 @@ from ..errors import CameraError, InputError
 from ..layers.layer_stack import LayerCamera
 from ..sampling.thin_lens import aperture_radius
 from ..scene.camera.camera import camera_place, evaluated_camera, focus_distance
+from ..scene.camera.lens_record import record_lens
 from .kept_values import KeptValues
 
 # Longest side of the picture that depths are measured in, and of what Blender renders.
@@ -289,15 +290,8 @@ class ShotCopy:
             setattr(data, name, value)
         data.dof.use_dof = False
         data.aplanat.bokeh.use = data.aplanat.chromatic.use = False
-        across, up = render.pixel_aspect_x, render.pixel_aspect_y
-        width, height = self.size[0] * across, self.size[1] * up
-        fit, sensor = data.sensor_fit, data.sensor_width
-        if fit == "AUTO":
-            fit = "HORIZONTAL" if width >= height else "VERTICAL"
-        elif fit == "VERTICAL":
-            sensor = data.sensor_height
-        filled = width if fit == "HORIZONTAL" else height
-        whole = render.resolution_x * across
+        sensor, filled, _, _ = self._filled_side(data)
+        whole = render.resolution_x * render.pixel_aspect_x
         data.sensor_fit = "HORIZONTAL"
         # A sensor of less than 1 mm is none to Blender.
         scale = max(1.0, 1.0 / (sensor * whole / filled))
@@ -330,7 +324,33 @@ class ShotCopy:
             blade_rotation=dof.aperture_rotation,
             aperture_ratio=dof.aperture_ratio,
             view=_rows(camera_place(seen).inverted()),
+            sensor_mm=None if orthographic else self._sensor(data),
+            unit_scale=self.scene.unit_settings.scale_length,
+            lens_settings=record_lens(data),
         )
+
+    def _filled_side(self, data):
+        """Return the side of the sensor that the picture fills, mm, and the picture's sides.
+
+        Returns
+        -------
+        side : float
+        filled, width, height : float
+            Of the picture: the side that fills it, and both.
+        """
+        render = self.scene.render
+        width = self.size[0] * render.pixel_aspect_x
+        height = self.size[1] * render.pixel_aspect_y
+        fit = data.sensor_fit
+        if fit == "VERTICAL":
+            return data.sensor_height, height, width, height
+        across = fit == "HORIZONTAL" or width >= height
+        return data.sensor_width, width if across else height, width, height
+
+    def _sensor(self, data):
+        """Return width and height of the part of the sensor that the picture fills, mm."""
+        side, filled, width, height = self._filled_side(data)
+        return side * width / filled, side * height / filled
 
 
 def _rows(matrix):

@@ -26,6 +26,8 @@ _COLOR = "RGBA"
 _DEPTH = "Z"
 # Passes whose channels are coordinates; of the others three or four channels are colours.
 _COORDINATES = ("normal", "position", "vector", "uv", "tangent")
+# Of a camera, what files of the first versions have as well.
+_ALWAYS_TOLD = ("orthographic", "f_stop", "focus_distance", "focal_length_mm")
 _STACK_NUMBERS = ("width", "height", "overscan", "pixel_aspect", "frame", "color_space", "engine")
 
 
@@ -266,9 +268,17 @@ def _words(stack):
 
 
 def _camera(told):
-    values = {each.name: told[each.name] for each in fields(LayerCamera)}
+    values = {each.name: told[each.name] for each in fields(LayerCamera) if each.name in told}
+    missing = {"projection", *_ALWAYS_TOLD} - set(values)
+    if missing:
+        raise KeyError(min(missing))
+    if values.get("sensor_mm") is not None:
+        width, height = map(float, values["sensor_mm"])
+        values["sensor_mm"] = width, height
+    if not isinstance(values.get("lens_settings", {}), dict | None):
+        raise ValueError("lens_settings are no settings")
     for name in ("projection", "view"):
-        if values[name] is not None:
+        if values.get(name) is not None:
             matrix = np.array(values[name], np.float64)
             if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
                 raise ValueError(f"{name} is no matrix of 4 x 4 numbers")

@@ -36,6 +36,15 @@ class LayerCamera:
         Height over width of the opening is ``aperture_ratio`` (anamorphic bokeh is > 1).
     view : tuple of 4 tuples of 4 float or None
         Rows of the matrix from world to camera space; None where the file does not tell.
+    sensor_mm : tuple of 2 float or None
+        Width and height of the part of the sensor that the picture fills; None where the file does
+        not tell, and for a parallel projection.
+    unit_scale : float
+        Metres in a unit of the scene, as its interface showed it; depths here are as if a unit was
+        a metre, as for the renderers.
+    lens_settings : dict or None
+        Real lens, bokeh and chromatic aberration as the artist had set them, for
+        `scene.camera.lens_record`; None where the file does not tell.
     """
 
     projection: tuple[tuple[float, ...], ...]
@@ -48,6 +57,9 @@ class LayerCamera:
     blade_rotation: float = 0.0
     aperture_ratio: float = 1.0
     view: tuple[tuple[float, ...], ...] | None = None
+    sensor_mm: tuple[float, float] | None = None
+    unit_scale: float = 1.0
+    lens_settings: dict | None = None
 
 
 @dataclass(frozen=True, eq=False)

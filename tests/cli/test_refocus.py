@@ -1,5 +1,7 @@
 """`aplanat refocus`: captured files to pictures, and what it refuses."""
 
+from dataclasses import replace
+
 import numpy as np
 import OpenEXR
 import pytest
@@ -43,6 +45,70 @@ def test_a_png_and_chosen_frames(aplanat, captured, tmp_path):
     assert sorted(p.name for p in tmp_path.glob("out_*")) == ["out_01.png", "out_02.png"]
 
 
+@pytest.fixture(scope="module")
+def shot(aplanat_bpy, tmp_path_factory):
+    """A scene whose focus moves, with a real lens, fringes, and an iris of five blades."""
+    bpy = aplanat_bpy
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    bpy.context.scene.collection.objects.link(camera)
+    bpy.context.scene.camera = camera
+    data = camera.data
+    for frame, distance in ((1, 2.0), (5, 6.0)):
+        data.dof.focus_distance = distance
+        data.dof.keyframe_insert("focus_distance", frame=frame)
+    for curve in data.animation_data.action.layers[0].strips[0].channelbags[0].fcurves:
+        for point in curve.keyframe_points:
+            point.interpolation = "LINEAR"
+    data.dof.aperture_fstop, data.dof.aperture_blades = 1.4, 5
+    data.aplanat.lens = "double-gauss-50mm-f2"
+    data.aplanat.chromatic.use = True
+    path = tmp_path_factory.mktemp("shot") / "shot.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    return path
+
+
+def test_a_scene_says_frame_by_frame_what_the_lens_is(aplanat, captured, shot, tmp_path):
+    words = ("refocus", captured, "-o", tmp_path / "out_####.exr", "--samples", "4", "--json")
+    done = aplanat(*words, "--scene", shot, "--camera", "Camera")
+    assert done.code == 0, done.err
+    frames = done.answer["frames"]
+    assert [told["focus_distance_m"] for told in frames] == [2.0, 3.0, 6.0]
+    assert {(t["lens"], t["bokeh"], t["chromatic"]) for t in frames} == {
+        ("double-gauss-50mm-f2", True, True)
+    }
+    # No wider than the lens opens.
+    assert frames[0]["fstop"] == pytest.approx(2.0, rel=0.05)
+    changed = ("--focus", "4", "--fstop", "8", "--no-bokeh", "--no-chromatic", "--frames", "5..5")
+    done = aplanat(*words, "--scene", shot, *changed)
+    assert done.code == 0, done.err
+    (told,) = done.answer["frames"]
+    assert (told["focus_distance_m"], told["fstop"]) == (4.0, 8.0)
+    assert (told["bokeh"], told["chromatic"]) == (False, False)
+
+
+def test_without_a_scene_the_lens_is_the_captured_one(aplanat, aplanat_bpy, stack, tmp_path):
+    from addon.scene.camera.lens_record import record_lens
+
+    data = aplanat_bpy.data.cameras.new("Camera")
+    data.aplanat.lens, data.aplanat.bokeh.threshold = "double-gauss-50mm-f2", 7.0
+    data.aplanat.chromatic.use, data.aplanat.chromatic.axial = True, 2.5
+    camera = replace(stack.camera, lens_settings=record_lens(data))
+    save_layers(tmp_path / "a.exr", replace(stack, camera=camera))
+    words = ("refocus", tmp_path / "a.exr", "-o", tmp_path / "b.exr", "--samples", "4", "--json")
+    blocks = len(aplanat_bpy.data.cameras), len(aplanat_bpy.data.node_groups)
+    done = aplanat(*words)
+    assert done.code == 0, done.err
+    (told,) = done.answer["frames"]
+    assert (told["lens"], told["bokeh"], told["chromatic"]) == ("double-gauss-50mm-f2", True, True)
+    # With all digits, though Blender's own properties have fewer.
+    assert told["focus_distance_m"] == stack.camera.focus_distance
+    assert blocks == (len(aplanat_bpy.data.cameras), len(aplanat_bpy.data.node_groups))
+    assert aplanat(*words, "--lens", "petzval-51mm-f1.4").answer["frames"][0]["lens"] == (
+        "petzval-51mm-f1.4"
+    )
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
@@ -55,15 +121,21 @@ def test_a_png_and_chosen_frames(aplanat, captured, tmp_path):
         (["foreign.exr", "-o", "x.exr"], "foreign.exr"),
         (["foreign.exr", "-o", "x.exr", "--depth-range", "3,1"], "NEAR"),
         (["broken.exr", "-o", "x.exr"], "broken.exr"),
+        (["layers_0001.exr", "-o", "x.exr", "--lens", "no-such-lens"], "no-such-lens"),
+        (["layers_0001.exr", "-o", "x.exr", "--camera", "Camera"], "--scene"),
+        (["layers_0001.exr", "-o", "x.exr", "--scene", "none.blend"], "none.blend"),
+        (["layers_0001.exr", "-o", "x.exr", "--scene", "broken.exr"], ".blend"),
+        (["layers_0001.exr", "-o", "x.exr", "--scene", "shot.blend", "--camera", "A"], "'Camera'"),
     ],
 )
-def test_what_cannot_be_is_one_line(aplanat, captured, tmp_path, words, told):
+def test_what_cannot_be_is_one_line(aplanat, captured, shot, tmp_path, words, told):
     header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
     pixels = np.zeros((4, 4, 4), np.float32)
     OpenEXR.File(header, {"RGBA": pixels}).write(str(tmp_path / "foreign.exr"))
     whole = (tmp_path / "layers_0001.exr").read_bytes()
     (tmp_path / "broken.exr").write_bytes(whole[: len(whole) // 2])
-    words = [tmp_path / word if word.endswith(".exr") else word for word in words]
+    words = [tmp_path / word if word.endswith((".exr", ".blend")) else word for word in words]
+    words = [shot if word == tmp_path / "shot.blend" else word for word in words]
     before = set(tmp_path.iterdir())
     done = aplanat("refocus", *words)
     assert done.code == 2, done

@@ -125,7 +125,7 @@ ROOMS = {
         *("cli.words", "cli.render"),
     ),
     "cli.refocus": (
-        *("files", "device", "sampling", "layers", "engine.refocus"),
+        *("files", "device", "layers", "scene.camera", "engine", "engine.refocus"),
         *("cli.words", "cli.render"),
     ),
     "cli": (

@@ -18,8 +18,8 @@ def add_refocus(commands):
         "refocus",
         help="see captured depth layers through another lens",
         description="Makes pictures of captured depth layers (`aplanat capture`) with another"
-        " focus, f-number or iris, without rendering again. What is not given is as it was"
-        " captured.",
+        " focus, f-number, lens or iris, without rendering again. What is not given is as it was"
+        " captured, or as the camera of --scene has it in each frame.",
         allow_abbrev=False,
     )
     add = parser.add_argument
@@ -39,9 +39,21 @@ def add_refocus(commands):
         type=frame_range,
         help=f"{FRAMES_HELP}; default: every captured file that there is",
     )
+    add(
+        "--scene",
+        metavar="SHOT.blend",
+        type=Path,
+        help="take focus (keyframes and focus object included), f-number, lens, iris, bokeh and"
+        " chromatic aberration from its camera, frame by frame; place and framing stay the"
+        " capture's",
+    )
+    add("--camera", metavar="NAME", help="camera object of --scene; default: the scene's")
     add("--focus", metavar="DISTANCE", type=positive_number(), help="in m along the optical axis")
     add("--fstop", metavar="X", type=positive_number(), help="f-number")
     add("--blades", metavar="N", type=whole_number(0, _MOST_BLADES), help="of the iris; 0: round")
+    add("--lens", metavar="ID|FILE", help="lens of the library, or a lens file")
+    add("--no-bokeh", action="store_true", help="without separate highlights")
+    add("--no-chromatic", action="store_true", help="without chromatic aberration")
     add(
         "--samples",
         metavar="N",
@@ -105,5 +117,9 @@ def check_refocus(arguments):
         raise InputError(
             f"--frames chooses among files with a frame number; '{arguments.layers}' has no #### in"
             " its name"
+        )
+    if arguments.camera is not None and arguments.scene is None:
+        raise InputError(
+            f"--camera {arguments.camera} is an object of a scene; name its file with --scene"
         )
     check_frames(arguments.frames, [arguments.output])

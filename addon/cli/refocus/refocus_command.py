@@ -6,19 +6,24 @@ import bpy
 
 from ...device.context import device_name, ensure_context
 from ...engine.refocus.pictures import save_picture
-from ...engine.refocus.refocusing import refocus
-from ...engine.refocus.settings import RefocusSettings, lens_of
-from ...errors import InputError, StrictError
+from ...engine.refocus.refocusing import Refocusing
+from ...engine.refocus.settings import f_stop_of, lens_of
+from ...engine.shared_resources import resources
+from ...errors import InputError
 from ...files.frame_path import frame_path
 from ...files.version import version
 from ...files.whole_file import check_writable, removed_on_signals
 from ...layers.captured_files import captured_files, load_captured
 from ...layers.flat_input import FlatOptions
-from ...sampling.iris import Iris
+from ..render.render_command import Warnings
 from ..render.statistics import peak_memory
 from ..words.frame_values import telling_frame
 from ..words.json_file import write_json
 from ..words.parser import make_folders
+from .lens_source import LensSource
+
+# Lens samples between two looks at whether there is something to tell.
+_STRETCH = 16
 
 
 def refocus_files(arguments, console):
@@ -46,19 +51,22 @@ def refocus_files(arguments, console):
             f"-o {arguments.output}: {len(files)} frames need #### in the file's name for the frame"
             " number"
         )
-    with removed_on_signals():
+    with removed_on_signals(), resources().open_session() as session:
         make_folders(arguments, [arguments.output])
         for path in filter(None, (frame_path(arguments.output, min(files)), arguments.stats)):
             check_writable(path)
+        lens = LensSource(arguments, session.sources)
         ensure_context()
-        frames, warnings = [], []
+        frames, warnings = [], Warnings(console, arguments.strict)
         for frame, file in sorted(files.items()):
             with telling_frame(frame, len(files)):
-                frames.append(_refocus_frame(frame, file, arguments, console, warnings))
+                frames.append(
+                    _refocus_frame(frame, file, arguments, console, warnings, lens, session)
+                )
         summary = {
             "command": "refocus",
             "files": [told["file"] for told in frames],
-            "warnings": warnings,
+            "warnings": warnings.lines,
             "aplanat": version(),
             "blender": bpy.app.version_string,
             "device": device_name(),
@@ -71,36 +79,39 @@ def refocus_files(arguments, console):
     return summary
 
 
-def _refocus_frame(frame, file, arguments, console, warnings):
+def _refocus_frame(frame, file, arguments, console, warnings, lens, session):
     begun = time.perf_counter()
     stack = load_captured(file, _flat(arguments))
-    new = [line for line in stack.report if line not in warnings]
-    if new and arguments.strict:
-        raise StrictError(new)
-    for line in new:
-        console.say(f"warning: {line}")
-    warnings.extend(new)
-    settings = _settings(stack, arguments)
-    lens_of(stack, settings)
-
-    def go_on(share):
-        console.progress(f"frame {frame}: {share:.0%} of {settings.samples} lens samples")
-        return True
-
-    picture = refocus(stack, settings, go_on)
+    warnings.add(stack.report)
+    numbered = "#" in arguments.layers.name
+    settings, problems = lens.settings(stack, frame if numbered else stack.frame)
+    warnings.add(problems)
+    seen = lens_of(stack, settings)
+    refocusing = Refocusing(stack, settings, session.look_textures)
+    try:
+        while refocusing.advance(_STRETCH):
+            share = refocusing.samples_done / settings.samples
+            console.progress(f"frame {frame}: {share:.0%} of {settings.samples} lens samples")
+        warnings.add(refocusing.report)
+        picture, highlights = refocusing.read(), refocusing.highlights
+    finally:
+        refocusing.release()
     output = frame_path(arguments.output, frame)
     save_picture(output, picture, stack, bpy.context.scene)
     seconds = round(time.perf_counter() - begun, 6)
     console.say(f"frame {frame}: {output} ({seconds:.1f} s)")
-    lens = lens_of(stack, settings)
     return {
         "frame": frame,
         "layers_file": str(file),
         "file": str(output),
         "layers": len(stack.layers),
         "lens_samples": settings.samples,
-        "focus_distance_m": lens.focus_distance,
-        "fstop": stack.camera.f_stop if settings.f_stop is None else settings.f_stop,
+        "focus_distance_m": seen.focus_distance,
+        "fstop": f_stop_of(stack, settings),
+        "lens": settings.real_lens and settings.real_lens.id,
+        "bokeh": settings.bokeh is not None,
+        "chromatic": settings.chromatic is not None,
+        "highlights": highlights.found if highlights else 0,
         "seconds": seconds,
     }
 
@@ -115,18 +126,4 @@ def _flat(arguments):
         depth_scale=arguments.depth_scale,
         focal_length_mm=arguments.focal_length,
         sensor_width_mm=arguments.sensor_width,
-    )
-
-
-def _settings(stack, arguments):
-    iris = None
-    if arguments.blades is not None:
-        camera = stack.camera
-        iris = Iris(arguments.blades, camera.blade_rotation, camera.aperture_ratio)
-    return RefocusSettings(
-        focus_distance=arguments.focus,
-        f_stop=arguments.fstop,
-        iris=iris,
-        samples=arguments.samples,
-        seed=arguments.seed,
     )

@@ -69,7 +69,7 @@ def apply_options(scene, arguments):
         render.resolution_percentage = 100
     apply_sampling(settings, render, arguments)
     if arguments.camera:
-        _use_camera(scene, arguments.camera)
+        use_camera(scene, arguments.camera)
     use_engine(scene)
     check_size(scene)
 
@@ -148,7 +148,20 @@ def check_size(scene):
         )
 
 
-def _use_camera(scene, name):
+def use_camera(scene, name):
+    """Look through a camera in all frames.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+    name : str
+        Of the object.
+
+    Raises
+    ------
+    CameraError
+        If the scene has no such camera.
+    """
     camera = scene.objects.get(name)
     if camera is None or camera.type != "CAMERA":
         names = ", ".join(sorted(f"'{o.name}'" for o in scene.objects if o.type == "CAMERA"))
@@ -188,6 +201,19 @@ def use_lens(camera, word):
         )
     lens_id = shelf().add_file(word) if found is None else found.id
     camera.data.aplanat.lens = lens_id
+
+
+def use_blades(data, count):
+    """Give a camera's iris so many blades.
+
+    Parameters
+    ----------
+    data : bpy.types.Camera
+    count : int
+        0 is round.
+    """
+    _stop_animation(data, "dof.aperture_blades")
+    data.dof.aperture_blades = count
 
 
 def _leave_out_bokeh(data):

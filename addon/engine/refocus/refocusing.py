@@ -139,6 +139,11 @@ class Refocusing:
         """Warnings about settings that cannot be met; known after a sample."""
         return self._renderer.report
 
+    @property
+    def highlights(self):
+        """Numbers of highlights by fate, as `HighlightCounts`; None without bokeh."""
+        return self._renderer.highlights
+
     def advance(self, samples):
         """Draw up to so many lens samples more, and wait for them.
 

@@ -1,0 +1,111 @@
+"""A camera's lens settings of Aplanat as values that a file keeps, and a camera gets back.
+
+They are kept by the names of the properties, as presets keep them: what another version does not
+know is left at its default there.
+"""
+
+import base64
+import contextlib
+import zlib
+
+import bpy
+import numpy as np
+
+from ...errors import InputError
+from ...settings.bokeh_settings import BOKEH, DEBUG
+from ...settings.chromatic_settings import CHROMATIC
+from ...settings.scene_part_settings import LENS
+from ...settings.setting import settings_of
+from .irises import IrisReader
+
+_LEVELS = 65535.0
+# Properties of the groups, the drawn curves last: into a group that then exists.
+_BOKEH = tuple(
+    name
+    for name, setting in settings_of(*BOKEH).items()
+    if setting.default is not None and name not in settings_of(DEBUG)
+)
+_CHROMATIC = (*settings_of(*CHROMATIC), "curve_text")
+
+
+def record_lens(camera):
+    """Return the settings of a camera.
+
+    Parameters
+    ----------
+    camera : bpy.types.Camera
+        Evaluated.
+
+    Returns
+    -------
+    dict
+        For JSON: ``lens`` and ``zoom_label``, ``bokeh`` and ``chromatic`` by the names of their
+        properties, ``iris``, the picture of the opening, where there is one.
+    """
+    own = camera.aplanat
+    told = {name: getattr(own, name) for name in settings_of(LENS)}
+    told["bokeh"] = {name: getattr(own.bokeh, name) for name in _BOKEH}
+    told["chromatic"] = {name: getattr(own.chromatic, name) for name in _CHROMATIC}
+    image = own.bokeh.iris_image
+    if image is not None:
+        # One that cannot be read is none: the blades are drawn then, here as there.
+        with contextlib.suppress(InputError):
+            picture = IrisReader().read(image.original, 0.0).picture
+            levels = np.round(np.maximum(picture, 0.0) * (_LEVELS / picture.max()))
+            packed = zlib.compress(levels.astype("<u2").tobytes())
+            told["iris"] = {
+                "name": image.name,
+                "size": list(picture.shape[::-1]),
+                "texels": base64.b64encode(packed).decode("ascii"),
+            }
+    return told
+
+
+def apply_lens(told, camera):
+    """Give a camera settings that were recorded.
+
+    Parameters
+    ----------
+    told : dict
+        Of `record_lens`; what it does not tell, or not as this version knows it, stays as it is.
+    camera : bpy.types.Camera
+        An original.
+
+    Returns
+    -------
+    bpy.types.Image or None
+        The picture of the opening that was made.
+    """
+    own = camera.aplanat
+    _assign(own, settings_of(LENS), told)
+    _assign(own.bokeh, _BOKEH, told.get("bokeh"))
+    _assign(own.chromatic, _CHROMATIC, told.get("chromatic"))
+    image = _image(told.get("iris"))
+    if image is not None:
+        own.bokeh.iris_image = image
+    return image
+
+
+def _assign(group, names, values):
+    if not isinstance(values, dict):
+        return
+    for name in names:
+        if name in values:
+            # Of another version, or no number at all.
+            with contextlib.suppress(TypeError, ValueError):
+                setattr(group, name, values[name])
+
+
+def _image(told):
+    try:
+        width, height = told["size"]
+        levels = zlib.decompress(base64.b64decode(told["texels"]))
+        grey = np.frombuffer(levels, "<u2").reshape(height, width) / _LEVELS
+        name = str(told["name"])
+    except (KeyError, TypeError, ValueError, zlib.error):
+        return None
+    image = bpy.data.images.new(name, width, height, float_buffer=True, is_data=True)
+    pixels = np.ones((height, width, 4), np.float32)
+    pixels[..., :3] = grey[..., None]
+    image.pixels.foreach_set(pixels.ravel())
+    return image
