@@ -7,6 +7,7 @@ from .ui.operators import (
     capture_operator,
     chromatic_curves,
     chromatic_operators,
+    compositor_operators,
     lens_import,
     lens_operators,
     level_operators,
@@ -18,6 +19,7 @@ from .ui.panels import (
     bokeh_panel,
     capture_panel,
     chromatic_panel,
+    compositor_panel,
     lens_panel,
     panels,
     refocus_panel,
@@ -55,6 +57,8 @@ _MODULES = (
     refocus_operators,
     refocus_writing,
     refocus_panel,
+    compositor_operators,
+    compositor_panel,
     blender_command,
 )
 

@@ -19,7 +19,8 @@ PICTURE = REPO / "docs" / "images" / "architecture.svg"
 
 # What each room of addon/ is for, and where its box lies in its row: first column, columns.
 ROLES = {
-    "ui": ("panels, properties, operators", 0, 3),
+    "ui": ("panels, properties, operators", 0, 6),
+    "compositor": ("node groups, the sprite of a lens", 0, 3),
     "cli": ("the command line", 3, 3),
     "engine": ("plans, draws and shows a frame; what Blender calls", 0, 4.6),
     "capture": ("scenes as depth layers", 4.6, 1.4),

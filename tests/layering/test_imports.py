@@ -97,12 +97,15 @@ ROOMS = {
     ),
     # Another engine's pictures, or ours, as depth layers.
     "capture": ("files", "sampling", "settings", "layers", "scene.camera"),
+    # Blender's compositor: node groups, wiring, the traced sprite as an image.
+    "compositor": ("scene.camera", "engine", "engine.bokeh"),
     # What a user meets.
     "ui.jobs": ("layers", "engine", "engine.refocus"),
     "ui.previews": ("lens_bokeh.look", "plots", "scene.camera", "ui.jobs"),
     "ui.operators": (
         *("optics", "sampling", "lens_io", "lens_io.importers.draft"),
         *("files", "layers", "scene.camera", "engine", "engine.refocus", "capture", "ui.jobs"),
+        "compositor",
     ),
     "ui.properties": (*("lens_io.glasses", "settings", "engine", "ui.operators", "ui.previews"),),
     "ui.presets": ("settings", "ui.operators", "ui.properties"),
@@ -141,7 +144,7 @@ ROOF = {"", "errors", "registration"}
 BLENDER = {"bpy", "bl_ui", "bl_operators", "bpy_extras", "mathutils", "addon_utils"}
 
 # Where Blender is read or driven. Everything else works on values.
-BLENDER_FACING = {"registration", "cli", "ui", "scene", "engine", "capture"}
+BLENDER_FACING = {"registration", "cli", "ui", "scene", "engine", "capture", "compositor"}
 # Whole rooms, with their sub-rooms, that run without Blender.
 PURE_ROOMS = tuple(
     f"{name}."
