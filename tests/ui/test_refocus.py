@@ -188,6 +188,29 @@ def test_the_live_picture_is_that_of_the_command(open_file, captured, own, scene
         live.close()
 
 
+def test_a_draft_of_the_bokeh_becomes_the_whole(open_file, captured, own, scene, camera, stack):
+    # A highlight on the near card.
+    stack.layers[0].color[24, 30, :3] = 50.0
+    save_layers(captured, stack)
+    open_file(captured)
+    own.samples, own.focus_distance = 20, 0.6
+    bokeh = scene.camera.data.aplanat.bokeh
+    bokeh.use = True
+    live = LiveRefocus()
+    try:
+        work_on(live, scene)
+        settings = wanted(scene, stack)[0]
+        expected = refocus(stack, settings)
+        assert pixels_of(own.image).tobytes() == expected.tobytes()
+        assert (refocus(stack, replace(settings, bokeh=None)) != expected).any()
+        own.focus_distance = 0.5
+        work_on(live, scene)
+        expected = refocus(stack, wanted(scene, stack)[0])
+        assert pixels_of(own.image).tobytes() == expected.tobytes()
+    finally:
+        live.close()
+
+
 def test_the_live_picture_tells_what_is_wrong(open_file, captured, own, scene, tmp_path):
     open_file(captured)
     own.samples = 4

@@ -16,6 +16,8 @@ FIRST_SAMPLES = 16
 # Seconds of a piece, and between two pictures that are shown. A single sample may take longer.
 PIECE_SECONDS = 0.04
 SHOWN_SECONDS = 0.15
+# Seconds without a change after which the draft of the bokeh is replaced by the whole one.
+REST_SECONDS = 0.2
 
 
 class LivePicture:
@@ -39,6 +41,7 @@ class LivePicture:
         self._refocusing = None
         self._pacer = Pacer(PIECE_SECONDS)
         self._shown, self._shown_at, self._finished = 0, 0.0, False
+        self._changed_at = 0.0
 
     @property
     def samples_done(self):
@@ -63,7 +66,7 @@ class LivePicture:
         settings : RefocusSettings
         """
         if settings != self.settings:
-            self.settings = settings
+            self.settings, self._changed_at = settings, time.perf_counter()
             self.show_again()
 
     def show_again(self):
@@ -89,13 +92,15 @@ class LivePicture:
         device_context.ensure_context()
         with state.preserved():
             if self._refocusing is None:
-                self._refocusing = Refocusing(self.stack, self.settings)
+                self._refocusing = Refocusing(self.stack, self.settings, drafts=True)
             refocusing = self._refocusing
             refocusing.change(self.settings)
-            if not refocusing.finished:
+            if not refocusing.sampled:
                 # The first picture is no later than it must, and a change waits for a piece only.
                 self._pacer.samples = min(self._pacer.samples, FIRST_SAMPLES)
                 self._advance(refocusing)
+            if refocusing.bokeh_drafted and self._rests():
+                refocusing.refine_bokeh()
             self._finished = refocusing.finished
             if not (self._finished or self._is_worth_a_look(refocusing.samples_done)):
                 return None
@@ -108,8 +113,12 @@ class LivePicture:
         refocusing.advance(self._pacer.samples)
         self._pacer.measured(refocusing.samples_done - before, time.perf_counter() - start)
 
+    def _rests(self):
+        """Whether a first picture is shown, and settings have stayed for a while."""
+        return self._shown > 0 and time.perf_counter() - self._changed_at >= REST_SECONDS
+
     def _is_worth_a_look(self, samples):
-        if samples < FIRST_SAMPLES:
+        if samples < min(FIRST_SAMPLES, self.settings.samples):
             return False
         return self._shown == 0 or time.perf_counter() - self._shown_at >= SHOWN_SECONDS
 

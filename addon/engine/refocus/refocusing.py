@@ -83,6 +83,9 @@ class Refocusing:
     settings : RefocusSettings
     look_textures : TextureCache, optional
         Of the session.
+    drafts : bool
+        Begin with a draft of the bokeh, unless the last whole one was quick, and leave the whole to
+        `refine_bokeh`.
 
     Attributes
     ----------
@@ -96,7 +99,7 @@ class Refocusing:
         If the focus distance or the f-number cannot form a picture.
     """
 
-    def __init__(self, stack, settings, look_textures=None):
+    def __init__(self, stack, settings, look_textures=None, drafts=False):
         self.stack = stack
         self.settings = settings
         snapshot = refocus_snapshot(stack, settings)
@@ -104,7 +107,8 @@ class Refocusing:
         self._buffers = SceneBuffers(look_textures)
         self._buffers.update(self._content)
         self._buffers.captured = StackLayers(stack)
-        self._renderer = FrameRenderer(plan_frame(snapshot), snapshot, self._buffers)
+        self._drafts, plan = drafts, plan_frame(snapshot)
+        self._renderer = FrameRenderer(plan, snapshot, self._buffers, drafts)
 
     def change(self, settings):
         """Begin anew with other settings; the same ones go on where they are.
@@ -121,7 +125,7 @@ class Refocusing:
         if settings == self.settings:
             return
         snapshot = refocus_snapshot(self.stack, settings, self._content)
-        self._renderer.restart(plan_frame(snapshot), snapshot)
+        self._renderer.restart(plan_frame(snapshot), snapshot, self._drafts)
         self.settings = settings
 
     @property
@@ -131,8 +135,23 @@ class Refocusing:
 
     @property
     def finished(self):
-        """Whether the picture has all its lens samples."""
+        """Whether the picture has all its lens samples, and the whole bokeh."""
         return self._renderer.finished()
+
+    @property
+    def sampled(self):
+        """Whether the picture has all its lens samples."""
+        return self._renderer.sampled
+
+    @property
+    def bokeh_drafted(self):
+        """Whether the bokeh is a draft, or not made yet."""
+        return self._renderer.bokeh_drafted
+
+    def refine_bokeh(self):
+        """Make a part of the whole bokeh; the last part replaces the draft."""
+        self._renderer.refine_bokeh()
+        self._renderer.wait()
 
     @property
     def report(self):

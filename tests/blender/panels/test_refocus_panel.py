@@ -212,3 +212,13 @@ def test_nothing_is_left_behind(stage, layers):
     stage.run("live_refocus._end_all()")
     assert stage.run("result = bytes_on_device()") == 0
     stage.run("taking.__exit__(None, None, None)")
+
+
+def test_a_file_that_is_opened_again_goes_on(stage, tmp_path):
+    live, again = tmp_path / "live.npy", tmp_path / "again.npy"
+    stage.run(f"save_pixels({str(live)!r})")
+    stage.run(f"bpy.ops.wm.save_as_mainfile(filepath={str(tmp_path / 'shot.blend')!r})")
+    stage.run(f"bpy.ops.wm.open_mainfile(filepath={str(tmp_path / 'shot.blend')!r})")
+    stage.wait_for("done()")
+    stage.run(f"save_pixels({str(again)!r})")
+    assert np.array_equal(np.load(live), np.load(again))
