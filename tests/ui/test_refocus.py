@@ -13,7 +13,9 @@ from addon.engine.refocus.scene_refocus import as_sequence, flat_options, read_r
 from addon.engine.refocus.settings import RefocusSettings
 from addon.engine.shared_resources import resources
 from addon.layers.layer_file import load_layers, save_layers
+from addon.scene.camera.lens_record import record_lens
 from addon.ui.jobs.live_refocus import LiveRefocus
+from addon.ui.operators.refocus_operators import restore_lens
 from addon.ui.panels.bokeh_panel import APLANAT_CAMERA_PT_bokeh
 from addon.ui.panels.lens_panel import APLANAT_CAMERA_PT_lens
 from tests.engine.test_refocus import stack
@@ -149,6 +151,19 @@ def test_panels_of_the_camera_work_on_the_capture(scene, own, camera, stack):
     own.use_camera_lens = False
     assert not APLANAT_CAMERA_PT_bokeh.poll(context)
     assert wanted(scene, stack)[0].bokeh is None
+
+
+def test_a_camera_gets_the_captured_lens_back(scene, own, camera, stack):
+    data = scene.camera.data
+    data.aplanat.lens, data.aplanat.bokeh.gain = resources().lenses.ids()[1], 4.0
+    data.aplanat.bokeh.use = True
+    told = replace(stack.camera, blades=7, lens_settings=record_lens(data))
+    before = wanted(scene, stack)[0]
+    data.aplanat.lens, data.aplanat.bokeh.gain, data.aplanat.bokeh.use = "", 1.0, False
+    restore_lens(told, data)
+    after = wanted(scene, stack)[0]
+    assert after == replace(before, iris=replace(before.iris, blades=7), bokeh=after.bokeh)
+    assert after.bokeh.gain == 4.0
 
 
 def work_on(live, scene):

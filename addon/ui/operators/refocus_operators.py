@@ -5,10 +5,11 @@ from pathlib import Path
 
 import bpy
 
-from ...engine.refocus.scene_refocus import as_sequence, flat_options
+from ...engine.refocus.scene_refocus import as_sequence, flat_options, refocus_camera
 from ...errors import AplanatError
 from ...files.frame_path import frame_path
 from ...layers.picking import depth_at
+from ...scene.camera.lens_record import apply_lens
 from ..jobs import live_refocus
 
 # What the command line calls a setting, and what the panel does.
@@ -269,6 +270,50 @@ class APLANAT_OT_refocus_pick(bpy.types.Operator):
         context.workspace.status_text_set(None)
 
 
+class APLANAT_OT_refocus_restore(bpy.types.Operator):
+    """Give focus, f-number and the camera's lens the values of the capture."""
+
+    bl_idname = "image.aplanat_refocus_restore"
+    bl_label = "Restore as Captured"
+    bl_description = (
+        "Set focus and f-number to what they were when the layers were captured, and lens, iris,"
+        " fringes and bokeh of the camera, too, if its lens is used"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        """Whether a window shows a picture."""
+        return APLANAT_OT_refocus_pick.poll(context)
+
+    def execute(self, context):
+        """Set them."""
+        scene = context.scene
+        own, captured = scene.aplanat.refocus, live_refocus.live_of(scene).stack.camera
+        own.focus_from = own.fstop_from = "OWN"
+        own.focus_distance, own.fstop = captured.focus_distance, captured.f_stop
+        camera = refocus_camera(scene)
+        if own.use_camera_lens and camera is not None:
+            restore_lens(captured, camera.data)
+        live_refocus.wake()
+        return {"FINISHED"}
+
+
+def restore_lens(captured, camera):
+    """Give a camera the lens that it had when layers were captured.
+
+    Parameters
+    ----------
+    captured : LayerCamera
+        What it does not tell stays as it is.
+    camera : bpy.types.Camera
+    """
+    dof = camera.dof
+    dof.aperture_blades, dof.aperture_rotation = captured.blades, captured.blade_rotation
+    dof.aperture_ratio = captured.aperture_ratio
+    apply_lens(captured.lens_settings or {}, camera)
+
+
 def depth_under(context, mouse_x, mouse_y):
     """Return the depth of what an Image editor shows under the mouse.
 
@@ -326,6 +371,7 @@ CLASSES = (
     APLANAT_OT_refocus_close,
     APLANAT_OT_refocus_reload,
     APLANAT_OT_refocus_pick,
+    APLANAT_OT_refocus_restore,
 )
 
 _register, _unregister = bpy.utils.register_classes_factory(CLASSES)

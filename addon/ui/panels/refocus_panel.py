@@ -10,6 +10,7 @@ from ..operators.refocus_operators import (
     APLANAT_OT_refocus_open,
     APLANAT_OT_refocus_pick,
     APLANAT_OT_refocus_reload,
+    APLANAT_OT_refocus_restore,
     draw_depth_pass,
     in_words_of_panel,
 )
@@ -118,6 +119,7 @@ class APLANAT_IMAGE_PT_refocus_lens(_OpenPanel, bpy.types.Panel):
             draw_sentences(
                 column, lens_in_words(camera.data), letters_across(context), "CAMERA_DATA"
             )
+        column.operator(APLANAT_OT_refocus_restore.bl_idname, icon="LOOP_BACK")
         column.separator()
         column.prop(own, "samples")
 
