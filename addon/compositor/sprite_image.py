@@ -96,6 +96,15 @@ def store_sprite(name, light):
     return image
 
 
+def fill_empty_groups(image):
+    """Give an image to the sprite's groups that have none, as they come from the asset browser."""
+    for tree in bpy.data.node_groups:
+        if is_ours(tree, SPRITE) and tree.library is None:
+            for node in tree.nodes:
+                if node.type == "IMAGE" and node.image is None:
+                    node.image = image
+
+
 def sprite_group(image):
     """Return the node group that gives an image to Blender's nodes; it is made if there is none."""
     for tree in bpy.data.node_groups:

@@ -4,7 +4,13 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from addon.compositor.node_groups import MIX, is_ours, node_group
+from addon.compositor.asset_library import (
+    add_library,
+    bundled_folder,
+    known_library,
+    write_asset_library,
+)
+from addon.compositor.node_groups import GROUPS, MIX, is_ours, node_group
 from addon.compositor.sprite_image import camera_sprite
 from addon.compositor.wiring import wire_picture, wire_render
 from tests.pictures import render_picture
@@ -159,3 +165,26 @@ def test_group_nodes_are_added_in_the_compositor_only(aplanat_bpy, aplanat_scene
     assert not aplanat_bpy.ops.node.aplanat_add_group.poll()
     assert not aplanat_bpy.ops.node.aplanat_add_bokeh_sprite.poll()
     assert node_group(MIX).bl_idname == "CompositorNodeTree"
+
+
+def test_the_asset_library_has_all_groups_and_is_added_once(aplanat_bpy, empty_scene, tmp_path):
+    bpy, before = aplanat_bpy, set(aplanat_bpy.data.node_groups)
+    write_asset_library(tmp_path / "library")
+    assert set(bpy.data.node_groups) == before
+    (blend,) = (tmp_path / "library").glob("*.blend")
+    catalogs = (tmp_path / "library" / "blender_assets.cats.txt").read_text()
+    with bpy.data.libraries.load(str(blend), assets_only=True) as (there, wanted):
+        assert sorted(there.node_groups) == sorted(GROUPS)
+        wanted.node_groups = list(there.node_groups)
+    for tree in wanted.node_groups:
+        assert f"{tree.asset_data.catalog_id}:Lens:" in catalogs
+        # An appended group is ours: no second one is made.
+        assert is_ours(tree, tree.name) and tree.asset_data.description
+        assert node_group(tree.name) == tree
+    folder = (tmp_path / "library").resolve()
+    libraries = bpy.context.preferences.filepaths.asset_libraries
+    count = len(libraries)
+    assert add_library(folder) and not add_library(folder) and len(libraries) == count + 1
+    libraries.remove(known_library(folder))
+    # A checkout has none that could be added.
+    assert bundled_folder() is None and not bpy.ops.preferences.aplanat_add_asset_library.poll()

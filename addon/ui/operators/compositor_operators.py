@@ -4,8 +4,16 @@ from pathlib import Path
 
 import bpy
 
+from ...compositor.asset_library import add_library, bundled_folder, known_library
 from ...compositor.node_groups import FRINGE, GROUPS, MIX, SPRITE, node_group
-from ...compositor.sprite_image import LEAST, MOST, camera_sprite, sprite_group, store_sprite
+from ...compositor.sprite_image import (
+    LEAST,
+    MOST,
+    camera_sprite,
+    fill_empty_groups,
+    sprite_group,
+    store_sprite,
+)
 from ...compositor.wiring import wire_picture, wire_render
 from ...errors import AplanatError
 from ...files.frame_path import frame_path
@@ -157,6 +165,7 @@ class APLANAT_OT_bokeh_image(_SpriteMaker, bpy.types.Operator):
         image = self.draw_sprite(context)
         if image is None:
             return {"CANCELLED"}
+        fill_empty_groups(image)
         if context.space_data is not None and context.space_data.type == "IMAGE_EDITOR":
             context.space_data.image = image
         self.report({"INFO"}, f"Drew image '{image.name}'")
@@ -253,6 +262,32 @@ class APLANAT_OT_wire_compositor(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class APLANAT_OT_add_asset_library(bpy.types.Operator):
+    """Add Aplanat's node groups to the asset libraries of the preferences."""
+
+    bl_idname = "preferences.aplanat_add_asset_library"
+    bl_label = "Add Aplanat's Asset Library"
+    bl_description = (
+        "Show Aplanat's node groups in the asset browser of all files. Adds an entry to Preferences"
+        " > File Paths > Asset Libraries, where it can be removed"
+    )
+
+    @classmethod
+    def poll(cls, _context):
+        """Whether there is such a library that is not among the user's."""
+        folder = bundled_folder()
+        if folder is None:
+            cls.poll_message_set("Only the built extension has an asset library")
+            return False
+        return known_library(folder) is None
+
+    def execute(self, _context):
+        """Add it."""
+        add_library(bundled_folder())
+        self.report({"INFO"}, "Added asset library 'Aplanat'")
+        return {"FINISHED"}
+
+
 class APLANAT_MT_compositor_add(bpy.types.Menu):
     """Add > Aplanat in the compositor."""
 
@@ -277,6 +312,7 @@ CLASSES = (
     APLANAT_OT_bokeh_image,
     APLANAT_OT_add_bokeh_sprite,
     APLANAT_OT_wire_compositor,
+    APLANAT_OT_add_asset_library,
     APLANAT_MT_compositor_add,
 )
 

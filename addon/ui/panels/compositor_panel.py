@@ -3,6 +3,7 @@
 import bpy
 
 from ..operators.compositor_operators import (
+    APLANAT_OT_add_asset_library,
     APLANAT_OT_add_bokeh_sprite,
     APLANAT_OT_bokeh_image,
     APLANAT_OT_wire_compositor,
@@ -37,6 +38,10 @@ class APLANAT_NODE_PT_compositing(bpy.types.Panel):
         row = column.row(align=True)
         row.operator(APLANAT_OT_add_bokeh_sprite.bl_idname, text="Add Node", icon="NODE")
         row.operator(APLANAT_OT_bokeh_image.bl_idname, text="Draw Anew", icon="FILE_REFRESH")
+        if APLANAT_OT_add_asset_library.poll(context):
+            column.separator()
+            name = APLANAT_OT_add_asset_library.bl_idname
+            column.operator(name, text="Show in Asset Browser", icon="ASSET_MANAGER")
 
 
 CLASSES = (APLANAT_NODE_PT_compositing,)
