@@ -11,7 +11,7 @@ import bpy
 from ..errors import CameraError, InputError
 from ..layers.layer_stack import LayerCamera
 from ..sampling.thin_lens import aperture_radius
-from ..scene.camera.camera import camera_place, evaluated_camera, focus_distance
+from ..scene.camera.camera import camera_place, check_kind, evaluated_camera, focus_distance
 from ..scene.camera.lens_record import record_lens
 from .kept_values import KeptValues
 
@@ -179,6 +179,8 @@ class ShotCopy:
                 f"scene '{scene.name}' looks through '{camera.name}', which is no camera; set"
                 " Scene > Camera"
             )
+        # Before it is copied: a copy has another name.
+        check_kind(camera)
         return camera
 
     def _warn(self, text):

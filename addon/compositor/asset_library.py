@@ -9,13 +9,15 @@ from pathlib import Path
 
 import bpy
 
+from .asset_previews import SIZE, preview_pixels
 from .node_groups import GROUPS, new_group
 
 FOLDER = "asset_library"
 LIBRARY = "Aplanat"
 _BLEND, _CATALOGS = "aplanat_compositing.blend", "blender_assets.cats.txt"
-# Of the catalog, and for all time: assets are found by it.
-_CATALOG_ID, _CATALOG = "5d1c8f0e-6f6a-4f0c-9a2e-3b7c41d0a9e5", "Lens"
+# Blender's own catalog, so that the groups stand beside its effects.
+_CATALOG_ID = "81249800-1dfd-4eec-9257-20019aa3ef5d"
+_CATALOG = "Compositing/Camera & Lens Effects"
 
 
 def write_asset_library(folder):
@@ -28,17 +30,23 @@ def write_asset_library(folder):
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    trees = [new_group(name) for name in GROUPS]
-    for tree in trees:
+    trees = {name: new_group(name) for name in GROUPS}
+    for name, tree in trees.items():
         tree.asset_mark()
         tree.asset_data.description = tree.description
         tree.asset_data.author = "The Aplanat developers"
         tree.asset_data.license = "GPL-3.0-or-later"
         tree.asset_data.catalog_id = _CATALOG_ID
-    bpy.data.libraries.write(str(folder / _BLEND), set(trees), fake_user=True, compress=True)
-    for tree in trees:
+        preview = tree.preview_ensure()
+        preview.image_size = (SIZE, SIZE)
+        preview.image_pixels_float.foreach_set(preview_pixels(name).ravel())
+    bpy.data.libraries.write(
+        str(folder / _BLEND), set(trees.values()), fake_user=True, compress=True
+    )
+    for tree in trees.values():
         bpy.data.node_groups.remove(tree)
-    text = f"# Catalogs of Aplanat's assets\n\nVERSION 1\n\n{_CATALOG_ID}:{_CATALOG}:{_CATALOG}\n"
+    name = _CATALOG.replace("/", "-")
+    text = f"# Catalogs of Aplanat's assets\n\nVERSION 1\n\n{_CATALOG_ID}:{_CATALOG}:{name}\n"
     (folder / _CATALOGS).write_text(text, encoding="utf-8")
 
 

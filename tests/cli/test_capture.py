@@ -97,6 +97,11 @@ def test_refused(refused, shot, make_blend, tmp_path):
         scene.camera = None
 
     assert "no camera" in refused("capture", make_blend(no_camera), *out)
+
+    def panoramic(_bpy, scene):
+        scene.camera.data.type = "PANO"
+
+    assert "camera 'Camera' is pano" in refused("capture", make_blend(panoramic), *out)
     line = refused("capture", shot, *out, "--resolution", "40000x40000", "--overscan", "1")
     assert "120000 x 120000" in line
 

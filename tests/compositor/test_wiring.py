@@ -177,10 +177,12 @@ def test_the_asset_library_has_all_groups_and_is_added_once(aplanat_bpy, empty_s
         assert sorted(there.node_groups) == sorted(GROUPS)
         wanted.node_groups = list(there.node_groups)
     for tree in wanted.node_groups:
-        assert f"{tree.asset_data.catalog_id}:Lens:" in catalogs
+        assert f"{tree.asset_data.catalog_id}:Compositing/Camera & Lens Effects:" in catalogs
         # An appended group is ours: no second one is made.
         assert is_ours(tree, tree.name) and tree.asset_data.description
         assert node_group(tree.name) == tree
+        assert tuple(tree.preview.image_size) == (128, 128)
+        assert 0.0 < np.mean(tree.preview.image_pixels_float) < 1.0
     folder = (tmp_path / "library").resolve()
     libraries = bpy.context.preferences.filepaths.asset_libraries
     count = len(libraries)

@@ -98,7 +98,7 @@ ROOMS = {
     # Another engine's pictures, or ours, as depth layers.
     "capture": ("files", "sampling", "settings", "layers", "scene.camera"),
     # Blender's compositor: node groups, wiring, the traced sprite as an image.
-    "compositor": ("scene.camera", "engine", "engine.bokeh"),
+    "compositor": ("lens_bokeh.look", "scene.camera", "engine", "engine.bokeh"),
     # What a user meets.
     "ui.jobs": ("layers", "engine", "engine.refocus"),
     "ui.previews": ("lens_bokeh.look", "plots", "scene.camera", "ui.jobs"),

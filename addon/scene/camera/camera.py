@@ -184,13 +184,23 @@ def evaluated_camera(depsgraph, camera):
         If it is panoramic or custom.
     """
     camera = camera.evaluated_get(depsgraph)
+    check_kind(camera)
+    return camera
+
+
+def check_kind(camera):
+    """Refuse a camera that is neither perspective nor orthographic.
+
+    Raises
+    ------
+    CameraError
+    """
     kind = camera.data.type
     if kind not in {"PERSP", "ORTHO"}:
         raise CameraError(
             f"camera '{camera.name}' is {kind.lower()}; Aplanat renders perspective and"
             " orthographic cameras (Camera > Lens > Type)"
         )
-    return camera
 
 
 def read_lens(depsgraph, camera, real_lens=None, world=None):
