@@ -17,4 +17,6 @@ struct VisibilityParams {
   vec4 colors;          // of wavelengths: x, y: least and largest change of 1 / focus distance, 1/m;
                         // z: share of their way from the axis that discs move by, at the most;
                         // w: focus distance that stands for all, m
+  vec4 layers;          // x: 1 if the peeled layers are pictures with partly covered pixels, whose
+                        // coverage goes over from texel to texel; yzw unused
 };

@@ -71,6 +71,7 @@ def test_no_setting_before_changes_a_bit(stack):
         SETTINGS,
         replace(SETTINGS, bokeh=None),
         replace(SETTINGS, bokeh=BokehSettings(threshold=10.0)),
+        replace(SETTINGS, bokeh=BokehSettings(threshold=1e6)),
         replace(SETTINGS, chromatic=chromatic, focus_distance=6.0),
         replace(SETTINGS, bokeh=BokehSettings(distortion=0.1)),
         replace(SETTINGS, f_stop=1000.0),

@@ -69,6 +69,8 @@ class StackLayers:
         self._occluders = None
         self._threshold = None
         self._highlights = None
+        # Pyramids are those of the layers as they were before.
+        self._stale = True
 
     def prepare(self, plan, split=None, field=None):
         """Return the layers with their pyramids, as the samples of a frame see them.
@@ -86,9 +88,9 @@ class StackLayers:
         -------
         DeviceLayers
         """
-        fresh = self._made is None
-        if fresh:
+        if self._made is None:
             self._made = _upload(self._depths_of(plan), self.stack)
+            self._stale = True
         textures, raster = self._made.textures, self._made.raster
         if plan.bokeh:
             highlights = self.highlights(plan)
@@ -98,12 +100,13 @@ class StackLayers:
                     layer_highlights.leave_base(
                         entries, number, textures["colors"], split, view, field
                     )
-                    fresh = True
+                    self._stale = True
         else:
-            fresh = self._forget_highlights() or fresh
-        if fresh:
+            self._forget_highlights()
+        if self._stale:
             count = len(self._made.bounds)
             layers.build_pyramids(textures, raster.width, raster.height, count, True)
+            self._stale = False
         return self._made
 
     def highlights(self, plan):
@@ -146,15 +149,14 @@ class StackLayers:
         return self._depths
 
     def _forget_highlights(self):
-        """Give the layers back what the samples of earlier frames did not see; whether any."""
+        """Give the layers back what the samples of earlier frames did not see."""
         found, self._highlights, self._threshold = self._highlights, None, None
-        changed = False
-        if found is not None and self._made is not None:
-            for entries, number in (found.surfaces, found.world):
-                if number:
-                    layer_highlights.give_back(entries, number, self._made.textures["colors"])
-                    changed = True
-        return changed
+        if found is None or self._made is None:
+            return
+        for entries, number in (found.surfaces, found.world):
+            if number:
+                layer_highlights.give_back(entries, number, self._made.textures["colors"])
+                self._stale = True
 
     def release(self):
         """Give everything back to the device."""

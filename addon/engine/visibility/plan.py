@@ -180,6 +180,8 @@ def visibility_params(plan, fine=1, reach=1.0):
             _reaching_depth(plan),
         ),
         "colors": _colors(bokeh.colors, focus),
+        # Captured pictures are filtered.
+        "layers": (float(bool(plan.layered and plan.layered.stack)), 0.0, 0.0, 0.0),
     }
 
 

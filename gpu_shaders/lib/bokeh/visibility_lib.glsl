@@ -74,11 +74,28 @@ vec4 visibility_layers(sampler2D layers_tx, vec2 place)
   return texelFetch(layers_tx, texel, 0);
 }
 
+// Share of the light that passes the surfaces of filtered layers on a step of a ray. The step goes from
+// the depth buffer value `here` to `next`, over texels with the surfaces `before` and `after`, which cover
+// a and b of them; coverage goes over evenly in between. `joined`: both are one surface.
+float passed_filtered(
+    float here, float next, vec4 before, vec4 after, vec4 a, vec4 b, vec4 joined)
+{
+  vec4 from = here - before, to = next - after;
+  vec4 at_before = from / (here - next), at_after = (here - after) / (here - next);
+  vec4 first = vec4(greaterThan(at_before, vec4(0.0))) * max(1.0 - at_before, 0.0) * a;
+  vec4 second = vec4(lessThanEqual(at_after, vec4(1.0))) * max(at_after, 0.0) * b;
+  vec4 crosses = vec4(greaterThan(from, vec4(0.0))) * vec4(lessThanEqual(to, vec4(0.0)));
+  vec4 covered = crosses * mix(a, b, clamp(from / max(from - to, 1e-30), 0.0, 1.0));
+  vec4 passed = mix((1.0 - first) * (1.0 - second), 1.0 - covered, joined);
+  return passed.x * passed.y * passed.z * passed.w;
+}
+
 // Share of a source's light that reaches a place on the lens through the surfaces of the peeled
 // layers.
 // opacity_tx: opacity of each layer; place: the source's, texels; depth: its depth buffer value;
 // limit: surfaces at larger values are no occluders; nearest: least value of any surface on the way;
-// move: texels that the line to that place on the lens moves for each unit of the depth buffer.
+// move: texels that the line to that place on the lens moves for each unit of the depth buffer;
+// filtered: see VisibilityParams.
 // The ray is walked from the source to the lens. Between texels whose surfaces are joined, a layer
 // is a height field; elsewhere each texel's surface is flat.
 float visibility_cast(sampler2D layers_tx,
@@ -87,7 +104,8 @@ float visibility_cast(sampler2D layers_tx,
                       float depth,
                       float limit,
                       float nearest,
-                      vec2 move)
+                      vec2 move,
+                      bool filtered)
 {
   float rate = max(max(abs(move.x), abs(move.y)), 1e-6);
   vec2 way = move / rate;
@@ -106,6 +124,19 @@ float visibility_cast(sampler2D layers_tx,
     vec4 behind = vec4(greaterThan(vec4(here), before));
     vec4 past = vec4(lessThanEqual(vec4(next), after));
     vec4 joined = vec4(lessThan(abs(before - after), vec4(stride * texel)));
+    if (filtered && any(greaterThan(vec4(here), min(before, after)))) {
+      vec4 a = visibility_opacities(opacity_tx, place + way * walked);
+      vec4 b = visibility_opacities(opacity_tx, place + way * (walked + stride));
+      through *= passed_filtered(here, next, before, after, a, b, joined);
+      if (through < 1e-3) {
+        return 0.0;
+      }
+    }
+    if (filtered) {
+      before = after;
+      here = next;
+      continue;
+    }
     vec4 first = behind * vec4(lessThanEqual(vec4(middle), before)) * (1.0 - joined);
     vec4 second = past * mix(vec4(greaterThan(vec4(middle), after)), behind, joined);
     if (any(greaterThan(first + second, vec4(0.0)))) {

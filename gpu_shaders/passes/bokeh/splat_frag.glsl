@@ -36,7 +36,8 @@ float seen_from_parts(Source source, float extent, float nearest, vec2 lens)
                            source.depth,
                            source.limit,
                            nearest,
-                           place * reach);
+                           place * reach,
+                           visibility_buf.layers.x > 0.5);
   }
   return sum / float(side * side);
 }

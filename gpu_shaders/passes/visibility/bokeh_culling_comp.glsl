@@ -52,6 +52,9 @@ bool free_of_texels(Source source, ivec2 low, ivec2 high)
 {
   vec2 rate = source_reach(visibility_buf);
   float most = 1.0 / max(rate.x, rate.y);
+  bool filtered = visibility_buf.layers.x > 0.5;
+  // How far a texel's surface reaches from its middle.
+  float side = filtered ? 1.0 : 0.5;
   for (int y = low.y; y <= high.y; y++) {
     for (int x = low.x; x <= high.x; x++) {
       float depth = texelFetch(layers_tx, ivec2(x, y), 0).x;
@@ -60,9 +63,10 @@ bool free_of_texels(Source source, ivec2 low, ivec2 high)
       }
       vec2 offset = abs(vec2(x, y) + 0.5 - source.place);
       vec2 reach = rate * (source.depth - depth);
-      if (all(lessThanEqual(offset - 0.5, reach))) {
+      if (all(lessThanEqual(offset - side, reach))) {
         // Inside a surface the texel's middle decides; at its edge any part of the texel.
-        if (all(lessThanEqual(offset, reach)) || !joined(ivec2(x, y), depth, most)) {
+        bool decided = filtered || all(lessThanEqual(offset, reach));
+        if (decided || !joined(ivec2(x, y), depth, most)) {
           return false;
         }
       }
@@ -79,7 +83,7 @@ float state_of(Source source, inout float nearest)
   vec3 bounds;
   ivec2 low, high;
   for (int i = 0; i < ITERATIONS; i++) {
-    vec2 reach = rate * max(source.depth - nearest, 0.0);
+    vec2 reach = rate * max(source.depth - nearest, 0.0) + visibility_buf.layers.x;
     low = ivec2(floor(source.place - reach));
     high = ivec2(floor(source.place + reach));
     inside = all(greaterThanEqual(low, ivec2(0))) && all(lessThan(high, size));

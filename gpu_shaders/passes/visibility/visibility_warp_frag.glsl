@@ -16,5 +16,6 @@ void main()
                              source.depth,
                              source.limit,
                              nearest,
-                             v_lens * source_reach(visibility_buf));
+                             v_lens * source_reach(visibility_buf),
+                             visibility_buf.layers.x > 0.5);
 }
