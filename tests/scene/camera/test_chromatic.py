@@ -76,7 +76,7 @@ def test_the_settings_of_a_new_camera_are_those_of_the_paper(camera, aplanat_bpy
     found = read(aplanat_bpy)
     assert found.mode == "SPECTRAL" and found.wavelength_range == (380.0, 780.0)
     assert found.axial == 1.0 and found.lateral == LATERAL_UNIT
-    assert found.dispersion is glass_dispersion("N-BK7")
+    assert found.dispersion == glass_dispersion("N-BK7")
     assert found.focal_length == camera.lens / 1000.0
     assert found.axial_map(0.3) == 0.3 and found.lateral_map(0.3) == 0.3
     assert found.equalizer is FLAT
@@ -91,7 +91,7 @@ def test_what_is_set_is_what_is_read(camera, chromatic, aplanat_bpy):
     camera.lens = 85.0
     found = read(aplanat_bpy)
     assert (found.mode, found.axial, found.lateral) == ("RGB", -2.0, -3.0 * LATERAL_UNIT)
-    assert found.dispersion is glass_dispersion("F2")
+    assert found.dispersion == glass_dispersion("F2")
     assert found.axial_map(0.5) == pytest.approx(math.exp(0.125))
     assert found.lateral_map(1.0, math.pi) == pytest.approx(-1.0)
     assert found.focal_length == pytest.approx(0.085, rel=SINGLE)
