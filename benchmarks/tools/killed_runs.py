@@ -126,18 +126,21 @@ def trials(blend, folder, arguments):
         run(["capture", str(blend), *_CAPTURE, *_frames(arguments), "-o", str(source)])
     whole = folder / "whole"
     whole.mkdir()
-    begun = time.monotonic()
+    begun = time.time()
     run(words(source, whole, arguments))
-    lasts = time.monotonic() - begun
+    stamps = sorted(path.stat().st_mtime for path in whole.iterdir())
+    pace = (stamps[-1] - stamps[0]) / max(1, len(stamps) - 1)
     truth = {path.name: path.read_bytes() for path in whole.iterdir()}
     assert len(truth) == arguments.frames, sorted(truth)
-    print(f"an unkilled run: {lasts:.1f} s")
+    print(
+        f"an unkilled run: the first frame after {stamps[0] - begun:.1f} s, then {pace:.2f} s each"
+    )
     for number in range(arguments.trials):
         out = folder / f"trial-{number}"
         out.mkdir()
-        # Starting takes as long as some frames: only one of so many kills is before the first.
+        # Starting takes as long as many frames: only one of so many kills is before the first.
         after = moments.randrange(arguments.frames)
-        seconds = moments.uniform(0.0, lasts if after == 0 else lasts / arguments.frames)
+        seconds = moments.uniform(0.0, pace if after else stamps[0] - begun)
         trial = killed_once(words(source, out, arguments), out, truth, seconds, after)
         faults = {n: getattr(trial, n) for n in ("broken", "redone", "different")}
         told = ", ".join(f"{name}: {' '.join(found)}" for name, found in faults.items() if found)

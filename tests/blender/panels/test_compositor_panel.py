@@ -1,6 +1,5 @@
 """The compositor in Blender's window: buttons, the Add menu, undo, and the asset library."""
 
-import time
 from pathlib import Path
 
 import pytest
@@ -79,6 +78,25 @@ def test_buttons_set_up_add_and_are_undone(stage, tmp_path):
     assert stage.run("result = undo()")
 
 
+def test_a_node_of_the_menu_follows_the_pointer_until_a_click(stage):
+    stage.run("wire()")
+    stage.xdotool("mousemove", 300, 500)
+    # As the Add menu calls it.
+    code = "bpy.ops.node.aplanat_add_group('INVOKE_DEFAULT', True, group='Aplanat Fringe')"
+    stage.run(f"with in_editor(): {code}")
+    stage.wait_for("len(window().modal_operators)")
+    places = []
+    for x in (500, 600):
+        stage.xdotool("mousemove", x, 500)
+        stage.run("with in_editor(): bpy.ops.wm.redraw_timer(type='DRAW', iterations=1)")
+        code = "list(bpy.context.scene.compositing_node_group.nodes.active.location)"
+        places.append(stage.run(f"result = {code}")[0])
+    assert places[1] > places[0] + 20.0
+    stage.xdotool("click", 1)
+    stage.wait_for("not window().modal_operators")
+    assert "Aplanat Fringe" in stage.run("result = kinds()")
+
+
 def test_the_asset_library_is_added_by_its_button_only(stage, tmp_path):
     assert stage.run("result = library.bundled_folder() is not None")
     names = "[l.name for l in bpy.context.preferences.filepaths.asset_libraries]"
@@ -89,6 +107,5 @@ def test_the_asset_library_is_added_by_its_button_only(stage, tmp_path):
     assert stage.run(f"result = {names}").count("Aplanat") == 1
     assert not stage.run("result = bpy.ops.preferences.aplanat_add_asset_library.poll()")
     stage.run("wire()")
-    time.sleep(2.0)
     stage.run("result = 1")
     stage.screenshot(tmp_path / "assets.png")
