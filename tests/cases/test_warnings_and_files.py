@@ -15,13 +15,19 @@ def case_copy(case_file, tmp_path):
     return lambda name: shutil.copy(case_file(name), tmp_path / f"{name}.blend")
 
 
+@pytest.mark.parametrize(
+    ("command", "options"),
+    [("render", ("--samples", "4")), ("capture", ("--engine", "APLANAT", "--layers", "2"))],
+)
 def test_a_missing_library_is_told_by_name_and_refused_if_strict(
     aplanat,  # noqa: F811
     case_file,
     tmp_path,
+    command,
+    options,
 ):
-    words = ("render", case_file("r4-missing-library"), "-o", tmp_path / "a.exr", "--json")
-    done = aplanat(*words, "--samples", "4")
+    words = (command, case_file("r4-missing-library"), "-o", tmp_path / "a.exr", "--json")
+    done = aplanat(*words, *options)
     assert done.code == 0, done.err
     (line,) = done.answer["warnings"]
     assert line.startswith("library '//gone.blend' cannot be read")
