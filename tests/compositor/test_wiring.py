@@ -115,6 +115,23 @@ def test_a_picture_takes_the_place_of_the_render(scene, noise, tmp_path):
         wire_picture(scene, str(tmp_path / "none.exr"))
 
 
+def test_a_sequence_shows_the_file_of_each_frame(aplanat_bpy, scene, tmp_path):
+    header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
+    for frame in (5, 6, 7):
+        pixels = np.full((32, 48, 4), 0.1 * frame, np.float32)
+        OpenEXR.File(dict(header), {"RGBA": pixels}).write(str(tmp_path / f"a_{frame:04d}.exr"))
+    scene.frame_start, scene.frame_end = 5, 7
+    scene.aplanat.refocus.output = str(tmp_path / "a_####.exr")
+    assert aplanat_bpy.ops.scene.aplanat_wire_compositor(source="REFOCUSED") == {"FINISHED"}
+    before = described(scene)
+    assert aplanat_bpy.ops.scene.aplanat_wire_compositor(source="REFOCUSED") == {"FINISHED"}
+    assert described(scene) == before
+    for frame in (5, 7, 6):
+        scene.frame_set(frame)
+        assert np.allclose(render_picture(scene), 0.1 * frame, rtol=1e-6), frame
+    scene.frame_set(1)
+
+
 def test_operators_wire_draw_and_can_be_undone(aplanat_bpy, aplanat_scene):
     bpy, operators = aplanat_bpy, aplanat_bpy.ops
     assert operators.scene.aplanat_wire_compositor() == {"FINISHED"}
