@@ -20,6 +20,8 @@ def plan_of(
     projection = np.array(
         [[scale, 0, 0, 0], [0, scale, 0, 0], [0, 0, -1.0, -0.02], [0, 0, -1.0, 0]], float
     )
+    from addon.device.textures import TextureCache
+
     settings = BokehSettings(appearance=appearance or Appearance(), **settings)
     iris = iris or Iris()
     bokeh = SimpleNamespace(
@@ -41,6 +43,8 @@ def plan_of(
         projection=projection,
         size=size,
         focal_px=focal_px,
+        # Pictures of one plan share what their looks are made of.
+        textures=TextureCache(),
     )
 
 
@@ -56,7 +60,7 @@ def splatted(plan, depth, chief=(0.0, 0.0), light=(1.0, 1.0, 1.0), window=None, 
     """
     from addon.device import geometry, readback
     from addon.device.targets import Targets, TargetSpec
-    from addon.device.textures import TextureCache, texture_2d
+    from addon.device.textures import texture_2d
     from addon.device.uniforms import uniform_buffer
     from addon.engine.bokeh.look import make_look
     from addon.passes.bokeh import splat
@@ -86,7 +90,7 @@ def splatted(plan, depth, chief=(0.0, 0.0), light=(1.0, 1.0, 1.0), window=None, 
     with Targets(size, size, [TargetSpec("bokeh", "RGBA32F")]) as targets:
         targets.clear("bokeh", (0.0, 0.0, 0.0, 0.0))
         with targets.framebuffer("bokeh").bind():
-            splat.splat(geometry.square_batch(), 1, textures, make_look(plan, TextureCache()), view)
+            splat.splat(geometry.square_batch(), 1, textures, make_look(plan, plan.textures), view)
         return readback.read_color(targets.framebuffer("bokeh"), size, size)
 
 

@@ -88,8 +88,8 @@ def test_balls_agree_with_cycles_channel_by_channel(bench, shared):
 def test_few_samples_of_the_spectrum_are_near_many(bench, shared):
     from benchmarks.benches.scenes import Case, open_scene
 
-    file = shared_scene("toys", "flat", _Quiet())
-    scene = open_scene(Case("toys", file, 128, {}), RESOLUTION)
+    file = shared_scene("balls", "flat", _Quiet())
+    scene = open_scene(Case("balls", file, 128, {}), RESOLUTION)
     read = bench(scene)
     chromatic = aberration("SPECTRAL", scene.camera.data.lens / 1000.0, SCENE_AXIAL)
     few, many = (

@@ -1,5 +1,6 @@
 """The passes of the bokeh: the list of highlights and the splat, against numpy."""
 
+import functools
 from dataclasses import replace
 
 import numpy as np
@@ -154,6 +155,11 @@ def test_the_list_is_the_same_every_time():
     assert first.tobytes() == second.tobytes()
 
 
+@functools.cache
+def opening_of(iris):
+    return opening_layers(iris.coverage)
+
+
 def splatted(
     radius, center, iris=None, ratio=1.0, size=64, light=(1.0, 2.0, 4.0), region=0, side=1
 ):
@@ -188,7 +194,7 @@ def splatted(
     lists[2, 0, 0] = (0.0, 0.0, 0.0, 1.0)
     textures = [texture_2d(table) for table in lists]
     textures.append(texture_2d(np.ones((1, 1, 4), np.float32)))
-    opening = texture_array(opening_layers(iris.coverage), "RGBA16F")
+    opening = texture_array(opening_of(iris), "RGBA16F")
     look = BokehLook((), (("opening_tx", opening),), (uniform_buffer(parameters),))
     with Targets(size, size, [TargetSpec("bokeh", "RGBA32F")]) as targets:
         targets.clear("bokeh", (0.0, 0.0, 0.0, 0.0))
