@@ -173,20 +173,18 @@ def _deposited(x, y, wide_x, wide_y, layers, size):
 def _laid(x, y, wide_x, wide_y, layers, size):
     columns, left = _shares(x, wide_x)
     rows, low = _shares(y, wide_y)
-    # A margin on all sides takes the light that falls outside.
-    stride = size + 2
-    columns, rows = (np.clip(first, -1, size) + 1 for first in (columns, rows))
+    # A margin of two texels takes the light that falls outside, and that of its next texel.
+    stride = size + 4
+    columns, rows = (np.clip(first, -2, size) + 2 for first in (columns, rows))
     corner = rows * stride + columns
     shares = ((0, low * left), (1, low * (1.0 - left)))
     shares += ((stride, (1.0 - low) * left), (stride + 1, (1.0 - low) * (1.0 - left)))
-    length = (size + 3) * stride
-    picture = np.zeros((len(layers), length))
+    picture = np.zeros((len(layers), stride * stride))
     for step, share in shares:
         texel = corner + step
         for total, layer in zip(picture, layers, strict=True):
-            total += np.bincount(texel, layer * share, minlength=length)
-    picture = picture[:, : stride * stride].reshape(-1, stride, stride)
-    return picture[:, 1:-1, 1:-1]
+            total += np.bincount(texel, layer * share, minlength=stride * stride)
+    return picture.reshape(-1, stride, stride)[:, 2:-2, 2:-2]
 
 
 def _shares(place, width):
