@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from addon.engine.layered import layered_drawing
 from addon.engine.refocus.refocusing import Refocusing, refocus
 from addon.engine.refocus.settings import RefocusSettings, lens_of
 from addon.errors import FocusError
@@ -120,3 +121,11 @@ def test_what_forms_no_picture_is_refused(stack):
     for settings in (RefocusSettings(focus_distance=0.0), RefocusSettings(focus_distance=-1.0)):
         with pytest.raises(FocusError, match="focus distance"):
             lens_of(stack, settings)
+
+
+def test_more_samples_than_a_texture_is_wide_follow_in_further_rows(stack, monkeypatch):
+    settings = RefocusSettings(2.0, samples=10)
+    expected = refocus(stack, settings)
+    # Devices have 8192 columns and more: a table of so many samples takes too long here.
+    monkeypatch.setattr(layered_drawing._folded, "__defaults__", (4,))
+    assert refocus(stack, settings).tobytes() == expected.tobytes()

@@ -19,6 +19,9 @@ from ...passes.layered import cast, layers
 from ...passes.surface import surface, surface_target
 from .scene_layers import draw_scene_layers
 
+# Samples in a row of the table of places; every device has textures of this width.
+MOST_ACROSS = 8192
+
 
 class LayeredDrawing:
     """Draws lens samples of a frame through depth layers.
@@ -50,7 +53,7 @@ class LayeredDrawing:
         self._made = None
         draws = drawing.full_detail_draws(target)
         self._by_chance = [draw for draw in draws if draw.transparent]
-        self._places = texture_2d(_padded(plan.layered.places))
+        self._places = texture_2d(_folded(plan.layered.places))
         self._nothing = texture_2d(np.array([[surroundings]], np.float32))
         # Sweeps in texels of the sample, which is as fine as the picture.
         self._sweep, self._gain = plan.sweep, None
@@ -211,7 +214,13 @@ class LayeredDrawing:
         self._made = None
 
 
-def _padded(places):
-    found = np.zeros((*places.shape[:2], 4), np.float32)
-    found[..., :2] = places
-    return found
+def _folded(places, across=MOST_ACROSS):
+    """Return sets of places as texels, in so many columns at most: devices have an end there."""
+    sets, samples = places.shape[:2]
+    across = min(samples, across)
+    blocks = -(-samples // across)
+    found = np.zeros((blocks, sets, across, 4), np.float32)
+    for block in range(blocks):
+        part = places[:, block * across : (block + 1) * across]
+        found[block, :, : part.shape[1], :2] = part
+    return found.reshape(blocks * sets, across, 4)

@@ -8,6 +8,7 @@ import time
 
 from ...device import context as device_context
 from ...device import state
+from ...errors import FocusError
 from ..frame.pacing import Pacer
 from .refocusing import Refocusing
 
@@ -89,6 +90,17 @@ class LivePicture:
         """
         if self._finished:
             return None
+        try:
+            return self._piece()
+        except FocusError:
+            # Nothing has begun with such a lens.
+            raise
+        except BaseException:
+            # Nobody knows how far it went.
+            self.release()
+            raise
+
+    def _piece(self):
         device_context.ensure_context()
         with state.preserved():
             if self._refocusing is None:

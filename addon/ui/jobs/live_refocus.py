@@ -95,7 +95,7 @@ class LiveRefocus:
 
     def take(self, path, flat, stack, is_flat):
         """Show a file that somebody has read already."""
-        self._wanted = path, flat
+        self._wanted, self._reading, self._is_broken = (path, flat), None, False
         self._show(stack, is_flat)
 
     def forget_file(self):
@@ -133,8 +133,8 @@ class LiveRefocus:
         except AplanatError as error:
             self.error = " ".join(str(error).split())
         except Exception as error:
-            # Until the file is read again: once is enough.
-            self._is_broken = True
+            # Once is enough: until the settings change, or the file is read again.
+            self._is_broken = self._failed is None
             self.error = f"failed, see the console: {error}"
             traceback.print_exception(error)
         return self.is_reading

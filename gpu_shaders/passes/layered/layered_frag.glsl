@@ -3,8 +3,9 @@
 // the ray is a straight line, so that each layer is a height field over its texels.
 // Inputs: colors_tx, depths_tx (the layers), means_tx, ranges_tx (their pyramids, in an atlas);
 // MATTES: mattes_tx; behind_tx (what surrounds the scene, of one texel where it is one colour);
-// places_tx (row: one of 16 sets of places on the lens, m; column: sample), sample_index; offset
-// (of the sample in its pixel, texels); layered_buf; sweep (texels of the sample's raster a metre).
+// places_tx (row: one of 16 sets of places on the lens, m; column: sample; what is beyond the last
+// column follows in the next 16 rows), sample_index; offset (of the sample in its pixel, texels);
+// layered_buf; sweep (texels of the sample's raster a metre).
 // EYES: colours as they are seen from the middle of the lens, and from four places round it.
 // CHROMATIC: as in surface_vert, and gain (of the sweep, by 1 / focus distance).
 // Outputs: the sample's colour, premultiplied; MATTES: what the first surface met has; the depth
@@ -18,6 +19,8 @@
 #include "lib/chromatic_lib.glsl"
 #endif
 
+// Sets of places on the lens, one for each pixel of a square of 4 x 4.
+#define SETS 16
 // A texel without a surface.
 #define EMPTY 1.5
 // Least share of the light that is followed further.
@@ -259,7 +262,9 @@ void main()
   size = textureSize(depths_tx, 0).xy;
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   int set = (pixel.x & 3) | ((pixel.y & 3) << 2);
-  vec2 lens = texelFetch(places_tx, ivec2(sample_index, set), 0).xy;
+  int across = textureSize(places_tx, 0).x;
+  ivec2 entry = ivec2(sample_index % across, set + SETS * (sample_index / across));
+  vec2 lens = texelFetch(places_tx, entry, 0).xy;
   vec2 fine = layered_buf.raster.xy;
   vec2 place = gl_FragCoord.xy + offset;
   vec4 moves = sweep;
