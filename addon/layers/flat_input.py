@@ -103,6 +103,7 @@ def load_flat(path, options=None):
         overscan=window.overscan,
         pixel_aspect=window.pixel_aspect,
         frame=_frame(color_part.header),
+        color_space="",
         engine=str(color_part.header.get("software", color_part.header.get("Software", ""))),
         report=tuple(report),
     )

@@ -103,7 +103,7 @@ class LayerStack:
         Height of a pixel over its width, as displayed.
     frame : int
     color_space : str
-        Of the scene-linear colours, as Blender calls its working space.
+        Of the scene-linear colours, as Blender calls its working space; empty where nobody knows.
     engine : str
         Which renderer made it.
     report : tuple of str

@@ -128,6 +128,7 @@ def test_camera_and_own_values(scene, own, camera, stack):
     assert (settings.focus_distance, settings.f_stop) == (6.0, 4.0)
     own.use_camera_lens = False
     assert wanted(scene, stack)[0] == RefocusSettings(6.0, 4.0, samples=32)
+    assert "ACEScg" in wanted(scene, replace(stack, color_space="ACEScg"))[1][0]
     scene.camera = None
     settings, problems = wanted(scene, stack)
     assert settings == RefocusSettings(samples=32) and "no camera" in problems[0]

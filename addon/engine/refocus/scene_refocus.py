@@ -154,4 +154,15 @@ def read_refocus(scene, depsgraph, stack, sources):
         settings = replace(settings, focus_distance=own.focus_distance)
     if own.fstop_from == "OWN":
         settings = replace(settings, f_stop=own.fstop)
-    return replace(settings, samples=own.samples), problems
+    return replace(settings, samples=own.samples), (*_foreign_colors(stack), *problems)
+
+
+def _foreign_colors(stack):
+    """Return a warning if a capture's colours are not those that Blender works in."""
+    space = bpy.data.colorspace.working_space
+    if stack.color_space in ("", space):
+        return ()
+    return (
+        f"the capture's colours are in {stack.color_space}, and Blender works in {space}: they are"
+        " taken as they stand; set Blender's working space to that of the capture",
+    )
