@@ -24,6 +24,8 @@ from ...layers.layer_file import is_layer_file
 # Seconds between two looks at the settings while nothing is to be drawn, and between two pieces.
 _LOOK_SECONDS = 0.04
 _PIECE_PAUSE = 0.001
+# Seconds between two looks whether a render has ended.
+_RENDER_SECONDS = 0.25
 # Seconds between two drawings of a panel that tells how far a picture is.
 _PANEL_SECONDS = 0.25
 
@@ -301,6 +303,9 @@ def shown(scene):
 
 
 def _work():
+    if bpy.app.is_job_running("RENDER"):
+        # It needs device and data for itself.
+        return _RENDER_SECONDS
     pause = None
     found = set()
     for scene in bpy.data.scenes:
