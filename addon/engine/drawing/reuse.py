@@ -1,9 +1,9 @@
 """Sprites: lens samples that can share one drawing of an object (methods 4).
 
 Where an object is nearly in focus, many lens samples put it at the same place of the raster. The
-places are rounded to a grid; of the samples in one cell, the one nearest the cell's centre is the
-parent: the object is drawn once for it, into a sprite, and copied for the others. Of the jitter of
-the pixel filter only the fraction of a pixel counts: whole pixels are a shift of the copy.
+places are rounded to a grid; of the samples in one cell one is the parent: the object is drawn once
+for it, into a sprite, and copied for the others. Of the jitter of the pixel filter only the
+fraction of a pixel counts: whole pixels are a shift of the copy.
 
 References
 ----------
@@ -14,12 +14,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sampling.halton import radical_inverse
+
 # Cost of copying a pixel of a sprite, in triangles. A copy tests and writes depth and colour: some
 # 0.07 us on software OpenGL, where a triangle of a scanned mesh takes 0.17 us.
 _COPY_COST = 0.4
 # From this radius of the circle of confusion on, px, cells may be twice as large: the blur hides
 # their steps, and each parent keeps its own jitter of the pixel filter, which smooths sharp edges.
 _BLUR_HIDES_PX = 1.5
+# Most samples that share a drawing.
+_MOST_MEMBERS = 16
+# Steps between places in a cell, along x and y: the plastic number's, whose multiples modulo 1 fill
+# a square most evenly.
+_TURN = np.array([0.7548776662466927, 0.5698402909980532])
+# Rows of cells after which the places of parents in their cells repeat.
+_PATTERN = 16
 # Least share of the work that sprites must save to be used.
 _LEAST_SAVING = 0.1
 
@@ -86,7 +95,6 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
     moves, shifts = moves[plan.first :], shifts[plan.first :]
     grid = plan.reuse_grid if abs(coc) < _BLUR_HIDES_PX else max(1, plan.reuse_grid // 2)
     cells = np.round(moves * grid)
-    distance = np.square(moves * grid - cells).sum(axis=1)
     keys = np.column_stack([levels, cells.astype(np.int64)])
     if _touches_edge(rectangle, plan):
         # A shifted copy would need pixels from outside the parent's raster.
@@ -94,9 +102,9 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
     _, cell_of, sizes = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
     cell_of = cell_of.ravel()
     sprites = []
-    for cell in np.flatnonzero(sizes > 1):
-        members = np.flatnonzero(cell_of == cell)
-        parent = int(members[np.argmin(distance[members])])
+    for number, members in _families(cell_of, sizes):
+        place = place_in_cell(cells[members[0]], row + plan.first + number)
+        parent = int(members[_parent(moves[members], place)])
         level = int(levels[parent])
         pixels = rectangle[2] * rectangle[3]
         drawn = len(members) * triangles[level]
@@ -116,6 +124,59 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
                 )
             )
     return sprites
+
+
+def _families(cell_of, sizes):
+    """Yield the samples of each cell, and which of its families they are, in the order of samples.
+
+    Cells of more than `_MOST_MEMBERS` samples are divided, so that the picture comes nearer to the
+    true one the more samples there are.
+    """
+    for cell in np.flatnonzero(sizes > 1):
+        members = np.flatnonzero(cell_of == cell)
+        count = -(-len(members) // _MOST_MEMBERS)
+        for number in range(count):
+            yield number, members[number::count]
+
+
+def _parent(moves, wanted):
+    """Return the sample whose place among those of its family is nearest to what is wanted.
+
+    Its place among them, not in the cell: of a cell that they do not fill evenly, such as one under
+    the slope of a pixel filter, the parents must be as unevenly spread.
+    """
+    ranks = np.argsort(np.argsort(moves, axis=0), axis=0)
+    far = (ranks + 0.5) / len(moves) - wanted
+    # Places at either end are neighbours: all are wanted equally often.
+    far -= np.round(far)
+    return int(np.argmin(np.square(far).sum(axis=1)))
+
+
+def place_in_cell(cell, turn):
+    """Return where in its cell a parent should be: elsewhere in every row and column of cells.
+
+    Parents in the middle of all cells would look at a raster of one phase: what is thinner than a
+    cell would be met too often, or never, however many samples there are.
+
+    Parameters
+    ----------
+    cell : ndarray of shape (2 M,)
+        Whole numbers: the place of the cell along x and y, of M points.
+    turn : int
+        Of a cell that has several parents, or is met again: each turn is elsewhere.
+
+    Returns
+    -------
+    ndarray of shape (2 M,)
+        0 to 1 along each side of the cell.
+
+    References
+    ----------
+    Chiu, Shirley and Wang, *Multi-jittered sampling*, Graphics Gems IV, 1994.
+    """
+    across = cell.reshape(-1, 2)[:, ::-1].astype(np.int64) % _PATTERN
+    place = radical_inverse(across, 2) + 0.5 / _PATTERN + turn * _TURN
+    return (place % 1.0).ravel()
 
 
 def _touches_edge(rectangle, plan):

@@ -1,0 +1,66 @@
+"""Which lens samples share a drawing: what is thinner than a cell keeps its share of the light."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from addon.engine.drawing.reuse import find_sprites
+from addon.sampling.halton import halton
+
+SIZE = 64
+# Where the object may be, in the middle of the raster; many triangles, so that sharing pays.
+RECTANGLE, TRIANGLES = (24, 24, 16, 16), [10**6]
+
+
+def plan_of(samples, seed, coc=0.0, first=0):
+    """Return what is read of a plan: samples of a square lens, and of a box as pixel filter."""
+    places = halton(seed * 8192, samples, (2, 3, 5, 7))
+    return SimpleNamespace(
+        width=SIZE,
+        height=SIZE,
+        chromatic=None,
+        first=first,
+        reuse_grid=2,
+        jitter=(places[:, :2] - 0.5) * 2.0 / SIZE,
+        lens_extent=np.array([1.0, 1.0]),
+        lens_positions=2.0 * places[:, 2:] - 1.0,
+        coc=coc,
+    )
+
+
+def parents(plan):
+    """Return the sample that each is drawn as."""
+    found = np.arange(len(plan.jitter))
+    levels = np.zeros(len(found) - plan.first, int)
+    for sprite in find_sprites(3, plan.coc, levels, TRIANGLES, RECTANGLE, plan):
+        found[list(sprite.members)] = sprite.parent
+    return found
+
+
+def places(plan):
+    """Return where each sample puts a point, px."""
+    return plan.jitter * SIZE / 2.0 + plan.lens_positions * plan.coc
+
+
+@pytest.mark.parametrize("coc", [0.0, 3.0])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_wire_is_met_as_often_as_without_sharing(axis, coc):
+    # A wire of a tenth of a pixel at any place: the share of the samples whose parent meets it.
+    wires = np.linspace(-0.4, 0.4, 33) + coc / 3.0
+    errors = []
+    for samples in (128, 2048):
+        plan = plan_of(samples, seed=1, coc=coc)
+        drawn = places(plan)[parents(plan)][:, axis]
+        share = np.array([(np.abs(drawn - wire) < 0.05).mean() for wire in wires])
+        wanted = 0.1 if coc == 0.0 else 0.1 / (2.0 * coc)
+        errors.append(np.abs(share / wanted - 1.0).mean())
+    # All wires together, of which each parent meets a few; and more samples have more parents, so
+    # that the error of a single wire goes down.
+    assert share.mean() == pytest.approx(wanted, rel=0.1)
+    assert errors[1] < 0.6 * errors[0]
+
+
+def test_most_samples_share_a_drawing():
+    plan = plan_of(256, seed=0)
+    assert len(np.unique(parents(plan))) <= 32
