@@ -1,0 +1,166 @@
+"""A capture by Cycles, seen through lenses afterwards, against Cycles' own depth of field.
+
+    python -m benchmarks.tools.refocused_captures --scene toys --focus 1.2 2.0 4.0 --fstop 0.5 1.4
+
+For each focus distance and f-number: SSIM, worst tile and energy against Cycles' lens with
+many samples; the processor time of refocusing, and that of the number of Cycles' samples, doubled
+until it is as much alike. Before: processor times of one Cycles render without a lens and of the
+capture. Pictures are kept in a folder, and used again if they are there; times belong to new ones.
+"""
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+if str(REPOSITORY) not in sys.path:
+    sys.path.insert(0, str(REPOSITORY))
+
+
+def arguments(words=None):
+    """Return the options of the command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    add = parser.add_argument
+    add("--scene", default="toys", metavar="NAME|FILE.blend")
+    add("--look", choices=("flat", "lit"), default="lit")
+    add("--resolution", default="240x135", metavar="WxH")
+    add("--layers", type=int, default=8)
+    add("--capture-samples", type=int, default=64)
+    add("--denoise", action="store_true", help="denoise the capture")
+    add("--truth-samples", type=int, default=2048)
+    add("--samples", type=int, default=128, help="lens samples of refocusing")
+    add("--focus", type=float, nargs="+", metavar="M", help="default: the scene's")
+    add("--fstop", type=float, nargs="+", metavar="X", help="default: the scene's")
+    add("--no-bokeh", action="store_true")
+    add("--folder", type=Path, default=Path("/tmp/refocused"))
+    add("--no-ladder", action="store_true", help="do not look for Cycles' time at equal SSIM")
+    return parser.parse_args(words)
+
+
+def processor_seconds(command):
+    """Run a command and return the processor time that it took."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    environment = os.environ | {"PYTHONPATH": str(REPOSITORY)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise SystemExit(f"{' '.join(map(str, command))}: {done.stderr or done.stdout}")
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+CYCLES = """
+import bpy, json, resource, sys
+told = json.loads(sys.argv[1])
+bpy.ops.wm.open_mainfile(filepath=told["file"])
+scene = bpy.context.scene
+render, dof = scene.render, scene.camera.data.dof
+render.engine = "CYCLES"
+render.resolution_x, render.resolution_y = told["size"]
+render.resolution_percentage = 100
+scene.cycles.samples, scene.cycles.seed = told["samples"], told["seed"]
+scene.cycles.use_adaptive_sampling = False
+scene.cycles.use_denoising = told["denoise"]
+if "focus" in told:
+    dof.use_dof, dof.focus_object = True, None
+    dof.focus_distance, dof.aperture_fstop = told["focus"], told["fstop"]
+elif told.get("pinhole"):
+    dof.use_dof = False
+if told.get("save"):
+    bpy.ops.wm.save_as_mainfile(filepath=told["save"])
+if told.get("output"):
+    settings = render.image_settings
+    settings.media_type, settings.file_format = "IMAGE", "OPEN_EXR"
+    settings.color_depth = "32"
+    render.filepath, render.use_file_extension = told["output"], False
+    before = resource.getrusage(resource.RUSAGE_SELF)
+    bpy.ops.render.render(write_still=True)
+    after = resource.getrusage(resource.RUSAGE_SELF)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+else:
+    seconds = 0.0
+print("told:" + json.dumps({"seconds": seconds, "focus": dof.focus_distance,
+                            "fstop": dof.aperture_fstop}))
+"""
+
+
+def cycles(**told):
+    """Render with Cycles in a process of its own, or save a copy of the file; return its answer."""
+    command = [sys.executable, "-c", CYCLES, json.dumps(told)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    lines = [line for line in done.stdout.splitlines() if line.startswith("told:")]
+    if done.returncode or not lines:
+        raise SystemExit(done.stderr or done.stdout)
+    return json.loads(lines[0].removeprefix("told:"))
+
+
+def main(words=None):
+    """Measure and print, a line a lens."""
+    options = arguments(words)
+    from benchmarks.referees.picture_metrics import compare, read_picture
+
+    options.folder.mkdir(parents=True, exist_ok=True)
+    folder = options.folder
+    file = Path(options.scene)
+    if file.suffix != ".blend":
+        file = REPOSITORY / "build" / "scenes" / f"{options.scene}_{options.look}.blend"
+    name = file.stem
+    size = [int(side) for side in options.resolution.split("x")]
+    common = {"file": str(file), "size": size, "denoise": options.denoise, "seed": 0}
+    shot = folder / f"{name}.blend"
+    own = cycles(**common, samples=options.capture_samples, save=str(shot))
+    once = cycles(
+        **common,
+        samples=options.capture_samples,
+        pinhole=True,
+        output=str(folder / f"{name}_pinhole.exr"),
+    )["seconds"]
+    kind = f"{options.capture_samples}{'_denoised' if options.denoise else ''}"
+    layers = folder / f"{name}_layers_{options.layers}_{kind}.exr"
+    aplanat = [sys.executable, "-P", "-m", "addon.cli"]
+    if not layers.exists():
+        words = ["capture", shot, "-o", layers, "--layers", options.layers]
+        seconds = processor_seconds([*aplanat, *map(str, words)])
+        print(f"{name}: one Cycles render {once:.1f} s, capture {seconds:.1f} s", flush=True)
+    for focus in options.focus or [own["focus"]]:
+        for fstop in options.fstop or [own["fstop"]]:
+            truth_file = folder / f"{name}_truth_{focus:g}_{fstop:g}.exr"
+            lens = {"focus": focus, "fstop": fstop}
+            told = common | {"denoise": False}
+            if not truth_file.exists():
+                part = truth_file.with_suffix(".part")
+                cycles(**told, **lens, samples=options.truth_samples, output=str(part))
+                part.replace(truth_file)
+            truth = read_picture(truth_file)
+            output = folder / f"{name}_refocused_{focus:g}_{fstop:g}.exr"
+            words = ["refocus", layers, "-o", output, "--focus", focus, "--fstop", fstop]
+            words += ["--samples", options.samples, *["--no-bokeh"] * options.no_bokeh]
+            seconds = processor_seconds([*aplanat, *map(str, words)])
+            found = compare(read_picture(output), truth)
+            line = (
+                f"{name}: focus {focus:g} m, f/{fstop:g}: SSIM {found['ssim_srgb']:.4f}, worst tile"
+                f" {found['ssim_tile']:.3f}, energy {found['energy']:.4f}; {seconds:.1f} s with"
+                " starting Blender"
+            )
+            if not options.no_ladder:
+                line += _ladder(told | {"seed": 1}, lens, found["ssim_srgb"], truth, folder)
+            print(line, flush=True)
+
+
+def _ladder(told, lens, wanted, truth, folder):
+    from benchmarks.referees.picture_metrics import compare, read_picture
+
+    output = folder / "cycles_ladder.exr"
+    for power in range(3, 12):
+        seconds = cycles(**told, **lens, samples=2**power, output=str(output))["seconds"]
+        alike = compare(read_picture(output), truth)["ssim_srgb"]
+        if alike >= wanted:
+            break
+    return f"; Cycles with {2**power} samples {alike:.4f} in {seconds:.1f} s"
+
+
+if __name__ == "__main__":
+    main()
