@@ -9,7 +9,6 @@ capture. Pictures are kept in a folder, and used again if they are there; times 
 """
 
 import argparse
-import json
 import os
 import resource
 import subprocess
@@ -52,54 +51,10 @@ def processor_seconds(command):
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-CYCLES = """
-import bpy, json, resource, sys
-told = json.loads(sys.argv[1])
-bpy.ops.wm.open_mainfile(filepath=told["file"])
-scene = bpy.context.scene
-render, dof = scene.render, scene.camera.data.dof
-render.engine = "CYCLES"
-render.resolution_x, render.resolution_y = told["size"]
-render.resolution_percentage = 100
-scene.cycles.samples, scene.cycles.seed = told["samples"], told["seed"]
-scene.cycles.use_adaptive_sampling = False
-scene.cycles.use_denoising = told["denoise"]
-if "focus" in told:
-    dof.use_dof, dof.focus_object = True, None
-    dof.focus_distance, dof.aperture_fstop = told["focus"], told["fstop"]
-elif told.get("pinhole"):
-    dof.use_dof = False
-if told.get("save"):
-    bpy.ops.wm.save_as_mainfile(filepath=told["save"])
-if told.get("output"):
-    settings = render.image_settings
-    settings.media_type, settings.file_format = "IMAGE", "OPEN_EXR"
-    settings.color_depth = "32"
-    render.filepath, render.use_file_extension = told["output"], False
-    before = resource.getrusage(resource.RUSAGE_SELF)
-    bpy.ops.render.render(write_still=True)
-    after = resource.getrusage(resource.RUSAGE_SELF)
-    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-else:
-    seconds = 0.0
-print("told:" + json.dumps({"seconds": seconds, "focus": dof.focus_distance,
-                            "fstop": dof.aperture_fstop}))
-"""
-
-
-def cycles(**told):
-    """Render with Cycles in a process of its own, or save a copy of the file; return its answer."""
-    command = [sys.executable, "-c", CYCLES, json.dumps(told)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    lines = [line for line in done.stdout.splitlines() if line.startswith("told:")]
-    if done.returncode or not lines:
-        raise SystemExit(done.stderr or done.stdout)
-    return json.loads(lines[0].removeprefix("told:"))
-
-
 def main(words=None):
     """Measure and print, a line a lens."""
     options = arguments(words)
+    from benchmarks.referees.cycles_shot import cycles_shot
     from benchmarks.referees.picture_metrics import compare, read_picture
 
     options.folder.mkdir(parents=True, exist_ok=True)
@@ -111,8 +66,8 @@ def main(words=None):
     size = [int(side) for side in options.resolution.split("x")]
     common = {"file": str(file), "size": size, "denoise": options.denoise, "seed": 0}
     shot = folder / f"{name}.blend"
-    own = cycles(**common, samples=options.capture_samples, save=str(shot))
-    once = cycles(
+    own = cycles_shot(**common, samples=options.capture_samples, save=str(shot))
+    once = cycles_shot(
         **common,
         samples=options.capture_samples,
         pinhole=True,
@@ -132,7 +87,7 @@ def main(words=None):
             told = common | {"denoise": False}
             if not truth_file.exists():
                 part = truth_file.with_suffix(".part")
-                cycles(**told, **lens, samples=options.truth_samples, output=str(part))
+                cycles_shot(**told, **lens, samples=options.truth_samples, output=str(part))
                 part.replace(truth_file)
             truth = read_picture(truth_file)
             output = folder / f"{name}_refocused_{focus:g}_{fstop:g}.exr"
@@ -151,11 +106,12 @@ def main(words=None):
 
 
 def _ladder(told, lens, wanted, truth, folder):
+    from benchmarks.referees.cycles_shot import cycles_shot
     from benchmarks.referees.picture_metrics import compare, read_picture
 
     output = folder / "cycles_ladder.exr"
     for power in range(3, 12):
-        seconds = cycles(**told, **lens, samples=2**power, output=str(output))["seconds"]
+        seconds = cycles_shot(**told, **lens, samples=2**power, output=str(output))["seconds"]
         alike = compare(read_picture(output), truth)["ssim_srgb"]
         if alike >= wanted:
             break
