@@ -107,3 +107,17 @@ def test_a_lamp_in_two_layers_is_one_and_what_is_right_behind_it_hidden(stack):
     surfaces, opacity = occluding_surfaces(both, values)
     assert surfaces[0, 0].tolist() == [values[0, 0, 0], values[2, 0, 0], EMPTY, EMPTY]
     assert opacity[0, 0, :2].tolist() == [1.0, 1.0]
+
+
+def test_the_world_hidden_by_what_is_as_good_as_infinitely_far_is_no_highlight(stack):
+    # The whole world shines; the wall before it moves against it by less than visibility tells.
+    front, wall, world = stack.layers
+    wall.color[..., :3], wall.color[..., 3] = 0.3, 1.0
+    wall.depth[...] = 1e4
+    world.color[..., :3] = 20.0
+    picture, plain = (
+        refocus(stack, replace(SETTINGS, samples=8, bokeh=bokeh))
+        for bokeh in (BokehSettings(threshold=10.0), BokehSettings(threshold=1e6))
+    )
+    assert picture.max() < 20.0
+    assert np.abs(picture - plain)[:, :8].max() < 1e-3

@@ -56,9 +56,12 @@ class StackHighlightSearch:
             lists.clear()
             layer_highlights.append(entries, first, number, self._split, self._seen.view, lists)
             listed, tiles = lists.read()
+            self.bytes = max(self.bytes, lists.targets.bytes)
+            if listed == 0:
+                # All are hidden by what is right in front of them.
+                return
             highlights.order(self._seen, lists, listed, scene)
             count, sharp = highlights.emit(self._seen, lists, tiles, self._sources, self.count)
-            self.bytes = max(self.bytes, lists.targets.bytes)
         finally:
             lists.release()
         self.count += count

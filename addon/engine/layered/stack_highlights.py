@@ -79,7 +79,8 @@ def find_highlights(stack, depths, threshold):
         peak = layer.color[..., :3].max(axis=-1)
         bright[number] = (peak > threshold * layer.color[..., 3]) & (depths[number] <= 1.0)
     at_infinity = np.array([not np.isfinite(layer.depth).any() for layer in stack.layers])
-    world = _entries(stack, depths, bright & at_infinity[:, None, None], np.zeros_like(depths))
+    world = bright & at_infinity[:, None, None]
+    world = _entries(stack, depths, world, _hiding(stack, depths, at_infinity))
     bright &= ~at_infinity[:, None, None]
     rows, columns = np.nonzero(bright.any(axis=0))
     values = depths[:, rows, columns].astype(np.float64)
@@ -100,6 +101,15 @@ def find_highlights(stack, depths, threshold):
     fronts[:, rows, columns] = hiding
     wanted[:, rows, columns] |= covered & ~opaque
     return StackHighlights(_entries(stack, shown, wanted, fronts), world, nearest)
+
+
+def _hiding(stack, depths, at_infinity):
+    """Return the value of the last surface of each pixel that hides the world, for all layers."""
+    found = np.zeros(depths.shape[1:], np.float32)
+    for layer, values, is_world in zip(stack.layers, depths, at_infinity, strict=True):
+        hides = (values <= 1.0) & (layer.color[..., 3] >= OPAQUE_FROM) & (not is_world)
+        found = np.where(hides, np.maximum(found, values), found)
+    return np.broadcast_to(found, depths.shape)
 
 
 def runs_of(entries):

@@ -31,11 +31,13 @@
 #ifdef LIST
 bool is_hidden(float front, float window_depth)
 {
-  if (front <= 0.0 || window_depth >= 1.0) {
+  if (front <= 0.0) {
     return false;
   }
   float near = depth_from_window(front, view_buf.projection, view_buf.lens);
-  float far = depth_from_window(window_depth, view_buf.projection, view_buf.lens);
+  float far = (window_depth >= 1.0) ?
+                  highlight_buf.world.x :
+                  depth_from_window(window_depth, view_buf.projection, view_buf.lens);
   float parallax = coc_radius_px(near, view_buf.lens) - coc_radius_px(far, view_buf.lens);
   return abs(parallax) < SAME_VIEW;
 }
