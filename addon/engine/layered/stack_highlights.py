@@ -17,6 +17,9 @@ OPAQUE_FROM = 0.999
 # behind the nearer one, also where both have the same surface, and by more than what
 # passes/bokeh/highlights_order_comp.glsl takes for one depth.
 _STEP = 5e-7
+# Largest difference of the depth buffer's values, as a share of their distance from infinity, of
+# one surface that lies in two layers.
+_SAME_SURFACE = 1e-3
 # Most pixels that are listed together, to bound memory.
 _MOST_LISTED = 1 << 21
 
@@ -49,9 +52,10 @@ class Entries:
         float32: column and row in the raster, layer, value of the depth buffer.
     light : ndarray of shape (N, 4)
         float32: radiance of what covers the pixel, and how much of it is covered.
-    front : ndarray of shape (N,)
-        float32, value of the depth buffer of the last pixel before it that hides what is behind it;
-        0 where there is none.
+    front : ndarray of shape (N, 2)
+        float32, value of the depth buffer of the last pixel before it that hides what is behind it,
+        0 where there is none, and the share of the light that passes it: 0, but before the world,
+        where the last pixel counts that covers anything.
     """
 
     place: np.ndarray
@@ -80,7 +84,7 @@ def find_highlights(stack, depths, threshold):
         bright[number] = (peak > threshold * layer.color[..., 3]) & (depths[number] <= 1.0)
     at_infinity = np.array([not np.isfinite(layer.depth).any() for layer in stack.layers])
     world = bright & at_infinity[:, None, None]
-    world = _entries(stack, depths, world, _hiding(stack, depths, at_infinity))
+    world = _entries(stack, depths, world, _before_world(stack, depths, at_infinity))
     bright &= ~at_infinity[:, None, None]
     rows, columns = np.nonzero(bright.any(axis=0))
     values = depths[:, rows, columns].astype(np.float64)
@@ -96,20 +100,26 @@ def find_highlights(stack, depths, threshold):
             hiding[number + 1] = np.where(opaque[number], values[number], hiding[number])
     nearest = np.full(depths.shape[1:], EMPTY, np.float32)
     nearest[rows, columns] = np.where(opaque, values, EMPTY).min(axis=0, initial=EMPTY)
-    shown, fronts, wanted = np.array(depths), np.zeros_like(depths), np.array(bright)
+    shown, wanted = np.array(depths), np.array(bright)
+    fronts = np.zeros((*depths.shape, 2), np.float32)
     shown[:, rows, columns] = values
-    fronts[:, rows, columns] = hiding
+    fronts[:, rows, columns, 0] = hiding
     wanted[:, rows, columns] |= covered & ~opaque
     return StackHighlights(_entries(stack, shown, wanted, fronts), world, nearest)
 
 
-def _hiding(stack, depths, at_infinity):
-    """Return the value of the last surface of each pixel that hides the world, for all layers."""
-    found = np.zeros(depths.shape[1:], np.float32)
+def _before_world(stack, depths, at_infinity):
+    """Return what lies right before the world in each pixel, as `Entries.front`."""
+    last = np.zeros(depths.shape[1:], np.float32)
+    through = np.ones_like(last)
     for layer, values, is_world in zip(stack.layers, depths, at_infinity, strict=True):
-        hides = (values <= 1.0) & (layer.color[..., 3] >= OPAQUE_FROM) & (not is_world)
-        found = np.where(hides, np.maximum(found, values), found)
-    return np.broadcast_to(found, depths.shape)
+        covers = (values <= 1.0) & (not is_world)
+        passes = 1.0 - np.clip(layer.color[..., 3], 0.0, 1.0)
+        same = np.abs(values - last) <= _SAME_SURFACE * (1.0 - last)
+        through = np.where(covers, np.where(same, through, 1.0) * passes, through)
+        last = np.where(covers, np.maximum(values, last), last)
+    through[through <= 1.0 - OPAQUE_FROM] = 0.0
+    return np.broadcast_to(np.stack([last, through], axis=-1), (*depths.shape, 2))
 
 
 def runs_of(entries):

@@ -53,8 +53,9 @@ def entry_textures(place, light, front):
         Column, row, layer, value of the depth buffer.
     light : ndarray of shape (N, 4)
         Radiance, coverage.
-    front : ndarray of shape (N,)
-        Value of the depth buffer of what hides it from the lens' centre; 0: nothing does.
+    front : ndarray of shape (N, 2)
+        Value of the depth buffer of what hides it from the lens' centre, 0: nothing does, and the
+        share of its light that passes there.
 
     Returns
     -------
@@ -67,7 +68,7 @@ def entry_textures(place, light, front):
         table[: len(values)] = values
         return texture_2d(table.reshape(rows, COLUMNS, -1), texel_format)
 
-    return texture(place, "RGBA32F"), texture(light, "RGBA32F"), texture(front[:, None], "R32F")
+    return texture(place, "RGBA32F"), texture(light, "RGBA32F"), texture(front, "RG32F")
 
 
 def append(entries, first, number, split, view, lists):

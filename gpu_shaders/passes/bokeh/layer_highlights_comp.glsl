@@ -5,8 +5,8 @@
 // WHOLE: writes all their light into the layers again.
 // Inputs: place_tx (column, row, layer, value of the depth buffer), light_tx (radiance, coverage); first,
 // number (of the pixels); LIST and SPLIT: highlight_buf, view_buf (of the layers' raster); LIST: front_tx
-// (value of the depth buffer of the last pixel before it that hides what is behind it; 0: none), what
-// highlights_append needs; CHROMATIC: chromatic_buf, field_tx.
+// (value of the depth buffer of the last pixel before it that hides what is behind it, 0: none, and the
+// share that passes), what highlights_append needs; CHROMATIC: chromatic_buf, field_tx.
 // Outputs: lists of fragments, or colors_img (premultiplied).
 // Source: methods 9 (J20 section 4.1).
 #include "lib/depth_lib.glsl"
@@ -25,21 +25,25 @@
 // Half precision ends there.
 #define BRIGHTEST 65504.0
 // Difference of circles of confusion, px, below which a surface in front hides from the whole lens; as in
-// highlights_order_comp.
+// highlights_order_comp. From the other one on, visibility counts what covers a pixel in part.
 #define SAME_VIEW 1.0
+#define SAME_VIEW_IN_PART 0.25
 
 #ifdef LIST
-bool is_hidden(float front, float window_depth)
+// Share of the light that passes what is right in front. `front`: its value of the depth buffer, and the
+// share that passes it if nothing moves.
+float passed_front(vec2 front, float window_depth)
 {
-  if (front <= 0.0) {
-    return false;
+  if (front.x <= 0.0) {
+    return 1.0;
   }
-  float near = depth_from_window(front, view_buf.projection, view_buf.lens);
+  float near = depth_from_window(front.x, view_buf.projection, view_buf.lens);
   float far = (window_depth >= 1.0) ?
                   highlight_buf.world.x :
                   depth_from_window(window_depth, view_buf.projection, view_buf.lens);
   float parallax = coc_radius_px(near, view_buf.lens) - coc_radius_px(far, view_buf.lens);
-  return abs(parallax) < SAME_VIEW;
+  float same_view = (front.y > 0.0) ? SAME_VIEW_IN_PART : SAME_VIEW;
+  return (abs(parallax) < same_view) ? front.y : 1.0;
 }
 #endif
 
@@ -77,10 +81,11 @@ void main()
   vec4 place = texelFetch(place_tx, texel, 0);
   vec4 light = texelFetch(light_tx, texel, 0);
 #ifdef LIST
-  if (is_hidden(texelFetch(front_tx, texel, 0).x, place.w)) {
+  float passed = passed_front(texelFetch(front_tx, texel, 0).xy, place.w);
+  if (passed <= 0.0) {
     return;
   }
-  vec3 above = light.a * highlight_light(light.rgb, highlight_buf.split.x, highlight_buf.split.z);
+  vec3 above = passed * light.a * highlight_light(light.rgb, highlight_buf.split.x, highlight_buf.split.z);
   append_fragment(ivec2(place.xy), above, place.w, light.a >= OPAQUE_FROM, 1.0 - light.a, 0u);
 #else
 #ifdef SPLIT
