@@ -202,6 +202,7 @@ def test_scenes_that_cannot_be_captured_are_refused(blocks, capture, aplanat_bpy
     blocks.camera.data.type = "PANO"
     with pytest.raises(CameraError, match="pano"):
         capture(blocks)
+    blocks.camera.data.type, blocks.camera.data.clip_start = "PERSP", 0.1
     blocks.view_layers[0].use = False
     with pytest.raises(InputError, match="view layer"):
         capture(blocks)
