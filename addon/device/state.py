@@ -97,6 +97,15 @@ def behind():
     gpu.state.depth_mask_set(False)
 
 
+def hidden():
+    """Draw behind what is in the depth buffer; depth is kept."""
+    import gpu
+
+    opaque()
+    gpu.state.depth_test_set("GREATER")
+    gpu.state.depth_mask_set(False)
+
+
 def glow():
     """Add all four channels where the depth test passes; depth is kept."""
     import gpu

@@ -150,20 +150,21 @@ class HighlightSearch:
         return searches
 
     def _draws(self, search):
-        """Return the draws of all other surfaces, of the searched, and of see-through ones."""
+        """Return the draws of all other surfaces, the searched, what hides and what dims them."""
         if search.world:
-            return (), (), ()
+            return (), (), (), ()
         drawing = self._drawing
         shining = drawing.full_detail_draws(peel.HIGHLIGHTS, search.surfaces)
         if not shining:
-            return (), (), ()
+            return (), (), (), ()
         others = drawing.surfaces() - search.surfaces
         see_through = drawing.see_through()
         veils = [
             *drawing.full_detail_draws(peel.VEILS, see_through & search.surfaces),
             *drawing.full_detail_draws(peel.OTHER_VEILS, see_through & others),
         ]
-        return drawing.full_detail_draws(peel.OPAQUE, others), shining, veils
+        hiders = drawing.full_detail_draws(peel.HIDERS)
+        return drawing.full_detail_draws(peel.OPAQUE, others), shining, hiders, veils
 
     def _draw(self, search, tile, view, draws, raster, held, fullscreen):
         """Draw a tile, seen from a place on the lens, into lists; return its `ViewParams`."""
@@ -183,7 +184,7 @@ class HighlightSearch:
         params = self._draw(search, tile, view, draws, raster, held, fullscreen)
         number, shining = lists.read()
         if draws[2] and 0 < number <= lists.capacity:
-            self._append_veils(search, tile, params, draws[2], lens, lists, raster)
+            self._draw_before(search, tile, params, draws[2:], lens, lists, raster)
             number, _ = lists.read()
         if number > lists.capacity:
             # Drawn again into larger lists: texels are not counted twice.
@@ -221,7 +222,7 @@ class HighlightSearch:
             world = (buffers.environment_buffer, buffers.environment_image)
             background.list_highlights(fullscreen, params, *world, self._split, lists)
             return
-        others, shining, _ = draws
+        others, shining, *_ = draws
         peel.draw_opaque(others, params, buffers.instances, lens)
         peel.list_highlights(
             shining, params, buffers.instances, lens, lists, self._split, counts, counting
@@ -230,13 +231,16 @@ class HighlightSearch:
             self._drawing.counts.draw_calls += 1
             self._drawing.counts.triangles += draw.triangles * draw.count
 
-    def _append_veils(self, search, tile, params, veils, lens, lists, raster):
-        """Add the see-through fragments that dim the highlights of a tile."""
+    def _draw_before(self, search, tile, params, draws, lens, lists, raster):
+        """Draw what hides highlights of a tile right behind it, and add what dims them."""
+        hiders, veils = draws
         size = (tile[2] * search.subpixels, tile[3] * search.subpixels)
         framebuffer = raster.framebuffer(depth="scene")
         with framebuffer.bind(), state.scissored(0, 0, *size):
-            peel.list_veils(veils, params, self._buffers.instances, lens, lists, self._split)
-        for draw in veils:
+            peel.hide_highlights(hiders, params, self._buffers.instances, lens, lists)
+            if veils:
+                peel.list_veils(veils, params, self._buffers.instances, lens, lists, self._split)
+        for draw in (*hiders, *veils):
             self._drawing.counts.draw_calls += 1
             self._drawing.counts.triangles += draw.triangles * draw.count
 

@@ -52,6 +52,12 @@ APPEND_IMAGES = (
     ("RGBA32F", "FLOAT_2D", "light_img", ("WRITE",)),
     ("RGBA32UI", "UINT_2D", "nodes_img", ("WRITE",)),
 )
+# What a shader declares that takes the light of listed fragments.
+TAKE_IMAGES = (
+    (*_NUMBERS, "heads_img", ("READ",)),
+    ("RGBA32F", "FLOAT_2D", "light_img", ("READ", "WRITE")),
+    ("RGBA32UI", "UINT_2D", "nodes_img", ("READ",)),
+)
 # What a shader declares besides that counts the texels of instances.
 COUNT_IMAGES = ((*_NUMBERS, "hits_img", ("READ", "WRITE")),)
 COUNT_SAMPLERS = (("FLOAT_2D", "areas_tx"),)
@@ -217,9 +223,16 @@ class FragmentLists:
 
     def bindings(self):
         """Return the bindings of a shader that appends fragments: names, textures or numbers."""
-        names = [name for _, _, name, _ in APPEND_IMAGES]
-        images = [(name, self.targets[name.removesuffix("_img")]) for name in names]
-        return (*images, ("capacity", self.capacity), ("tile_texels", self._tile_texels))
+        numbers = (("capacity", self.capacity), ("tile_texels", self._tile_texels))
+        return (*self._images(APPEND_IMAGES), *numbers)
+
+    def taken(self):
+        """Return the bindings of a shader that takes the light of fragments."""
+        return self._images(TAKE_IMAGES)
+
+    def _images(self, declared):
+        names = [name for _, _, name, _ in declared]
+        return tuple((name, self.targets[name.removesuffix("_img")]) for name in names)
 
     def read(self):
         """Wait for the device.

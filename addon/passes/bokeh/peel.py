@@ -3,6 +3,7 @@
 `OCCLUDERS`: depth-peeled layers of all surfaces, each the nearest behind the layer before.
 `OPAQUE`: depth of the nearest opaque surface. `HIGHLIGHTS`: lists of all fragments brighter than
 the highlight threshold. `VEILS`, `OTHER_VEILS`: see-through fragments in front of and behind these.
+`HIDERS`: opaque surfaces right in front of these.
 
 References
 ----------
@@ -33,6 +34,13 @@ HIGHLIGHTS = surface_target.SurfaceTarget(
     push_constants=highlights.APPEND_CONSTANTS,
     values=highlights.APPEND_DEFINES,
     splits=True,
+)
+HIDERS = surface_target.SurfaceTarget(
+    "passes/bokeh/hiders_frag.glsl",
+    (),
+    images=highlights.TAKE_IMAGES,
+    values=highlights.APPEND_DEFINES,
+    shades=False,
 )
 # See-through surfaces of `HIGHLIGHTS`, where they are no highlight.
 VEILS = replace(
@@ -120,3 +128,19 @@ def list_veils(draws, view_buffer, instances, lens, lists, split):
     state.opaque()
     sample = (*lens, 0.0, 0.0)
     surface.draw_sample(draws, view_buffer, instances, sample, 0, lists.bindings(), split)
+
+
+def hide_highlights(draws, view_buffer, instances, lens, lists):
+    """Take the light of what opaque surfaces behind the nearest one hide from the whole lens.
+
+    Parameters
+    ----------
+    draws : list of Draw
+        For `HIDERS`.
+    view_buffer, instances, lens
+        As for `draw_opaque`; the bound frame buffer has the depth of the nearest opaque surfaces.
+    lists : highlights.FragmentLists
+        Read since highlights were listed, so that the device has finished them.
+    """
+    state.hidden()
+    surface.draw_sample(draws, view_buffer, instances, (*lens, 0.0, 0.0), 0, lists.taken())

@@ -14,8 +14,8 @@
 // Outputs: heads_img (first of a texel, with IN_ORDER), order_img (next of each); light_img: light that
 // is splatted (0 where the circle of confusion is too small) and depth along the axis, m.
 // Source: methods 9 (J20 section 4.1).
-#include "lib/depth_lib.glsl"
 #include "lib/bokeh/fragment_list_lib.glsl"
+#include "lib/bokeh/hiding_lib.glsl"
 #include "lib/bokeh/highlight_lib.glsl"
 #include "lib/bokeh/visibility_lib.glsl"
 #include "lib/lens_lib.glsl"
@@ -23,13 +23,9 @@
 #include "lib/chromatic_lib.glsl"
 #endif
 
-// Difference of circles of confusion, px, below which a surface in front hides from the whole lens.
-#define SAME_VIEW 1.0
-// The same, px, below which see-through fragments are put at one depth: a little more than what
+// Difference of circles of confusion, px, below which see-through fragments are put at one depth: a little more than what
 // highlights_comp makes one highlight of, so that no rounding joins two of them there.
 #define ONE_PLACE 1.05
-// Depth buffer values of one surface in two shaders may differ by this much.
-#define DEPTH_STEPS 2e-7
 
 float depth_of(float window_depth)
 {
@@ -39,14 +35,6 @@ float depth_of(float window_depth)
 float largest(vec3 color)
 {
   return max(color.r, max(color.g, color.b));
-}
-
-// Whether an opaque surface in front hides what lies behind it from the whole lens.
-bool hides(float front, float window_depth)
-{
-  float near = coc_radius_px(depth_of(front), view_buf.lens);
-  float far = coc_radius_px(depth_of(window_depth), view_buf.lens);
-  return abs(near - far) < SAME_VIEW;
 }
 
 // Whether see-through fragments are put at one depth.
@@ -75,8 +63,9 @@ Fragment next_behind(uint first, Fragment front, float scene)
     vec4 light = imageLoad(light_img, place);
     bool nearer = light.a < best.light.a;
     nearer = nearer || (light.a == best.light.a && largest(light.rgb) > largest(best.light.rgb));
-    bool hidden = scene < light.a - DEPTH_STEPS && hides(scene, light.a);
-    hidden = hidden || (front.opaque && hides(front.light.a, light.a));
+    bool hidden = hides(scene, light.a, view_buf.projection, view_buf.lens);
+    hidden = hidden ||
+             (front.opaque && alike(front.light.a, light.a, view_buf.projection, view_buf.lens));
     if (light.a > front.light.a && nearer && !hidden && largest(light.rgb) > 0.0) {
       best = Fragment(number, light, (node.x & KEY_OPAQUE) != 0u);
     }

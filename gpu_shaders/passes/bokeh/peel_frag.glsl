@@ -13,10 +13,8 @@
 // front) and hits_img (texels of each instance, hidden ones too).
 // Source: Everitt, Interactive order-independent transparency, 2001; Yang et al., Real-time
 // concurrent linked list construction on the GPU, EGSR 2010; methods 9.
+#include "lib/bokeh/hiding_lib.glsl"
 #include "lib/bokeh/highlight_lib.glsl"
-
-// Least opacity of a surface that counts as an occluder.
-#define OPAQUE_FROM 0.999
 
 #if !defined(HIGHLIGHTS) && !defined(VEILS)
 void main()

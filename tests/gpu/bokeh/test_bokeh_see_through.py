@@ -79,3 +79,23 @@ def test_cards_behind_a_lamp_do_not_dim_it():
     pictures = [render_snapshot(stack(cards, 8.0))["Bokeh"] for cards in ([], behind)]
     assert pictures[0].max() > 0.1
     assert pictures[0].tobytes() == pictures[1].tobytes()
+
+
+@pytest.mark.parametrize("visibility", ["RASTER", "WARP", "SPLAT"])
+@pytest.mark.parametrize("parallel", [False, True])
+@pytest.mark.parametrize("distance", [1e-3, 3e-2])
+def test_a_lamp_close_behind_a_plate_is_dark_behind_something_nearer_too(
+    distance, parallel, visibility
+):
+    # The nearer card leaves most of the lens free, and is the nearest surface in the lamp's pixels.
+    near, plate, behind = (0.3, 3.0), (0.6, 8.0), (0.25, 8.0 + distance)
+    for cards, dark in (((near, plate, behind), True), ((near, behind), False)):
+        triangles = []
+        for size, depth in cards:
+            scale = 1.0 if parallel else depth / 8.0
+            triangles.append(lamp(0.1 * scale, 0.05 * scale, depth, size * scale))
+        colors = [DARK] * (len(cards) - 1) + [BRIGHT]
+        shot = triangles_snapshot(triangles, colors, WIDTH, HEIGHT, LENS, 16, parallel=parallel)
+        shot = with_bokeh(shot, ("Bokeh",), visibility=visibility)
+        found = energy(render_snapshot(shot)["Bokeh"]).sum()
+        assert (found == 0.0) if dark else (found > 0.0)
