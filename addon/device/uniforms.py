@@ -30,7 +30,7 @@ def uniform_buffer(data):
 
 
 def bind_resource(shader, name, resource):
-    """Bind a uniform block, a whole number, a vector (tuple) or a texture, whichever it is.
+    """Bind a uniform block, a number, a vector (tuple) or a texture, whichever it is.
 
     Textures are images where the name ends in ``_img``, else they are sampled.
     """
@@ -40,7 +40,7 @@ def bind_resource(shader, name, resource):
         shader.uniform_block(name, resource)
     elif isinstance(resource, int):
         shader.uniform_int(name, resource)
-    elif isinstance(resource, tuple):
+    elif isinstance(resource, float | tuple):
         shader.uniform_float(name, resource)
     elif name.endswith("_img"):
         shader.image(name, resource)

@@ -29,7 +29,7 @@ def _info(define, in_wavelengths=False):
         typedefs=structs + HIGHLIGHT_PARAMS.source * split,
         attributes=(("VEC2", "pos"),),
         outputs=(("VEC4", "out_color"),) * (not lists),
-        samplers=(("FLOAT_2D", "environment_tx"),),
+        samplers=(("FLOAT_2D", "environment_tx"), *(("FLOAT_2D", "through_tx"),) * lists),
         images=APPEND_IMAGES * lists,
         uniforms=tuple(uniforms),
         push_constants=(("VEC4", "lens_sample"), *APPEND_CONSTANTS * lists),
@@ -68,7 +68,7 @@ def draw(
     _draw(fullscreen, define, *world, lens_sample, highlights, wavelength)
 
 
-def list_highlights(fullscreen, view_buffer, environment_buffer, image, split, lists):
+def list_highlights(fullscreen, view_buffer, environment_buffer, image, split, lists, through):
     """Append the texels of the world's image above the highlight threshold to fragment lists.
 
     Parameters
@@ -79,11 +79,14 @@ def list_highlights(fullscreen, view_buffer, environment_buffer, image, split, l
         `HighlightParams`.
     lists : passes.bokeh.highlights.FragmentLists
         Cleared.
+    through : GPUTexture
+        Share of the light that passes what covers the world from the whole lens, by texel.
     """
     state.overwrite()
     center = (0.0, 0.0, 0.0, 0.0)
     world = (view_buffer, environment_buffer, image)
-    _draw(fullscreen, "EXCESS", *world, center, split, bindings=lists.bindings())
+    bindings = (("through_tx", through), *lists.bindings())
+    _draw(fullscreen, "EXCESS", *world, center, split, bindings=bindings)
 
 
 def _draw(

@@ -1,8 +1,9 @@
 // The world background at infinity, seen from one place on the lens, where no surface is.
 // Inputs: view_buf; lens_sample (xy: place on the lens, m; zw: sub-pixel jitter in clip units);
 // environment_buf; environment_tx (equirectangular, scene linear). HIGHLIGHTS: highlight_buf; the light
-// that is splatted as bokeh is left out. EXCESS: highlight_buf and the inputs of highlights_append;
-// light above the threshold is listed.
+// that is splatted as bokeh is left out. EXCESS: highlight_buf, through_tx (share of the light that
+// passes what covers the world from the whole lens) and the inputs of highlights_append; light above the
+// threshold is listed.
 // CHROMATIC: as in surface_vert.
 // Outputs: opaque scene-linear colour; with EXCESS lists of fragments: light above the threshold.
 // Source: methods 1: the ray from the lens' place through the pixel's point of the focus plane.
@@ -69,6 +70,7 @@ void main()
 #endif
 #ifdef EXCESS
   vec3 light = highlight_light(radiance, highlight_buf.split.x, highlight_buf.split.z);
+  light *= texelFetch(through_tx, ivec2(gl_FragCoord.xy), 0).x;
   if (max(light.r, max(light.g, light.b)) > 0.0) {
     append_fragment(ivec2(gl_FragCoord.xy), light, 1.0, true, 0.0, 0u);
   }

@@ -104,6 +104,8 @@ class HighlightSearch:
             _, _, width, height = tiles[0]
             fine = search.subpixels
             specs = [TargetSpec("scene", "DEPTH_COMPONENT32F", scale=fine)]
+            if search.world:
+                specs.append(TargetSpec("through", "R16F", scale=fine))
             with Targets(width, height, specs) as raster:
                 self._list_tiles(search, tiles, draws, raster, fullscreen)
 
@@ -150,10 +152,16 @@ class HighlightSearch:
         return searches
 
     def _draws(self, search):
-        """Return the draws of all other surfaces, the searched, what hides and what dims them."""
-        if search.world:
-            return (), (), (), ()
+        """Return the draws of all other surfaces, the searched, what hides and what dims them.
+
+        Of the world only what covers it.
+        """
         drawing = self._drawing
+        if search.world:
+            covers = ()
+            if drawing.farthest > self._world_covered_from():
+                covers = drawing.full_detail_draws(peel.COVERS)
+            return covers, (), (), ()
         shining = drawing.full_detail_draws(peel.HIGHLIGHTS, search.surfaces)
         if not shining:
             return (), (), (), ()
@@ -173,7 +181,7 @@ class HighlightSearch:
         size = (tile[2] * search.subpixels, tile[3] * search.subpixels)
         with framebuffer.bind(), state.scissored(0, 0, *size):
             framebuffer.clear(depth=1.0)
-            self._append(search, draws, params, view[0], held, fullscreen)
+            self._append(search, draws, params, view[0], held, fullscreen, raster)
         return params
 
     def _list(self, search, tile, view, draws, raster, held, fullscreen):
@@ -215,12 +223,13 @@ class HighlightSearch:
         self.sharp += sharp
         return lists
 
-    def _append(self, search, draws, params, lens, held, fullscreen):
+    def _append(self, search, draws, params, lens, held, fullscreen, raster):
         buffers = self._buffers
         lists, counts, counting = held
         if search.world:
             world = (buffers.environment_buffer, buffers.environment_image)
-            background.list_highlights(fullscreen, params, *world, self._split, lists)
+            through = self._through(draws[0], params, raster)
+            background.list_highlights(fullscreen, params, *world, self._split, lists, through)
             return
         others, shining, *_ = draws
         peel.draw_opaque(others, params, buffers.instances, lens)
@@ -230,6 +239,26 @@ class HighlightSearch:
         for draw in (*others, *shining):
             self._drawing.counts.draw_calls += 1
             self._drawing.counts.triangles += draw.triangles * draw.count
+
+    def _world_covered_from(self):
+        """Return the depth from which on surfaces are as good as infinitely far, m.
+
+        Visibility counts what is nearer (`hiding_depth` of visibility_lib.glsl).
+        """
+        moves = highlights.SAME_VIEW / max(self._plan.coc_scale, 1e-30)
+        return 1.0 / (1.0 / self._plan.bokeh.world_depth + moves)
+
+    def _through(self, covers, params, raster):
+        """Return how much of the world's light passes what covers it, by texel."""
+        raster.clear("through", (1.0,) * 4)
+        if covers:
+            nearest = self._world_covered_from()
+            with raster.framebuffer("through").bind():
+                peel.cover_world(covers, params, self._buffers.instances, nearest)
+        for draw in covers:
+            self._drawing.counts.draw_calls += 1
+            self._drawing.counts.triangles += draw.triangles * draw.count
+        return raster["through"]
 
     def _draw_before(self, search, tile, params, draws, lens, lists, raster):
         """Draw what hides highlights of a tile right behind it, and add what dims them."""

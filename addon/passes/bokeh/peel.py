@@ -3,7 +3,7 @@
 `OCCLUDERS`: depth-peeled layers of all surfaces, each the nearest behind the layer before.
 `OPAQUE`: depth of the nearest opaque surface. `HIGHLIGHTS`: lists of all fragments brighter than
 the highlight threshold. `VEILS`, `OTHER_VEILS`: see-through fragments in front of and behind these.
-`HIDERS`: opaque surfaces right in front of these.
+`HIDERS`: opaque surfaces right in front of these. `COVERS`: surfaces right in front of the world.
 
 References
 ----------
@@ -40,6 +40,12 @@ HIDERS = surface_target.SurfaceTarget(
     (),
     images=highlights.TAKE_IMAGES,
     values=highlights.APPEND_DEFINES,
+    shades=False,
+)
+COVERS = surface_target.SurfaceTarget(
+    "passes/bokeh/covers_frag.glsl",
+    (("VEC4", "out_color"),),
+    push_constants=(("FLOAT", "nearest"),),
     shades=False,
 )
 # See-through surfaces of `HIGHLIGHTS`, where they are no highlight.
@@ -144,3 +150,19 @@ def hide_highlights(draws, view_buffer, instances, lens, lists):
     """
     state.hidden()
     surface.draw_sample(draws, view_buffer, instances, (*lens, 0.0, 0.0), 0, lists.taken())
+
+
+def cover_world(draws, view_buffer, instances, nearest):
+    """Multiply the bound colour by what passes surfaces as good as infinitely far.
+
+    Parameters
+    ----------
+    draws : list of Draw
+        For `COVERS`.
+    view_buffer, instances
+        As for `draw_layer`.
+    nearest : float
+        Depth from which on they are, m.
+    """
+    state.multiply()
+    surface.draw_sample(draws, view_buffer, instances, (0.0,) * 4, 0, (("nearest", nearest),))
