@@ -53,6 +53,30 @@ def captured_files(path, frames):
     return found
 
 
+def check_apart(files, outputs):
+    """Refuse to write over captured files.
+
+    Parameters
+    ----------
+    files : iterable of Path
+        Captured files.
+    outputs : iterable of Path
+        Where pictures of them go.
+
+    Raises
+    ------
+    InputError
+        If a picture would replace a captured file, whatever its path is called.
+    """
+    captured = {file.resolve() for file in files}
+    for output in outputs:
+        if output.resolve() in captured:
+            raise InputError(
+                f"'{output}' is a captured file, which the picture would replace; write the picture"
+                " elsewhere"
+            )
+
+
 def load_captured(path, flat):
     """Read a file of depth layers, or any picture with a depth pass.
 

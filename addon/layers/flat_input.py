@@ -19,6 +19,10 @@ from .slices import NOTHING
 _LOOKS_NORMALISED = 0.98
 
 
+# Least alpha of a picture without holes: half precision ends there.
+_OPAQUE = 0.999
+
+
 @dataclass(frozen=True)
 class FlatOptions:
     """What somebody knows about a picture with a depth pass; None is guessed.
@@ -106,6 +110,7 @@ def load_flat(path, options=None):
         color_space="",
         engine=str(color_part.header.get("software", color_part.header.get("Software", ""))),
         report=tuple(report),
+        fills=bool(color[..., 3].min(initial=1.0) >= _OPAQUE),
     )
 
 

@@ -108,6 +108,9 @@ class LayerStack:
         Which renderer made it.
     report : tuple of str
         What the picture or file cannot know, one line each.
+    fills : bool
+        It is opaque, but does not know what is hidden: where the lens would see that, what is
+        around it stands for it.
     """
 
     layers: tuple[DepthLayer, ...]
@@ -120,6 +123,7 @@ class LayerStack:
     color_space: str = "Linear Rec.709"
     engine: str = ""
     report: tuple[str, ...] = ()
+    fills: bool = False
 
     @cached_property
     def depth_range(self):

@@ -117,6 +117,10 @@ def test_without_a_scene_the_lens_is_the_captured_one(aplanat, aplanat_bpy, stac
         (["layers_####.exr", "-o", "x.exr"], "need ####"),
         (["layers_####.exr", "-o", "x_####.exr", "--frames", "1..4"], "layers_0003.exr"),
         (["layers_0001.exr", "-o", "x.exr", "--frames", "1..4"], "has no ####"),
+        (["layers_####.exr", "-o", "layers_####.exr"], "is a captured file"),
+        (["layers_0001.exr", "-o", "linked.exr"], "is a captured file"),
+        (["layers_0001.exr", "-o", "x.exr", "--stats", "layers_0001.exr"], "is a captured file"),
+        (["layers_0001.exr", "-o", "x.exr", "--blades", "2"], "0 (round) or 3"),
         (["layers_0001.exr", "-o", "x.exr", "--focus", "0"], "greater than 0"),
         (["foreign.exr", "-o", "x.exr"], "foreign.exr"),
         (["foreign.exr", "-o", "x.exr", "--depth-range", "3,1"], "NEAR"),
@@ -136,9 +140,11 @@ def test_what_cannot_be_is_one_line(aplanat, captured, shot, tmp_path, words, to
     (tmp_path / "broken.exr").write_bytes(whole[: len(whole) // 2])
     words = [tmp_path / word if word.endswith((".exr", ".blend")) else word for word in words]
     words = [shot if word == tmp_path / "shot.blend" else word for word in words]
+    (tmp_path / "linked.exr").symlink_to(tmp_path / "layers_0001.exr")
     before = set(tmp_path.iterdir())
     done = aplanat("refocus", *words)
     assert done.code == 2, done
+    assert (tmp_path / "layers_0001.exr").read_bytes() == whole
     assert told in done.err and done.err.count("\n") == 1, done.err
     assert before == set(tmp_path.iterdir())
 
@@ -155,6 +161,25 @@ def test_a_picture_with_a_depth_pass_is_one_layer(aplanat, tmp_path):
     with OpenEXR.File(str(tmp_path / "b.exr")) as found:
         assert np.allclose(found.channels()["RGBA"].pixels[..., :3], 0.5, atol=2e-3)
     assert aplanat(*words, "--strict").code == 2
+
+
+def test_an_opaque_picture_has_no_holes_where_near_things_are_blurred(aplanat, tmp_path):
+    header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
+    pixels = np.full((54, 96, 4), (0.2, 0.4, 0.1, 1.0), np.float32)
+    depth = np.full((54, 96), 12.0, np.float32)
+    # A post, whose blur is wider than itself.
+    pixels[:, 44:52, :3], depth[:, 44:52] = (0.6, 0.1, 0.1), 2.0
+    OpenEXR.File(header, {"RGBA": pixels, "Depth.Z": depth}).write(str(tmp_path / "a.exr"))
+    words = ("--samples", "32", "--focus", "12", "--fstop", "0.2", "--focal-length", "45")
+    done = aplanat("refocus", tmp_path / "a.exr", "-o", tmp_path / "b.exr", *words)
+    assert done.code == 0, done.err
+    with OpenEXR.File(str(tmp_path / "b.exr")) as found:
+        picture = np.array(found.channels()["RGBA"].pixels)
+    assert picture[..., 3] == pytest.approx(1.0, abs=1e-3)
+    # Between both colours everywhere: nothing is darker, and far from the post nothing changes.
+    low, high = np.array([0.2, 0.1, 0.1]), np.array([0.6, 0.4, 0.1])
+    assert (picture[..., :3] > low - 2e-3).all() and (picture[..., :3] < high + 2e-3).all()
+    assert picture[:, :8, :3] == pytest.approx(pixels[:, :8, :3], abs=2e-3)
 
 
 @pytest.mark.parametrize(

@@ -49,6 +49,10 @@ def another_value(bpy, group, kind):
     assert kind.type == "POINTER"
     if kind.fixed_type.identifier == "Image":
         return bpy.data.images.new("iris", 4, 4)
+    if kind.fixed_type.identifier == "Object":
+        camera = bpy.data.objects.new("another", bpy.data.cameras.new("another"))
+        bpy.context.scene.collection.objects.link(camera)
+        return camera
     return bpy.data.node_groups.new("curves", "ShaderNodeTree")
 
 

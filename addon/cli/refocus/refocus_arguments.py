@@ -9,7 +9,7 @@ from ..words.option_values import file_with_ending, positive_number, whole_numbe
 from ..words.parser import add_farm_options, add_output_options
 
 _MOST_SAMPLES = 65536
-_MOST_BLADES = 64
+_MOST_BLADES = 32
 
 
 def add_refocus(commands):
@@ -50,7 +50,7 @@ def add_refocus(commands):
     add("--camera", metavar="NAME", help="camera object of --scene; default: the scene's")
     add("--focus", metavar="DISTANCE", type=positive_number(), help="in m along the optical axis")
     add("--fstop", metavar="X", type=positive_number(), help="f-number")
-    add("--blades", metavar="N", type=whole_number(0, _MOST_BLADES), help="of the iris; 0: round")
+    add("--blades", metavar="N", type=_blades, help="of the iris; 0: round")
     add("--lens", metavar="ID|FILE", help="lens of the library, or a lens file")
     add("--no-bokeh", action="store_true", help="without separate highlights")
     add("--no-chromatic", action="store_true", help="without chromatic aberration")
@@ -94,6 +94,15 @@ def add_refocus(commands):
     add("--stats", metavar="FILE", type=Path, help="write statistics as JSON")
     add_output_options(parser)
     add_farm_options(parser)
+
+
+def _blades(text):
+    count = whole_number(0, _MOST_BLADES)(text)
+    if count in (1, 2):
+        raise argparse.ArgumentTypeError(
+            f"{count} blades make no opening; use 0 (round) or 3 to {_MOST_BLADES}"
+        )
+    return count
 
 
 def _depth_range(text):

@@ -13,7 +13,7 @@ from ...errors import InputError
 from ...files.frame_path import frame_path
 from ...files.version import version
 from ...files.whole_file import check_writable, removed_on_signals
-from ...layers.captured_files import captured_files, load_captured
+from ...layers.captured_files import captured_files, check_apart, load_captured
 from ...layers.flat_input import FlatOptions
 from ..render.render_command import Warnings
 from ..render.statistics import peak_memory
@@ -23,7 +23,7 @@ from ..words.parser import make_folders
 from .lens_source import LensSource
 
 # Lens samples between two looks at whether there is something to tell.
-_STRETCH = 16
+_STRETCH = 4
 
 
 def refocus_files(arguments, console):
@@ -53,7 +53,9 @@ def refocus_files(arguments, console):
         )
     with removed_on_signals(), resources().open_session() as session:
         make_folders(arguments, [arguments.output])
-        for path in filter(None, (frame_path(arguments.output, min(files)), arguments.stats)):
+        outputs = [frame_path(arguments.output, frame) for frame in sorted(files)]
+        check_apart(files.values(), [*outputs, *filter(None, [arguments.stats])])
+        for path in filter(None, (outputs[0], arguments.stats)):
             check_writable(path)
         lens = LensSource(arguments, session.sources)
         ensure_context()
@@ -82,10 +84,11 @@ def refocus_files(arguments, console):
 def _refocus_frame(frame, file, arguments, console, warnings, lens, session):
     begun = time.perf_counter()
     stack = load_captured(file, _flat(arguments))
-    warnings.add(stack.report)
-    numbered = "#" in arguments.layers.name
-    settings, problems = lens.settings(stack, frame if numbered else stack.frame)
-    warnings.add(problems)
+    if "#" not in arguments.layers.name:
+        frame = stack.frame
+    # What is refused is one line, without the warnings.
+    settings, problems = lens.settings(stack, frame)
+    warnings.add([*stack.report, *problems])
     seen = lens_of(stack, settings)
     refocusing = Refocusing(stack, settings, session.look_textures)
     try:

@@ -9,7 +9,7 @@ from ...device import state
 from ...device.textures import TextureCache
 from ...errors import InputError
 from ...files.frame_path import frame_path
-from ...layers.captured_files import load_captured
+from ...layers.captured_files import check_apart, load_captured
 from ..frame.pacing import Pacer
 from .live_picture import PIECE_SECONDS
 from .pictures import save_picture
@@ -55,6 +55,7 @@ def write_frames(scene, frames, output, sources, depsgraph_of, note):
             f"captured file '{missing[0]}' does not exist"
             + (f" ({len(missing)} of {len(files)} frames are missing)" * (len(missing) > 1))
         )
+    check_apart(files.values(), [Path(frame_path(output, frame)) for frame in frames])
     device_context.ensure_context()
     # Of the bokeh discs, which many frames have in common.
     looks = TextureCache()

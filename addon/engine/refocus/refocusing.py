@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...device import keeping
+from ...layers.filling import filled
 from ...snapshot.camera import Camera
 from ...snapshot.content import InstanceTable, SceneContent
 from ...snapshot.film import Film, Sampling
@@ -66,6 +67,7 @@ def refocus_snapshot(stack, settings, content=None):
         camera=camera,
         film=Film(stack.width, stack.height, (0, 0, stack.width, stack.height), True, "BOX", 1.0),
         sampling=sampling,
+        passes=("Combined", "Defocus", "Bokeh") if stack.fills else ("Combined",),
         stack=stack,
     )
 
@@ -189,7 +191,13 @@ class Refocusing:
         ndarray of shape (height, width, 4)
             Scene linear, premultiplied, bottom row first.
         """
-        return self._renderer.read_image()
+        if not self.stack.fills:
+            return self._renderer.read_image()
+        # Light that is splatted is whole, whatever the lens samples miss.
+        passes = self._renderer.read_passes(("Defocus", "Bokeh"))
+        picture = filled(passes["Defocus"])
+        picture[..., :3] += passes["Bokeh"][..., :3]
+        return picture
 
     def release(self):
         """Give everything back to the device; it cannot be used afterwards."""

@@ -9,10 +9,12 @@ import bpy
 from ...capture.kept_values import KeptValues
 from ...engine.refocus.frames import write_frames
 from ...engine.refocus.pictures import save_picture
+from ...engine.refocus.scene_refocus import layers_path
 from ...engine.shared_resources import resources
 from ...errors import AplanatError, InputError, OutputError
 from ...files.frame_path import frame_path
 from ...files.whole_file import check_writable
+from ...layers.captured_files import check_apart
 from ..jobs import live_refocus
 
 # Seconds between two pieces of work.
@@ -132,7 +134,8 @@ class APLANAT_OT_refocus_write(bpy.types.Operator):
         live = live_refocus.live_of(self._scene)
         for line in live.notes:
             self._note(line)
-        output = frame_path(self._output, self._frame)
+        output = Path(frame_path(self._output, self._frame))
+        check_apart([layers_path(self._scene, self._frame)], [output])
         save_picture(output, live.picture(), live.stack, self._scene)
         yield self._frame, 1.0
 
