@@ -60,6 +60,9 @@ def test_every_setting_is_drawn_within_its_range(aplanat_bpy):
         assert {path for path in values if "." not in path} == declared
         assert "capture.layers" in values
         for path, value in values.items():
+            if isinstance(value, dict):
+                # An image, which is made with the scene.
+                continue
             inner, _, name = path.rpartition(".")
             group = scene.aplanat.path_resolve(inner) if inner else scene.aplanat
             setattr(group, name, value)
