@@ -55,7 +55,7 @@ class Library:
         from difflib import get_close_matches
 
         near = get_close_matches(lens_id[:100], paths, 3, 0.5)
-        hint = f"; near names are {', '.join(near)}" if near else ""
+        hint = f"; near names are {', '.join(near)}" if near else "; `aplanat lens list` names all"
         raise LensFileError(
             lens_id, [Finding("E01", "", f"there is no lens and no file of this name{hint}")]
         )

@@ -21,7 +21,7 @@ from ...scene.unsupported import missing_files, missing_links
 from ..render import statistics
 from ..render.render_command import Warnings
 from ..render.scene_setup import load_scene
-from ..words.frame_values import first_frame, frame_numbers, telling_frame
+from ..words.frame_values import first_file, frame_numbers, telling_frame
 from ..words.json_file import write_json
 from ..words.parser import make_folders
 
@@ -47,7 +47,7 @@ def capture(arguments, console):
     start = time.perf_counter()
     with removed_on_signals():
         make_folders(arguments, [arguments.output])
-        check_writable(frame_path(arguments.output, first_frame(arguments)))
+        check_writable(first_file(arguments.output, arguments))
         if arguments.stats:
             check_writable(arguments.stats)
         scene = load_scene(arguments.scene)

@@ -12,9 +12,8 @@ from ...device.context import ensure_context, max_texture_size
 from ...engine.report import without_count
 from ...engine.shared_resources import listen, resources
 from ...errors import AplanatError, DeviceLimitError, InputError, RenderCancelledError, StrictError
-from ...files.frame_path import frame_path
 from ...files.whole_file import check_writable, removed_on_signals
-from ..words.frame_values import first_frame, frame_numbers, telling_frame
+from ..words.frame_values import first_file, frame_numbers, telling_frame
 from ..words.json_file import write_json
 from ..words.parser import make_folders
 from . import statistics
@@ -154,7 +153,7 @@ def heard_render(keep_pictures=False, progress=None, strict=False, frame=None, s
 def _check_outputs(arguments):
     make_folders(arguments, arguments.output)
     for path in arguments.output:
-        check_writable(frame_path(path, first_frame(arguments)))
+        check_writable(first_file(path, arguments))
     if arguments.stats:
         check_writable(arguments.stats)
 

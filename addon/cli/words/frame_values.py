@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from ...errors import AplanatError, InputError
+from ...files.frame_path import frame_path
 from .option_values import whole_number
 
 # Bound of Blender's own property.
@@ -98,9 +99,10 @@ def check_frames(frames, patterns, step=None):
             )
 
 
-def first_frame(arguments):
-    """Return the frame whose files are checked before anything is done."""
-    return arguments.frames.first if arguments.frames else arguments.frame or 0
+def first_file(path, arguments):
+    """Return the file that is checked before all else: the first frame's, if that is known."""
+    first = arguments.frames.first if arguments.frames else arguments.frame
+    return path if first is None else frame_path(path, first)
 
 
 def frame_numbers(scene, arguments):
