@@ -4,7 +4,9 @@
 
 Shared test scenes (built by `aplanat bench`), highlights as everything else. For each number of
 samples: SSIM and energy against the reference method, processor time, with thin rays and with rays
-as thick as their distance; and the share of layers that no ray had to look into.
+as thick as their distance; and the share of layers that no ray had to look into. With --complexity
+instead: seconds of 128 samples once layers are drawn, of the scene and with four times the
+triangles.
 """
 
 import argparse
@@ -28,6 +30,7 @@ def arguments(words=None):
     parser.add_argument("--samples", type=int, nargs="+", default=[32, 256])
     parser.add_argument("--reference", type=int, default=512, help="samples of the reference")
     parser.add_argument("--layers", type=int, default=8)
+    parser.add_argument("--complexity", action="store_true")
     return parser.parse_args(words)
 
 
@@ -62,6 +65,45 @@ def looked_into(bench, snapshot, plan):
         return float(totals[1] / totals[0])
 
 
+def drawn_seconds(bench, layers, samples=128, times=3):
+    """Return the least time of lens samples once the layers are drawn, and the scene's triangles.
+
+    Parameters
+    ----------
+    bench : BenchScene
+    layers, samples, times : int
+
+    Returns
+    -------
+    seconds : float
+    triangles : int
+    """
+    from addon.engine.planning.plan import plan_frame
+
+    snapshot = bench.sampled("LAYERED", samples + 1, layers=layers)
+    content = snapshot.content
+    triangles = sum(len(content.meshes[g.mesh].triangles) * g.count for g in content.groups)
+    found = []
+    for _ in range(times):
+        with bench.renderer(snapshot, plan_frame(snapshot)) as renderer:
+            renderer.advance(1)
+            renderer.wait()
+            begun = time.perf_counter()
+            renderer.advance(samples)
+            renderer.wait()
+            found.append(time.perf_counter() - begun)
+    return min(found), triangles
+
+
+def subdivide(scene):
+    """Give every mesh four times its triangles, where they are."""
+    for thing in scene.objects:
+        if thing.type == "MESH":
+            modifier = thing.modifiers.new("four times", "SUBSURF")
+            modifier.subdivision_type, modifier.levels = "SIMPLE", 1
+            modifier.render_levels = 1
+
+
 def main(words=None):
     """Measure and print, a line a setting."""
     options = arguments(words)
@@ -84,6 +126,13 @@ def main(words=None):
         scene.render.resolution_x, scene.render.resolution_y = width, height
         scene.render.resolution_percentage = 100
         bench = BenchScene(scene)
+        if options.complexity:
+            for _ in range(2):
+                seconds, triangles = drawn_seconds(bench, options.layers)
+                print(f"{name}: {triangles:,} triangles: {seconds:.2f} s", flush=True)
+                subdivide(scene)
+                bench = BenchScene(scene)
+            continue
         begun = time.process_time()
         truth = bench.draw(bench.sampled("REFERENCE", options.reference)).picture
         print(f"{name}: reference {options.reference}: {time.process_time() - begun:.1f} s")
