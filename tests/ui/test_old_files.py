@@ -95,8 +95,10 @@ def test_saving_and_opening_again_keeps_every_setting(aplanat_bpy, opened):
     aplanat_bpy.ops.wm.save_mainfile()
     aplanat_bpy.ops.wm.open_mainfile(filepath=opened)
     assert kept() == SAVED
-    for scene in aplanat_bpy.data.scenes:
-        assert stored_settings(scene)["settings_version"] == VERSION
+    cameras = [c for c in aplanat_bpy.data.cameras if not c.library and not c.override_library]
+    own = [stored_settings(camera) for camera in cameras]
+    own += [stored_settings(scene.view_layers[0]) for scene in aplanat_bpy.data.scenes]
+    assert {stored["settings_version"] for stored in own} == {VERSION}
 
 
 def test_a_scene_of_another_engine_gets_no_settings(aplanat_bpy, empty_scene, tmp_path):
@@ -106,27 +108,106 @@ def test_a_scene_of_another_engine_gets_no_settings(aplanat_bpy, empty_scene, tm
     assert stored_settings(empty_scene) is None
 
 
-def test_a_step_runs_once_and_reads_what_has_no_property_any_more(aplanat_bpy, opened, monkeypatch):
-    bpy = aplanat_bpy
+@pytest.fixture
+def later(monkeypatch):
+    """A later Aplanat: `bokeh.gone` became a tenth of `bokeh.gain`. Whom its step saw."""
     seen = []
 
     def rename(kind, stored):
-        seen.append(kind)
-        if kind == "cameras" and "gone" in stored["bokeh"]:
-            stored["bokeh"]["gain"] = 10.0 * stored["bokeh"]["gone"]
-            del stored["bokeh"]["gone"]
+        bokeh = stored.get("bokeh", {})
+        seen.append((kind, "gone" in bokeh))
+        if "gone" in bokeh:
+            bokeh["gain"] = 10.0 * bokeh["gone"]
+            del bokeh["gone"]
 
+    def install():
+        monkeypatch.setattr(migrations, "STEPS", {VERSION + 1: rename})
+        monkeypatch.setattr(migrations, "VERSION", VERSION + 1)
+        return seen
+
+    return install
+
+
+@pytest.fixture
+def old_library(aplanat_bpy, tmp_path):
+    """Save the library of 0.1 with `bokeh.gone` in its camera; return its path."""
+    path = str(tmp_path / "old.blend")
+    aplanat_bpy.ops.wm.open_mainfile(filepath=str(FOLDER / "library.blend"))
+    stored_settings(aplanat_bpy.data.cameras["linked"])["bokeh"]["gone"] = 0.3
+    aplanat_bpy.ops.wm.save_as_mainfile(filepath=path)
+    aplanat_bpy.ops.wm.read_factory_settings(use_empty=True)
+    yield path
+    aplanat_bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
+def bring_in(bpy, path, link):
+    """Link or append the camera of a library; return it."""
+    with bpy.data.libraries.load(path, link=link) as (_, to):
+        to.cameras = ["linked"]
+    return to.cameras[0]
+
+
+def test_a_step_runs_once_and_reads_what_has_no_property_any_more(aplanat_bpy, opened, later):
+    bpy = aplanat_bpy
     stored_settings(bpy.data.cameras["camera 2"])["bokeh"]["gone"] = 0.3
     bpy.ops.wm.save_mainfile()
     before = values_of(bpy.data.cameras["camera 1"])
-    monkeypatch.setattr(migrations, "STEPS", {VERSION + 1: rename})
-    monkeypatch.setattr(migrations, "VERSION", VERSION + 1)
+    seen = later()
     bpy.ops.wm.open_mainfile(filepath=opened)
-    assert set(seen) == {"scenes", "cameras", "lights", "materials", "worlds", "view_layers"}
+    kinds = {"scenes", "cameras", "lights", "materials", "worlds", "view_layers"}
+    assert {kind for kind, _ in seen} == kinds
     assert bpy.data.cameras["camera 2"].aplanat.bokeh.gain == pytest.approx(3.0)
     assert values_of(bpy.data.cameras["camera 1"]) == before
-    seen.clear()
     bpy.ops.wm.save_mainfile()
+    seen.clear()
     bpy.ops.wm.open_mainfile(filepath=opened)
-    assert not seen
+    # The library is as old as before.
+    assert {kind for kind, _ in seen} == {"cameras"}
+    assert not any(had_it for _, had_it in seen)
     assert bpy.data.cameras["camera 2"].aplanat.bokeh.gain == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("link", [True, False], ids=["linked", "appended"])
+def test_a_step_runs_on_what_comes_from_an_older_file(aplanat_bpy, old_library, later, link):
+    own = aplanat_bpy.data.cameras.new("own")
+    own.aplanat.bokeh.gain = 2.0
+    seen = later()
+    camera = bring_in(aplanat_bpy, old_library, link)
+    assert seen == [("cameras", True)]
+    assert camera.aplanat.bokeh.gain == pytest.approx(3.0)
+    assert own.aplanat.bokeh.gain == 2.0
+    bring_in(aplanat_bpy, old_library, link=True)
+    assert camera.aplanat.bokeh.gain == pytest.approx(3.0)
+
+
+def test_a_step_runs_on_an_older_library_of_a_newer_file(aplanat_bpy, old_library, later, tmp_path):
+    bpy = aplanat_bpy
+    path = str(tmp_path / "new.blend")
+    seen = later()
+    for name, link in (("holder", True), ("other", False)):
+        holder = bpy.data.objects.new(name, bring_in(bpy, old_library, link))
+        bpy.context.scene.collection.objects.link(holder)
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    seen.clear()
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert seen == [("cameras", True)], "the linked camera, not the appended one"
+    assert bpy.data.objects["holder"].data.aplanat.bokeh.gain == pytest.approx(3.0)
+    seen.clear()
+    bpy.data.libraries[0].reload()
+    assert seen == [("cameras", True)]
+    assert bpy.data.objects["holder"].data.aplanat.bokeh.gain == pytest.approx(3.0)
+
+
+def test_what_an_override_changes_is_kept_with_an_older_library(
+    aplanat_bpy, old_library, later, tmp_path
+):
+    bpy = aplanat_bpy
+    path = str(tmp_path / "new.blend")
+    later()
+    changed = bring_in(bpy, old_library, link=True).override_create()
+    changed.use_fake_user = True
+    changed.aplanat.bokeh.threshold = 7.0
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    bokeh = next(c for c in bpy.data.cameras if c.override_library).aplanat.bokeh
+    assert (bokeh.gain, bokeh.threshold) == (pytest.approx(3.0), 7.0)

@@ -6,8 +6,8 @@ tested without being named here.
 
 import pytest
 
-# Computed from others, never stored, or stored by Aplanat alone.
-COMPUTED = {"lens_choice", "zoom", "curve_text", "spectrum", "rna_type", "name", "settings_version"}
+# Computed from others, never stored.
+COMPUTED = {"lens_choice", "zoom", "curve_text", "spectrum", "rna_type", "name"}
 OWNERS = {
     "scenes": lambda bpy: bpy.context.scene,
     "cameras": lambda bpy: bpy.data.cameras.new("owner"),

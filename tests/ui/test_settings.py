@@ -46,7 +46,7 @@ ALL = [
 IDS = [f"{group}.{setting.name}" for group, setting in ALL]
 # Shown, but stored elsewhere, or stored, but no setting.
 UNDECLARED = {
-    "AplanatSceneSettings": {"settings_version", "capture", "refocus"},
+    "AplanatSceneSettings": {"capture", "refocus"},
     "AplanatCameraSettings": {
         *("lens_choice", "zoom", "bokeh", "chromatic"),
         *("bokeh_lens", "bokeh_memory", "chromatic_lens", "chromatic_memory"),

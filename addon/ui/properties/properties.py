@@ -1,7 +1,7 @@
 """Property groups that Aplanat adds to Blender's data-blocks, one each."""
 
 import bpy
-from bpy.props import IntProperty, PointerProperty
+from bpy.props import PointerProperty
 
 from ...settings.scene_part_settings import LAMP, MATERIAL, WORLD
 from ...settings.scene_settings import SCENE, VIEW_LAYER
@@ -28,13 +28,6 @@ class AplanatSceneSettings(bpy.types.PropertyGroup):
             name="Refocus",
             description="How a captured picture is seen through the lens again",
             type=AplanatRefocusSettings,
-        ),
-        "settings_version": IntProperty(
-            name="Version of the Settings",
-            description="Of what is stored in this file; 0 is that of Aplanat 0.1",
-            default=0,
-            min=0,
-            options={"HIDDEN"},
         ),
     }
 
