@@ -11,6 +11,7 @@ import pytest
 
 from addon.ui.properties import migrations
 from addon.ui.properties.migrations import VERSION, stored_settings
+from addon.ui.properties.moved_settings import move, move_animation
 
 from .saved_by_0_1.make import all_values, values_of
 
@@ -113,7 +114,7 @@ def later(monkeypatch):
     """A later Aplanat: `bokeh.gone` became a tenth of `bokeh.gain`. Whom its step saw."""
     seen = []
 
-    def rename(kind, stored):
+    def rename(kind, _block, stored):
         bokeh = stored.get("bokeh", {})
         seen.append((kind, "gone" in bokeh))
         if "gone" in bokeh:
@@ -211,3 +212,25 @@ def test_what_an_override_changes_is_kept_with_an_older_library(
     bpy.ops.wm.open_mainfile(filepath=path)
     bokeh = next(c for c in bpy.data.cameras if c.override_library).aplanat.bokeh
     assert (bokeh.gain, bokeh.threshold) == (pytest.approx(3.0), 7.0)
+
+
+def test_a_setting_moves_with_its_keys_and_drivers(aplanat_bpy, empty_scene):
+    camera = aplanat_bpy.data.cameras.new("animated")
+    empty_scene.collection.objects.link(aplanat_bpy.data.objects.new("animated", camera))
+    settings = camera.aplanat
+    settings.bokeh.threshold = 3.0
+    for frame, value in ((1, 2.0), (3, 4.0)):
+        settings.bokeh.onion = value / 10.0
+        settings.bokeh.keyframe_insert("onion", frame=frame)
+    settings.bokeh.driver_add("threshold").driver.expression = "7.0"
+    stored = stored_settings(camera)
+    for old, new in (("bokeh.onion", "chromatic.axial"), ("bokeh.threshold", "bokeh.gain")):
+        assert move(stored, old, new)
+        move_animation(camera, old, new)
+    assert not move(stored, "bokeh.onion", "chromatic.axial"), "there is none any more"
+    stored["bokeh"]["threshold"] = 1.0
+    assert not move(stored, "bokeh.threshold", "bokeh.gain"), "the newer value stays"
+    empty_scene.frame_set(3)
+    assert (settings.chromatic.axial, settings.bokeh.gain) == (pytest.approx(0.4), 7.0)
+    empty_scene.frame_set(1)
+    assert settings.chromatic.axial == pytest.approx(0.2)

@@ -25,9 +25,10 @@ from bpy.app.handlers import persistent
 # What this Aplanat stores.
 VERSION = 1
 
-# By the version that it leads to: called as step(kind, stored) for each data-block that has stored
-# settings. `kind` is the name of its collection in bpy.data, or "view_layers"; `stored` holds the
-# stored values by name, groups inside as groups, and also those whose property is gone.
+# By the version that it leads to: called as step(kind, block, stored) for each data-block that has
+# stored settings. `kind` is the name of its collection in bpy.data, or "view_layers"; `stored`
+# holds the stored values by name, groups inside as groups, and also those whose property is gone.
+# Keys and drivers of the block name a setting, too: `moved_settings` moves both.
 STEPS = {}
 
 _VERSION_NAME = "settings_version"
@@ -58,11 +59,11 @@ def stored_settings(block):
 
 
 def _owners(blocks):
-    """Yield what has stored settings among data-blocks: kind and stored values."""
+    """Yield what has stored settings among data-blocks: kind, block and stored values."""
     for kind, block in blocks:
         stored = stored_settings(block)
         if stored is not None:
-            yield kind, stored
+            yield kind, block, stored
         if kind == "scenes":
             yield from _owners(("view_layers", layer) for layer in block.view_layers)
 
@@ -79,11 +80,11 @@ def migrate(blocks):
     blocks : iterable of tuple of str and bpy.types.ID
         The kind, as a step gets it, and the data-block.
     """
-    for kind, stored in _owners(blocks):
+    for kind, block, stored in _owners(blocks):
         version = stored.get(_VERSION_NAME, 0)
         due = [step for leads_to, step in sorted(STEPS.items()) if leads_to > version]
         for step in due:
-            step(kind, stored)
+            step(kind, block, stored)
         if due:
             stored[_VERSION_NAME] = VERSION
 
@@ -108,7 +109,7 @@ def _migrate_imported(context):
 @persistent
 def _stamp(*_):
     """Write the version into the settings of the file's own data-blocks."""
-    for _, stored in _owners(pair for pair in _all_blocks() if pair[1].library is None):
+    for *_, stored in _owners(pair for pair in _all_blocks() if pair[1].library is None):
         if stored.get(_VERSION_NAME) != VERSION:
             stored[_VERSION_NAME] = VERSION
 
