@@ -149,7 +149,9 @@ class LensShelf:
         return known is not None and _stamp(known.path) != known.stamp
 
     def add_file(self, path):
-        """Take a lens file from anywhere into the library, for as long as the process runs.
+        """Read a lens file into the library, for as long as the process runs.
+
+        A file that was read before is read again; what `find` returns from then on is this.
 
         Parameters
         ----------
@@ -165,15 +167,16 @@ class LensShelf:
         LensFileError
             If the file cannot be used.
         """
-        path = Path(path).absolute()
-        read_any_lens(path)
+        place = Path(path).absolute()
+        stamp = _stamp(place)
+        lens = read_any_lens(path)
         with self._lock:
-            for lens_id, known in self._known_paths().items():
-                if known == path:
-                    self._read.pop(lens_id, None)
-                    return lens_id
-            lens_id = unused_id(path.stem, self.ids())
-            self._extra[lens_id] = self._paths[lens_id] = path
+            known = self._known_paths()
+            lens_id = next((key for key, there in known.items() if there == place), None)
+            if lens_id is None:
+                lens_id = unused_id(place.stem, self.ids())
+                self._extra[lens_id] = self._paths[lens_id] = place
+            self._read[lens_id] = _shelved(lens_id, place, lens, None, stamp)
             return lens_id
 
     def reload(self):
@@ -229,11 +232,14 @@ def unused_id(wanted, used):
 def _read(lens_id, path):
     # Before the file: a change in between is noticed.
     stamp = _stamp(path)
-    shipped = path.parent == SHIPPED_FOLDER
     try:
-        return ShelvedLens(lens_id, path, shipped, read_any_lens(path), None, stamp)
+        return _shelved(lens_id, path, read_any_lens(path), None, stamp)
     except LensFileError as error:
-        return ShelvedLens(lens_id, path, shipped, None, error, stamp)
+        return _shelved(lens_id, path, None, error, stamp)
+
+
+def _shelved(lens_id, path, lens, error, stamp):
+    return ShelvedLens(lens_id, path, path.parent == SHIPPED_FOLDER, lens, error, stamp)
 
 
 def _stamp(path):

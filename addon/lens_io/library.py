@@ -77,12 +77,30 @@ class Library:
         LensFileError
             If there is no such lens, or with every error of its file.
         """
+        return read_any_lens(self.file_of(lens))
+
+    def file_of(self, lens):
+        """Return the file of a lens by its id or path, without reading it.
+
+        Parameters
+        ----------
+        lens : str or Path
+            An id, or the path of a lens file of any format; an id goes first.
+
+        Returns
+        -------
+        Path or str
+            A path as it was given.
+
+        Raises
+        ------
+        LensFileError
+            If it is neither an id nor looks like a path (E01, with near names).
+        """
         paths = self.paths()
         if str(lens) in paths:
-            return read_any_lens(paths[str(lens)])
-        if _looks_like_path(lens):
-            return read_any_lens(lens)
-        return read_any_lens(self.path_of(str(lens)))
+            return paths[str(lens)]
+        return lens if _looks_like_path(lens) else self.path_of(str(lens))
 
     def paths(self):
         """Return the file of every lens.

@@ -1,11 +1,13 @@
 """`aplanat refocus`: captured files to pictures, and what it refuses."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import OpenEXR
 import pytest
 
+from addon.cli.refocus.lens_source import LensSource
 from addon.layers.layer_file import save_layers
 from tests.engine.test_refocus import stack
 from tests.layers.test_layer_file import rewritten
@@ -107,6 +109,27 @@ def test_without_a_scene_the_lens_is_the_captured_one(aplanat, aplanat_bpy, stac
     assert aplanat(*words, "--lens", "petzval-51mm-f1.4").answer["frames"][0]["lens"] == (
         "petzval-51mm-f1.4"
     )
+
+
+def test_a_lens_file_that_is_edited_meanwhile_stays_what_it_was(
+    aplanat, captured, tmp_path, monkeypatch
+):
+    profiles = Path(__file__).resolve().parents[2] / "lens_profiles"
+    own = tmp_path / "edited.toml"
+    own.write_bytes((profiles / "tessar-50mm-f2.8.toml").read_bytes())
+    read = LensSource.settings
+
+    def read_then_edit(*arguments):
+        found = read(*arguments)
+        own.write_bytes((profiles / "petzval-51mm-f1.4.toml").read_bytes())
+        return found
+
+    monkeypatch.setattr(LensSource, "settings", read_then_edit)
+    words = ("refocus", captured, "-o", tmp_path / "out_####.exr", "--samples", "4", "--json")
+    done = aplanat(*words, "--lens", own, "--fstop", "1")
+    assert done.code == 0, done.err
+    assert len({told["fstop"] for told in done.answer["frames"]}) == 1
+    assert {told["lens"] for told in done.answer["frames"]} == {"edited"}
 
 
 @pytest.mark.parametrize(

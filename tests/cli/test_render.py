@@ -9,6 +9,8 @@ import numpy as np
 import OpenEXR
 import pytest
 
+from addon.cli.render import render_command
+from addon.cli.render.scene_setup import apply_frame
 from addon.files.frame_path import frame_path
 from tests.lens_io.importers.foreign_texts import ZEMAX
 
@@ -323,6 +325,27 @@ def test_lens_may_be_a_file(aplanat, small_blend, tmp_path):
     assert done.code == 0, done.err
     assert done.answer["settings"]["lens"] == "mine"
     assert done.answer["settings"]["zoom_position"] == "36 mm"
+
+
+def test_a_lens_file_that_is_edited_meanwhile_stays_what_it_was(
+    aplanat, small_blend, tmp_path, monkeypatch
+):
+    profiles = Path(__file__).resolve().parents[2] / "lens_profiles"
+    own = tmp_path / "edited-while-rendered.toml"
+    own.write_bytes((profiles / "tessar-50mm-f2.8.toml").read_bytes())
+
+    def apply_then_edit(*arguments):
+        apply_frame(*arguments)
+        own.write_bytes((profiles / "petzval-51mm-f1.4.toml").read_bytes())
+
+    monkeypatch.setattr(render_command, "apply_frame", apply_then_edit)
+    words = ("render", small_blend, "-o", tmp_path / "a_####.exr", "--frames", "1..2")
+    done = aplanat(*words, "--samples", "2", "--fstop", "1.4", "--lens", own, "--json")
+    assert done.code == 0, done.err
+    # Each lens has its own largest opening, of which is told.
+    assert {frame["settings"]["fstop"] for frame in done.answer["frames"]} == {2.8}
+    first, second = (combined(tmp_path / f"a_000{number}.exr") for number in (1, 2))
+    np.testing.assert_array_equal(first, second)
 
 
 def test_lens_may_be_a_file_in_a_foreign_format(aplanat, small_blend, tmp_path):

@@ -8,7 +8,14 @@ import bpy
 from ...engine.refocus.camera_settings import camera_settings
 from ...scene.camera.camera import evaluated_camera
 from ...scene.camera.lens_record import apply_lens
-from ..render.scene_setup import check_camera, load_scene, use_blades, use_camera, use_lens
+from ..render.scene_setup import (
+    check_camera,
+    find_lens,
+    load_scene,
+    use_blades,
+    use_camera,
+    use_lens,
+)
 
 
 class LensSource:
@@ -24,7 +31,7 @@ class LensSource:
     Raises
     ------
     InputError
-        If the scene cannot be opened or has no such camera.
+        If the scene cannot be opened or has no such camera, or there is no such lens.
     """
 
     def __init__(self, arguments, sources):
@@ -35,6 +42,7 @@ class LensSource:
             self._scene = load_scene(arguments.scene)
             if arguments.camera is not None:
                 use_camera(self._scene, arguments.camera)
+        self._lens_id = find_lens(arguments.lens)
 
     def settings(self, stack, frame):
         """Return how a captured picture is seen.
@@ -54,7 +62,7 @@ class LensSource:
         Raises
         ------
         InputError
-            If there is no camera, or it does not take a lens that was asked for.
+            If there is no camera, or it does not take the lens that was asked for.
         """
         if self._scene is not None:
             # Markers of the timeline may switch to another camera.
@@ -70,8 +78,8 @@ class LensSource:
 
     def _read(self, stack, camera):
         asked = self._arguments
-        if asked.lens is not None:
-            use_lens(camera, asked.lens)
+        if self._lens_id is not None:
+            use_lens(camera, self._lens_id, asked.lens)
         if asked.blades is not None:
             use_blades(camera.data, asked.blades)
         bpy.context.view_layer.update()

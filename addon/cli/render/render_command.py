@@ -18,7 +18,7 @@ from ..words.json_file import write_json
 from ..words.parser import make_folders
 from . import statistics
 from .frame_files import FrameFiles
-from .scene_setup import apply_frame, apply_options, load_scene
+from .scene_setup import apply_frame, apply_options, find_lens, load_scene
 
 
 class RenderFailedError(AplanatError):
@@ -47,6 +47,7 @@ def render(arguments, console):
         _check_outputs(arguments)
         scene = load_scene(arguments.scene)
         apply_options(scene, arguments)
+        lens_id = find_lens(arguments.lens)
         ensure_context()
         _check_device(scene)
         warnings = Warnings(console, arguments.strict)
@@ -56,7 +57,7 @@ def render(arguments, console):
             numbers = frame_numbers(scene, arguments)
             for frame in numbers:
                 with telling_frame(frame, len(numbers)):
-                    apply_frame(scene, frame, arguments)
+                    apply_frame(scene, frame, arguments, lens_id)
                     if not files.begin(frame):
                         console.say(f"frame {frame}: left as it is; the scene's Overwrite is off")
                         continue

@@ -74,7 +74,7 @@ def apply_options(scene, arguments):
     check_size(scene)
 
 
-def apply_frame(scene, frame, arguments):
+def apply_frame(scene, frame, arguments, lens_id=None):
     """Go to a frame and apply the lens options to its camera.
 
     Parameters
@@ -82,6 +82,8 @@ def apply_frame(scene, frame, arguments):
     scene : bpy.types.Scene
     frame : int
     arguments : argparse.Namespace
+    lens_id : str, optional
+        What `find_lens` returned for ``--lens``.
 
     Raises
     ------
@@ -91,8 +93,8 @@ def apply_frame(scene, frame, arguments):
     # Markers of the timeline may switch to another camera.
     scene.frame_set(frame)
     check_camera(scene)
-    if arguments.lens is not None:
-        use_lens(scene.camera, arguments.lens)
+    if lens_id is not None:
+        use_lens(scene.camera, lens_id, arguments.lens)
     if arguments.no_bokeh:
         _leave_out_bokeh(scene.camera.data)
     if arguments.no_chromatic:
@@ -174,32 +176,57 @@ def use_camera(scene, name):
         marker.camera = None
 
 
-def use_lens(camera, word):
-    """Set a camera's lens, from the library or a file; a file is added for this process only.
+def find_lens(word):
+    """Return the id of the lens that a command was asked for; a file is read into the library.
+
+    Once a command, not in each frame: a file that is edited meanwhile must not change the lens in
+    the middle of an animation.
+
+    Parameters
+    ----------
+    word : str or None
+        An id of the library, the path of a lens file, or None: none was asked for.
+
+    Returns
+    -------
+    str or None
+
+    Raises
+    ------
+    LensFileError
+        If there is no such lens or it cannot be used.
+    """
+    if word is None:
+        return None
+    found = shelf().find(word)
+    if found is None:
+        return shelf().add_file(Library([user_folder()]).file_of(word))
+    if found.error is not None:
+        raise found.error
+    return found.id
+
+
+def use_lens(camera, lens_id, word):
+    """Set a camera's lens.
 
     Parameters
     ----------
     camera : bpy.types.Object
+    lens_id : str
+        What `find_lens` returned.
     word : str
-        An id of the library, or the path of a lens file.
+        What the user wrote, for the message.
 
     Raises
     ------
-    InputError
-        If there is no such lens, it cannot be used, or the camera takes none.
+    CameraError
+        If the camera takes none.
     """
-    found = shelf().find(word)
-    if found is None:
-        # Refuses a name that is neither in the library nor a lens file.
-        Library([user_folder()]).open(word)
-    elif found.error is not None:
-        raise found.error
     if camera.data.type != "PERSP":
         raise CameraError(
             f"--lens {word}: camera '{camera.name}' is {camera.data.type.lower()}; a lens needs a"
             " perspective camera (Camera > Lens > Type)"
         )
-    lens_id = shelf().add_file(word) if found is None else found.id
     camera.data.aplanat.lens = lens_id
 
 
