@@ -92,6 +92,9 @@ def _refocus_frame(frame, file, arguments, console, warnings, lens, session):
     seen = lens_of(stack, settings)
     refocusing = Refocusing(stack, settings, session.look_textures)
     try:
+        if settings.bokeh is not None:
+            # The first sample waits for them; large discs take a while.
+            console.progress(f"frame {frame}: finding highlights and drawing their discs")
         while refocusing.advance(_STRETCH):
             share = refocusing.samples_done / settings.samples
             console.progress(f"frame {frame}: {share:.0%} of {settings.samples} lens samples")
