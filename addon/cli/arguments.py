@@ -12,6 +12,7 @@ from ..files.version import version
 from .capture.capture_arguments import add_capture, check_capture
 from .lens.lens_arguments import add_lens, check_lens
 from .refocus.refocus_arguments import add_refocus, check_refocus
+from .render.camera_arguments import add_distortion
 from .render.sampling_arguments import add_sampling, check_sampling
 from .words.frame_values import (
     FRAMES_HELP,
@@ -158,6 +159,7 @@ def _add_render(commands):
         metavar="ID|FILE",
         help="lens of the library, or a lens file; the camera's focal length stays",
     )
+    add_distortion(parser)
     add(
         "--fstop",
         metavar="X",

@@ -32,7 +32,10 @@ def _info(with_bokeh, by_channel, distorted, tiled):
             ("IVEC2", "origin"),
             ("INT", "pixel_size"),
             *(
-                (("VEC4", name) for name in ("to_field", "from_field", "model"))
+                (
+                    *(("VEC4", name) for name in ("to_field", "from_field", "terms")),
+                    ("VEC3", "model"),
+                )
                 if distorted
                 else ()
             ),
@@ -96,5 +99,6 @@ def resolve(
         # The standard deviation of the filter's box.
         blur = distortion.filter_width / np.sqrt(12.0)
         square = distortion.radius**2
-        shader.uniform_float("model", (distortion.k, square, distortion.fineness, float(blur)))
+        shader.uniform_float("terms", distortion.terms)
+        shader.uniform_float("model", (square, distortion.fineness, float(blur)))
     shader.draw(fullscreen)

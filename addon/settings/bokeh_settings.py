@@ -75,8 +75,7 @@ APPEARANCE = Section("Appearance", "Camera Properties > Bokeh > Appearance", (
             told="bokeh.iris_image"),
 ))
 
-FIELD = Section("Vignetting and distortion",
-    "Camera Properties > Bokeh > Appearance > Vignetting and Distortion", (
+FIELD = Section("Vignetting", "Camera Properties > Bokeh > Appearance > Vignetting", (
     Setting("vignetting", "LENS", "Vignetting", "Whether discs towards the picture's corners are"
             " cut to cat's eyes", told="bokeh.vignetting", kept=True, items=(
             Item(0, "NONE", "None", "All discs are whole"),
@@ -88,17 +87,6 @@ FIELD = Section("Vignetting and distortion",
             limits=(0.0, 1.0), subtype="FACTOR", kept=True),
     Setting("vignetting_softness", 0.0, "Softness", "How soft the cut edges are, as in a lens"
             " where many rims take their share", limits=(0.0, 1.0), subtype="FACTOR", kept=True),
-    Setting("distortion_source", "NONE", "Distortion", "How the lens bends straight lines: of the"
-            " whole picture, in all its passes, with and without depth of field, as long as Bokeh"
-            " is switched on", kept=True, items=(
-            Item(0, "NONE", "None", "Straight lines stay straight"),
-            Item(1, "DIVISION", "Division Model", "By one number"),
-            Item(2, "LENS", "Real Lens", "That number, fitted to the real lens"),
-    )),
-    Setting("distortion", -0.1, "K", "Coefficient of the division model, for distances as shares"
-            " of that from the middle of the picture to its corner: negative is a barrel, which"
-            " shows more of the scene than the frame holds, positive a pincushion",
-            limits=(-0.5, 0.25), step=1, precision=3, told="bokeh.distortion", kept=True),
 ))
 
 TEXTURE = Section("Grain and dust", "Camera Properties > Bokeh > Appearance > Grain and Dust", (

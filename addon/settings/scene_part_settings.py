@@ -16,6 +16,21 @@ LENS = Section("Real lens", "Camera Properties > Lens > Real Lens", (
             " its first one", told="zoom_position"),
 ))
 
+DISTORTION = Section("Distortion", "Camera Properties > Lens > Real Lens > Distortion", (
+    Setting("distortion", "NONE", "Distortion", "How the lens bends straight lines: of the whole"
+            " picture, in all its passes, with and without depth of field. The middle of the"
+            " picture keeps its scale", told="distortion.source", items=(
+            Item(0, "NONE", "None", "Straight lines stay straight"),
+            Item(1, "DIVISION", "Division Model", "By one number"),
+            Item(2, "LENS", "Real Lens", "As the real lens does: the curve of its traced chief"
+                 " rays"),
+    )),
+    Setting("distortion_k", -0.1, "K", "Coefficient of the division model, for distances as shares"
+            " of that from the middle of the picture to its corner: negative is a barrel, which"
+            " shows more of the scene than the frame holds, positive a pincushion",
+            limits=(-0.5, 0.25), step=1, precision=3, told="distortion.terms"),
+))
+
 MATERIAL = Section("Material", "Material Properties > Settings", (
     Setting("highlights", "AUTOMATIC", "Highlights", "Whether the light of surfaces with this"
             " material is drawn as bokeh where it is brighter than the camera's threshold",

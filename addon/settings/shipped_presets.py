@@ -105,8 +105,6 @@ BOKEH_PRESETS = (
             "vignetting": "ANALYTIC",
             "vignetting_strength": 0.45,
             "vignetting_softness": 0.5,
-            "distortion_source": "DIVISION",
-            "distortion": -0.03,
             "grain": 0.08,
             "grain_size": 0.04,
             "dust": 14,

@@ -77,9 +77,6 @@ class BokehSettings:
         Highlights of the world's image are found, too.
     appearance : Appearance
         Shape of the discs: iris, grain, dust, diffraction, rings, rims.
-    distortion : float
-        K of the division model, in units of the distance from the picture's middle to its corner;
-        negative is a barrel.
     vignetting : {'NONE', 'ANALYTIC', 'LENS'}
         Cat's eyes: none, by the appearance's rims, or by the real lens' own pupil.
     profile_strength : float
@@ -101,7 +98,6 @@ class BokehSettings:
     lens_views: int = 4
     world: bool = True
     appearance: Appearance = field(default_factory=Appearance)
-    distortion: float = 0.0
     vignetting: str = "NONE"
     profile_strength: float = 1.0
     debug_view: str = "NONE"
@@ -130,6 +126,9 @@ class Camera:
         Warnings: settings of the camera that cannot be met, one line each.
     chromatic : ChromaticAberration or None
         None: no chromatic aberration.
+    distortion : tuple of float
+        K1, K2, ... of the division model (`optics.distortion`), in units of the distance from the
+        optical axis to the picture's outermost corner; empty: none.
     field_radius : float or None
         Distance of the outermost corner of the camera's own picture from the optical axis: as a
         tangent, for a parallel projection in m. None: that of `projection`.
@@ -145,4 +144,5 @@ class Camera:
     bokeh: BokehSettings | None = None
     report: tuple[str, ...] = ()
     chromatic: ChromaticAberration | None = None
+    distortion: tuple[float, ...] = ()
     field_radius: float | None = None

@@ -1,5 +1,5 @@
 // Distortion of the picture: where a pixel lies in the raster without distortion, and its colour there.
-// Source: division model, Fitzgibbon, CVPR 2001; cubic convolution, Keys 1981.
+// Source: division model (one term: Fitzgibbon, CVPR 2001); cubic convolution, Keys 1981.
 #ifndef DISTORTION_LIB_GLSL
 #define DISTORTION_LIB_GLSL
 
@@ -13,20 +13,22 @@ struct Distorted {
 };
 
 // `pixel`: place in the picture, px. `to_field`, `from_field`: scale and offset from the picture to the
-// field, and from the field to the raster. `model`: K, square of the radius where it ends, pixels of the
-// raster along one of the picture, standard deviation of the pixel filter, px.
-Distorted distorted_place(vec2 pixel, vec4 to_field, vec4 from_field, vec4 model)
+// field, and from the field to the raster. `terms`: K1 to K4. `model`: square of the radius where it
+// ends, pixels of the raster along one of the picture, standard deviation of the pixel filter, px.
+Distorted distorted_place(vec2 pixel, vec4 to_field, vec4 from_field, vec4 terms, vec3 model)
 {
   vec2 field = pixel * to_field.xy + to_field.zw;
   float square = dot(field, field);
-  float across = 1.0 / (1.0 + model.x * min(square, model.y));
-  float along = (square < model.y) ? across * across * (1.0 - model.x * square) : across;
+  float s = min(square, model.x);
+  float across = 1.0 / (1.0 + s * (terms.x + s * (terms.y + s * (terms.z + s * terms.w))));
+  float slope = 1.0 - s * (terms.x + s * (3.0 * terms.y + s * (5.0 * terms.z + s * 7.0 * terms.w)));
+  float along = (square < model.x) ? across * across * slope : across;
   vec2 away = field * from_field.xy;
   float far = length(away);
   away = (far > 0.0) ? away / far : vec2(1.0, 0.0);
-  vec2 growth = model.z * vec2(along, across);
+  vec2 growth = model.y * vec2(along, across);
   // This blur and the filter of a raster's pixel together make the filter of a picture's pixel.
-  vec2 spread = model.w * sqrt(max(growth * growth - 1.0, 0.0));
+  vec2 spread = model.z * sqrt(max(growth * growth - 1.0, 0.0));
   Distorted found;
   found.place = field * across * from_field.xy + from_field.zw;
   found.along = away * spread.x;

@@ -3,7 +3,7 @@
 // Inputs: sum_tx; with BOKEH also bokeh_tx, which is added; scale (1 / summed weight, or that of each
 // channel; TILED: scales_tx, those of each tile of TILE pixels); origin (lower left corner in the target, px); pixel_size. DISTORTED: the textures are of a
 // raster without distortion, sampled where the picture's pixels lie in it; to_field, from_field,
-// model (see distortion_lib).
+// terms, model (see distortion_lib).
 // Outputs: premultiplied scene-linear colour. Source: methods 1, 13.
 #ifdef DISTORTED
 #include "lib/distortion_lib.glsl"
@@ -13,7 +13,7 @@ void main()
 {
   ivec2 texel = (ivec2(gl_FragCoord.xy) - origin) / pixel_size;
 #ifdef DISTORTED
-  Distorted at = distorted_place(vec2(texel) + 0.5, to_field, from_field, model);
+  Distorted at = distorted_place(vec2(texel) + 0.5, to_field, from_field, terms, model);
   out_color = distorted_sample(sum_tx, at) * scale;
 #ifdef BOKEH
   out_color += distorted_sample(bokeh_tx, at);

@@ -7,7 +7,7 @@ import pytest
 
 from addon.device.readback import read_color
 from addon.device.targets import Targets, TargetSpec
-from addon.lens_bokeh.look.distortion import distorted, undistorted
+from addon.optics.distortion import distorted, undistorted
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
 from addon.snapshot.camera import BokehSettings
@@ -25,12 +25,16 @@ PASSES = ("Combined", "Defocus", "Bokeh")
 
 
 def bent(snapshot, k, **settings):
-    bokeh = BokehSettings(distortion=k, **settings)
-    return replace(snapshot, camera=replace(snapshot.camera, bokeh=bokeh))
+    camera = replace(snapshot.camera, distortion=terms_of(k), bokeh=BokehSettings(**settings))
+    return replace(snapshot, camera=camera)
+
+
+def terms_of(k):
+    return k if isinstance(k, tuple) else (k,)
 
 
 def expected_place(place, k):
-    return MIDDLE + CORNER * distorted((place - MIDDLE) / CORNER, k)
+    return MIDDLE + CORNER * distorted((place - MIDDLE) / CORNER, terms_of(k))
 
 
 def dots_at(places, size=0.5, depth=4.0):
@@ -46,7 +50,7 @@ def grid(k, across=7, up=5):
     """Places without distortion that lie inside of the distorted picture."""
     x, y = np.meshgrid(np.linspace(8, WIDTH - 8, across), np.linspace(8, HEIGHT - 8, up))
     seen = np.stack([x, y], axis=-1).reshape(-1, 2)
-    return seen, MIDDLE + CORNER * undistorted((seen - MIDDLE) / CORNER, k)
+    return seen, MIDDLE + CORNER * undistorted((seen - MIDDLE) / CORNER, terms_of(k))
 
 
 def centroid(picture, around, reach=6):
@@ -99,7 +103,7 @@ def test_the_picture_is_that_of_a_finer_one_that_is_distorted(k):
     # 4 x 4 places in each pixel make its box.
     x, y = ((np.arange(4 * n) + 0.5) / 4.0 for n in (WIDTH, HEIGHT))
     places = np.stack(np.meshgrid(x, y), axis=-1)
-    sources = undistorted((places - MIDDLE) / CORNER, k) * CORNER * times
+    sources = undistorted((places - MIDDLE) / CORNER, terms_of(k)) * CORNER * times
     found = cubic_sample(fine, sources + 0.5 * np.array(fine.shape[1::-1]))
     wanted = found.reshape(HEIGHT, 4, WIDTH, 4, 4).mean(axis=(1, 3))
     assert ssim(drawn, wanted) > 0.98
@@ -107,7 +111,7 @@ def test_the_picture_is_that_of_a_finer_one_that_is_distorted(k):
     assert np.abs(drawn - wanted).mean() < 0.5 * np.abs(drawn[:, 1:] - wanted[:, :-1]).mean()
 
 
-@pytest.mark.parametrize("k", [-0.3, 0.2])
+@pytest.mark.parametrize("k", [-0.3, 0.2, (-0.2, 0.1, -0.06, 0.02)])
 def test_the_device_samples_as_the_twin(k):
     snapshot = many_triangles(WIDTH, HEIGHT, 4)
     renderer = make_renderer(bent(snapshot, k))
@@ -125,7 +129,7 @@ def test_the_device_samples_as_the_twin(k):
 
 def lamps(k, **settings):
     places = np.array([[40.0, 30.0], [150.0, 100.0], [90.0, 60.0]])
-    straight = MIDDLE + CORNER * undistorted((places - MIDDLE) / CORNER, k)
+    straight = MIDDLE + CORNER * undistorted((places - MIDDLE) / CORNER, terms_of(k))
     corners = dots_at(straight, 1.0, depth=12.0)
     snapshot = triangles_snapshot(
         corners, np.full((3, 3), 400.0), WIDTH, HEIGHT, ThinLens(0.25, 4.0, Iris()), 16
@@ -196,7 +200,7 @@ def test_movement_is_that_of_the_distorted_picture(k):
     found = render_snapshot(bent(replace(snapshot, camera=camera), k))["Vector"]
     x, y = np.meshgrid(np.arange(WIDTH) + 0.5, np.arange(HEIGHT) + 0.5)
     here = np.stack([x, y], axis=-1)
-    straight = MIDDLE + CORNER * undistorted((here - MIDDLE) / CORNER, k)
+    straight = MIDDLE + CORNER * undistorted((here - MIDDLE) / CORNER, terms_of(k))
     pixel = 180.0 / 4.0
     before = expected_place(straight - (0.2 * pixel, 0.0), k) - here
     after = here - expected_place(straight + (0.0, 0.1 * pixel), k)

@@ -161,6 +161,7 @@ BLENDER_FREE = {
     "cli.arguments",
     "cli.capture.capture_arguments",
     "cli.command",
+    "cli.render.camera_arguments",
     "cli.render.sampling_arguments",
     "engine.outcome",
     "engine.report",

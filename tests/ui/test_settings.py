@@ -155,7 +155,7 @@ def states(context):
     yield
     settings.use_target_error = False
     own.bokeh.model, own.bokeh.vignetting = "CLUSTERED", "ANALYTIC"
-    own.bokeh.distortion_source, own.chromatic.dispersion = "DIVISION", "GLASS"
+    own.distortion, own.chromatic.dispersion = "DIVISION", "GLASS"
     yield
     own.lens = "zoom-36-69mm-f3.5"
     settings.method = "REFERENCE"

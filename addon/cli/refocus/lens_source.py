@@ -14,6 +14,7 @@ from ..render.scene_setup import (
     load_scene,
     use_blades,
     use_camera,
+    use_distortion,
     use_lens,
 )
 
@@ -82,6 +83,8 @@ class LensSource:
             use_lens(camera, self._lens_id, asked.lens)
         if asked.blades is not None:
             use_blades(camera.data, asked.blades)
+        if asked.distortion is not None:
+            use_distortion(camera.data, asked.distortion)
         bpy.context.view_layer.update()
         depsgraph = bpy.context.evaluated_depsgraph_get()
         seen = evaluated_camera(depsgraph, camera)

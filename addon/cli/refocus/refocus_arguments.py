@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from ...errors import InputError
+from ..render.camera_arguments import add_distortion
 from ..words.frame_values import FRAMES_HELP, check_frames, frame_range
 from ..words.option_values import file_with_ending, positive_number, whole_number
 from ..words.parser import add_farm_options, add_output_options
@@ -52,6 +53,7 @@ def add_refocus(commands):
     add("--fstop", metavar="X", type=positive_number(), help="f-number")
     add("--blades", metavar="N", type=_blades, help="of the iris; 0: round")
     add("--lens", metavar="ID|FILE", help="lens of the library, or a lens file")
+    add_distortion(parser)
     add("--no-bokeh", action="store_true", help="without separate highlights")
     add("--no-chromatic", action="store_true", help="without chromatic aberration")
     add(

@@ -14,6 +14,8 @@ from ...engine.shared_resources import shelf
 from ...errors import CameraError, FocusError, InputError
 from ...lens_io.library import Library
 from ...scene.camera.lenses import user_folder
+from ...settings.scene_part_settings import DISTORTION
+from ...settings.setting import settings_of
 from .sampling_arguments import apply_sampling
 
 # Upper bound of the bytes of a pixel: targets on the device, read-back, Blender's result and the
@@ -95,6 +97,8 @@ def apply_frame(scene, frame, arguments, lens_id=None):
     check_camera(scene)
     if lens_id is not None:
         use_lens(scene.camera, lens_id, arguments.lens)
+    if arguments.distortion is not None:
+        use_distortion(scene.camera.data, arguments.distortion)
     if arguments.no_bokeh:
         _leave_out_bokeh(scene.camera.data)
     if arguments.no_chromatic:
@@ -241,6 +245,23 @@ def use_blades(data, count):
     """
     _stop_animation(data, "dof.aperture_blades")
     data.dof.aperture_blades = count
+
+
+def use_distortion(data, wanted):
+    """Set a camera's distortion.
+
+    Parameters
+    ----------
+    data : bpy.types.Camera
+    wanted : str or float
+        "none", "lens" or K of the division model.
+    """
+    for name in settings_of(DISTORTION):
+        _stop_animation(data, f"aplanat.{name}")
+    if isinstance(wanted, float):
+        data.aplanat.distortion, data.aplanat.distortion_k = "DIVISION", wanted
+    else:
+        data.aplanat.distortion = wanted.upper()
 
 
 def _leave_out_bokeh(data):

@@ -12,6 +12,7 @@ from ...sampling.chromatic import RGB_WAVELENGTHS_NM
 from ...scene.camera.bokeh import corner_tangent, read_bokeh
 from ...scene.camera.camera import focus_distance
 from ...scene.camera.chromatic import read_chromatic
+from ...scene.camera.distortion import read_distortion
 from ...scene.camera.lenses import read_real_lens
 from ...scene.settings import read_passes, read_sampling
 from ...settings.bokeh_settings import BOKEH
@@ -84,6 +85,7 @@ def settings_in_force(scene, sources, arguments=None):
         "aperture_blades": dof.aperture_blades,
         "aperture_rotation": dof.aperture_rotation,
         "aperture_ratio": dof.aperture_ratio,
+        "distortion": _distortion(scene, data, lens),
         "bokeh": _bokeh(scene, data, lens, sources.irises),
         "chromatic": _chromatic(data, lens),
         "amplify_whites": scene.world.aplanat.amplification if scene.world else 0.0,
@@ -131,6 +133,13 @@ def _stereo(render, data):
     }
 
 
+def _distortion(scene, data, lens):
+    terms, _ = read_distortion(data, lens, corner_tangent(data, scene))
+    if not terms:
+        return None
+    return {"source": told(data.aplanat.distortion), "terms": list(terms)}
+
+
 def _bokeh(scene, data, lens, irises):
     own = scene.aplanat
     bokeh, _ = read_bokeh(data, lens, corner_tangent(data, scene), irises)
@@ -146,7 +155,6 @@ def _bokeh(scene, data, lens, irises):
         "iris_image": data.aplanat.bokeh.iris_image.name if picture else None,
         "blade_curvature": None if picture else look.iris.curvature,
         "vignetting": bokeh.vignetting.lower(),
-        "distortion": bokeh.distortion,
         "grain": look.grain.strength if look.grain else 0.0,
         "dust": look.grain.dust if look.grain else 0,
         "diffraction": look.diffraction.strength if look.diffraction else 0.0,

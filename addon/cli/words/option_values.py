@@ -49,6 +49,25 @@ def number_between(low, high, unit=""):
     return read
 
 
+def word_or_number(words, low, high):
+    """Return a reader of one of some words, or of a number in a range, both ends included."""
+
+    def read(text):
+        if text.lower() in words:
+            return text.lower()
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(
+                f"'{text}' is not {', '.join(words)} or a number between {low:g} and {high:g}"
+            )
+        return value
+
+    return read
+
+
 def number_list(low, high, count):
     """Return a reader of numbers with commas between; ``a,b,..,z`` goes from a to z in steps.
 

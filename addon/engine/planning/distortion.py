@@ -1,11 +1,11 @@
 """Distortion of the picture: the size of an undistorted raster, and the mapping between both.
 
 Everything is drawn undistorted, in a raster that covers what the distorted picture shows; the
-picture is then resampled from it, once. Division model (methods 13) over the field, the plane at
-1 m from the lens (see `engine.planning.chromatic`): the place d of the distorted picture shows the
-undistorted place ``u = d / (1 + K |d|^2)``. The centre is the optical axis; K is in units of the
-distance of the picture's outermost corner from it. Farther out, which only a viewport shows, the
-scale is that of the corner.
+picture is then resampled from it, once. Division model (methods 13, `optics.distortion`) over the
+field, the plane at 1 m from the lens (see `engine.planning.chromatic`): the place d of the
+distorted picture shows the undistorted place ``u = d / (1 + K1 s + K2 s^2 + ...)``, ``s = |d|^2``.
+The centre is the optical axis; Ki are in units of the distance of the picture's outermost corner
+from it. Farther out, which only a viewport shows, the scale is that of the corner.
 
 A barrel shows more of the scene than the frame holds. A pincushion enlarges its corners: the raster
 is as fine as they need, within a limit. The pixel filter is that of a pixel of the raster; where
@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...optics.distortion import TERMS, distorted_radius, divisor, most_magnified, slope
 from .bokeh_plan import filter_width
 from .field_table import field_of_raster, picture_radius
 
@@ -31,8 +32,8 @@ class DistortionPlan:
 
     Parameters
     ----------
-    k : float
-        K of the division model, per square of the field's unit.
+    terms : tuple of 4 float
+        Ki of the division model, per even powers of the field's unit.
     radius : float
         Distance of the picture's outermost corner from the axis in the field.
     width, height : int
@@ -47,7 +48,7 @@ class DistortionPlan:
         Side of the box with the variance of the pixel filter, px.
     """
 
-    k: float
+    terms: tuple[float, ...]
     radius: float
     width: int
     height: int
@@ -75,11 +76,12 @@ class DistortionPlan:
     def pictured(self, sources):
         """Convert places of the raster to places of the picture; the inverse of `sources`."""
         field = (sources - self.from_field[2:]) / self.from_field[:2]
-        square = np.sum(field**2, axis=-1, keepdims=True)
-        corner = 1.0 + self.k * self.radius**2
-        root = np.sqrt(np.maximum(1.0 - 4.0 * self.k * square, 0.0))
-        inside = square <= (self.radius / corner) ** 2
-        field = field * np.where(inside, 2.0 / (1.0 + root), corner)
+        reach = np.linalg.norm(field, axis=-1, keepdims=True)
+        corner = float(divisor(self.radius**2, self.terms))
+        inside = reach <= self.radius / corner
+        places = distorted_radius(np.where(inside, reach, 0.0), self.terms)
+        scale = np.divide(places, reach, out=np.ones_like(reach), where=inside & (reach > 0.0))
+        field = field * np.where(inside, scale, corner)
         return (field - self.to_field[2:]) / self.to_field[:2]
 
     def growth(self, places):
@@ -98,7 +100,7 @@ class DistortionPlan:
         field = places * self.to_field[:2] + self.to_field[2:]
         square = np.sum(field**2, axis=-1, keepdims=True)
         across = self._factor(field)
-        along = np.where(square < self.radius**2, across**2 * (1.0 - self.k * square), across)
+        along = np.where(square < self.radius**2, across**2 * slope(square, self.terms), across)
         return self.fineness * np.concatenate([along, across], axis=-1)
 
     def centres(self):
@@ -124,7 +126,7 @@ class DistortionPlan:
 
     def _factor(self, field):
         square = np.sum(field**2, axis=-1, keepdims=True)
-        return 1.0 / (1.0 + self.k * np.minimum(square, self.radius**2))
+        return 1.0 / divisor(np.minimum(square, self.radius**2), self.terms)
 
 
 def plan_distortion(snapshot):
@@ -142,13 +144,13 @@ def plan_distortion(snapshot):
         With the film of the undistorted raster; without distortion the one given.
     """
     camera, film = snapshot.camera, snapshot.film
-    k = camera.bokeh.distortion if camera.bokeh else 0.0
-    if k == 0.0:
+    if not any(camera.distortion):
         return None, snapshot
+    terms = (*camera.distortion, *(0.0,) * (TERMS - len(camera.distortion)))
     x, y, width, height = film.region
     radius = camera.field_radius or picture_radius(camera.projection, camera.orthographic)
     # Chosen for the whole frame, so that render regions have the same pixels.
-    fineness = min(max(1.0, (1.0 + k) ** 2 / (1.0 - k)), _FINEST)
+    fineness = min(max(1.0, most_magnified(terms)), _FINEST)
     if snapshot.stack is not None:
         # A captured picture is as fine as its pixels.
         fineness = 1.0
@@ -156,7 +158,7 @@ def plan_distortion(snapshot):
     whole = field_of_raster(camera.projection, replace(film, region=(0, 0, *film.region[2:])))
     from_field = np.concatenate([fineness / whole[:2], -fineness * whole[2:] / whole[:2]])
     distortion = DistortionPlan(
-        k=k / radius**2,
+        terms=tuple(k / radius ** (2 * power) for power, k in enumerate(terms, 1)),
         radius=radius,
         width=width,
         height=height,

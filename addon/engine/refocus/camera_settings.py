@@ -8,6 +8,7 @@ from ...sampling.iris import Iris
 from ...scene.camera.bokeh import read_bokeh
 from ...scene.camera.camera import CameraSources, focus_distance
 from ...scene.camera.chromatic import read_chromatic
+from ...scene.camera.distortion import read_distortion
 from ...scene.camera.lenses import read_real_lens
 from ..planning.field_table import picture_radius
 from .settings import RefocusSettings
@@ -49,6 +50,7 @@ def camera_settings(stack, depsgraph, camera, sources=None, samples=128, seed=0)
         focal_length = 1.0 if captured.orthographic else captured.focal_length_mm / 1000.0
         chromatic = replace(chromatic, focal_length=focal_length)
     bokeh, of_bokeh = read_bokeh(data, real_lens, corner, sources.irises)
+    distortion, of_distortion = read_distortion(data, real_lens, corner)
     dof = data.dof
     settings = RefocusSettings(
         focus_distance=focus,
@@ -57,8 +59,9 @@ def camera_settings(stack, depsgraph, camera, sources=None, samples=128, seed=0)
         real_lens=real_lens,
         bokeh=bokeh,
         chromatic=chromatic,
+        distortion=distortion,
         samples=samples,
         seed=seed,
     )
-    problems = (*of_lens, *of_chromatic, *of_bokeh)
+    problems = (*of_lens, *of_chromatic, *of_bokeh, *of_distortion)
     return settings, tuple(f"camera '{camera.name}': {line}" for line in problems)

@@ -60,6 +60,7 @@ def refocus_snapshot(stack, settings, content=None):
         real_lens=real_lens,
         bokeh=settings.bokeh,
         chromatic=settings.chromatic,
+        distortion=settings.distortion,
     )
     sampling = Sampling(method="LAYERED", lens_samples=settings.samples, seed=settings.seed)
     return SceneSnapshot(

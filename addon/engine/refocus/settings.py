@@ -27,6 +27,8 @@ class RefocusSettings:
         None: highlights are sampled like all other light.
     chromatic : ChromaticAberration or None
         None: no chromatic aberration.
+    distortion : tuple of float
+        As of `snapshot.camera.Camera`.
     samples : int
         Lens samples.
     seed : int
@@ -39,6 +41,7 @@ class RefocusSettings:
     real_lens: LensSettings | None = None
     bokeh: BokehSettings | None = None
     chromatic: ChromaticAberration | None = None
+    distortion: tuple[float, ...] = ()
     samples: int = 128
     seed: int = 0
 

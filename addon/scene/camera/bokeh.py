@@ -5,14 +5,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...errors import AplanatError, InputError
+from ...errors import InputError
 from ...lens_bokeh.look.appearance import Appearance, Diffraction
-from ...lens_bokeh.look.distortion import fitted_coefficient
 from ...lens_bokeh.look.grain import Grain
 from ...lens_bokeh.look.iris_mask import BladedIris
 from ...lens_bokeh.look.onion import OnionRings
 from ...lens_bokeh.look.vignetting_model import cat_eye
-from ...optics.rays.aberrations import field_curves
 from ...sampling.spectrum import rgb_weights, spectrum_wavelengths
 from ...settings.bokeh_settings import BOKEH
 from ...settings.setting import fields_of
@@ -24,13 +22,6 @@ _FEWEST_BLADES = 3
 _MOST_RIMS = 8
 # Wavelengths of the diffraction ringing: enough that the rings of neighbouring ones overlap.
 _RINGING_WAVELENGTHS = 9
-# Number of chief rays that the distortion of a lens is fitted to, and largest tangent of the field
-# angle for the fit: some lenses let no light through farther out.
-_FIELDS = 9
-_WIDEST_FIELD = 2.0
-# Bounds of K of the division model: a barrel shows at most twice the frame, a pincushion needs at
-# most twice the pixels.
-_STRONGEST = (-0.5, 0.25)
 
 
 def read_bokeh(camera, real_lens, corner, irises):
@@ -69,17 +60,15 @@ def describe_bokeh(camera, real_lens, corner, irises):
             f"lens '{real_lens.prescription.name}' shapes no bokeh, a thin lens does: it has"
             " cylinders, and discs are traced for lenses of revolution",
         )
-    distortion, distortion_problems = _read_distortion(settings, real_lens, corner)
     vignetting = settings.vignetting
     if vignetting == "LENS" and shaping is None:
         vignetting = "NONE"
     bokeh = BokehSettings(
         **fields_of(settings, *BOKEH),
         appearance=appearance,
-        distortion=distortion,
         vignetting=vignetting,
     )
-    return bokeh, problems + distortion_problems + _told(camera)
+    return bokeh, problems + _told(camera)
 
 
 def _told(camera):
@@ -175,41 +164,3 @@ def _read_iris(settings, dof, irises):
     rotation = dof.aperture_rotation if blades else 0.0
     curvature = settings.blade_curvature if blades else 0.0
     return BladedIris(blades, curvature, rotation), problems
-
-
-def _read_distortion(settings, real_lens, corner):
-    """Return K in units of the distance from the picture's middle to its corner."""
-    if settings.distortion_source == "DIVISION":
-        return settings.distortion, ()
-    if settings.distortion_source == "NONE":
-        return 0.0, ()
-    if real_lens is None:
-        return 0.0, ("has no real lens whose distortion could be used; there is none",)
-    prescription = real_lens.prescription
-    named = f"lens '{prescription.name}'"
-    configuration = prescription.configuration(real_lens.label)
-    try:
-        k = _distortion_of_lens(configuration, prescription.projection, corner)
-    except AplanatError as error:
-        return 0.0, (f"{named} has no distortion that could be used: {error}",)
-    problems = ()
-    if not configuration.of_revolution:
-        problems = (f"{named} has cylinders: its distortion along the height is drawn all round",)
-    wanted = k * corner**2
-    drawn = min(max(wanted, _STRONGEST[0]), _STRONGEST[1])
-    if drawn != wanted:
-        problems += (f"{named} has a distortion of K = {wanted:.3g}; {drawn:g} is drawn",)
-    return drawn, problems
-
-
-# Memo of its arguments alone: chief rays are traced for it.
-@lru_cache(maxsize=64)
-def _distortion_of_lens(configuration, projection, corner):
-    """Return K of a lens per square of a field angle's tangent."""
-    if projection == "fisheye":
-        raise InputError("a fisheye's picture is drawn rectilinear")
-    tangents = np.linspace(0.0, min(corner, _WIDEST_FIELD), _FIELDS)[1:]
-    curves = field_curves(configuration, np.degrees(np.arctan(tangents)))
-    ideal = np.tan(np.radians(curves.field_deg))
-    k, _ = fitted_coefficient(ideal, ideal * (1.0 + curves.distortion))
-    return k

@@ -12,6 +12,7 @@ from ...sampling.thin_lens import ThinLens, aperture_radius
 from ...snapshot.camera import Camera
 from .bokeh import corner_tangent, read_bokeh
 from .chromatic import read_chromatic
+from .distortion import read_distortion
 from .irises import IrisReader
 from .lenses import read_real_lens, user_folder
 
@@ -122,8 +123,9 @@ def read_optics(depsgraph, camera, world=None, sources=None):
     Returns
     -------
     dict
-        Arguments of `Camera`: ``lens``, ``real_lens``, ``chromatic``, ``bokeh``, and ``report``,
-        warnings about settings that cannot be met, as lines that name the camera.
+        Arguments of `Camera`: ``lens``, ``real_lens``, ``chromatic``, ``bokeh``,
+        ``distortion``, and ``report``, warnings about settings that cannot be met, as lines that
+        name the camera.
     """
     data = camera.data
     sources = sources or CameraSources()
@@ -133,12 +135,14 @@ def read_optics(depsgraph, camera, world=None, sources=None):
     chromatic, of_chromatic = read_chromatic(data, real_lens, focus)
     corner = corner_tangent(data, depsgraph.scene)
     bokeh, of_bokeh = read_bokeh(data, real_lens, corner, sources.irises)
-    problems = (*of_lens, *of_focus, *of_chromatic, *of_bokeh)
+    distortion, of_distortion = read_distortion(data, real_lens, corner)
+    problems = (*of_lens, *of_focus, *of_chromatic, *of_bokeh, *of_distortion)
     return {
         "lens": lens,
         "real_lens": real_lens,
         "chromatic": chromatic,
         "bokeh": bokeh,
+        "distortion": distortion,
         "report": tuple(f"camera '{camera.name}': {line}" for line in problems),
     }
 

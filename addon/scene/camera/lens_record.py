@@ -14,7 +14,7 @@ import numpy as np
 from ...errors import InputError
 from ...settings.bokeh_settings import BOKEH, DEBUG
 from ...settings.chromatic_settings import CHROMATIC
-from ...settings.scene_part_settings import LENS
+from ...settings.scene_part_settings import DISTORTION, LENS
 from ...settings.setting import settings_of
 from .irises import IrisReader
 
@@ -39,11 +39,12 @@ def record_lens(camera):
     Returns
     -------
     dict
-        For JSON: ``lens`` and ``zoom_label``, ``bokeh`` and ``chromatic`` by the names of their
-        properties, ``iris``, the picture of the opening, where there is one.
+        For JSON: ``lens``, ``zoom_label``, ``distortion`` and ``distortion_k``; ``bokeh`` and
+        ``chromatic`` by the names of their properties; ``iris``, the picture of the opening, if
+        any.
     """
     own = camera.aplanat
-    told = {name: getattr(own, name) for name in settings_of(LENS)}
+    told = {name: getattr(own, name) for name in settings_of(LENS, DISTORTION)}
     told["bokeh"] = {name: getattr(own.bokeh, name) for name in _BOKEH}
     told["chromatic"] = {name: getattr(own.chromatic, name) for name in _CHROMATIC}
     image = own.bokeh.iris_image
@@ -77,7 +78,7 @@ def apply_lens(told, camera):
         The picture of the opening that was made.
     """
     own = camera.aplanat
-    _assign(own, settings_of(LENS), told)
+    _assign(own, settings_of(LENS, DISTORTION), told)
     _assign(own.bokeh, _BOKEH, told.get("bokeh"))
     _assign(own.chromatic, _CHROMATIC, told.get("chromatic"))
     image = _image(told.get("iris"))

@@ -97,8 +97,6 @@ def _draw_notes(column, context, letters):
     camera, sampling = context.camera, context.scene.aplanat
     if not camera.dof.use_dof:
         text = "Bokeh is seen with Depth of Field only."
-        if camera.aplanat.bokeh.distortion_source != "NONE":
-            text += " Distortion is seen without, too."
         draw_sentences(column, text, letters, icon="INFO")
     elif sampling.method == "REFERENCE" and not sampling.use_reference_bokeh:
         text = "The reference method samples highlights as everything else."
@@ -190,9 +188,9 @@ class _AppearancePanel(_BokehPanel):
 
 
 class APLANAT_CAMERA_PT_bokeh_field(_AppearancePanel, bpy.types.Panel):
-    """Optical vignetting (cat's eyes) and distortion."""
+    """Optical vignetting (cat's eyes)."""
 
-    bl_label = "Vignetting and Distortion"
+    bl_label = "Vignetting"
 
     def draw(self, context):
         """Draw the settings."""
@@ -202,9 +200,6 @@ class APLANAT_CAMERA_PT_bokeh_field(_AppearancePanel, bpy.types.Panel):
             eye = column.column(align=True)
             eye.prop(settings, "vignetting_strength", slider=True)
             eye.prop(settings, "vignetting_softness", slider=True)
-        column.prop(settings, "distortion_source")
-        if settings.distortion_source == "DIVISION":
-            column.prop(settings, "distortion")
 
 
 class APLANAT_CAMERA_PT_bokeh_texture(_AppearancePanel, bpy.types.Panel):

@@ -6,7 +6,9 @@ import bpy
 
 from ...engine.shared_resources import real_lens_of, shelf
 from ...optics.lens_facts import lens_facts
+from ...scene.camera.bokeh import corner_tangent
 from ...scene.camera.camera import sensor_diagonal
+from ...scene.camera.distortion import read_distortion
 from ..jobs import background
 from ..operators.lens_import import APLANAT_OT_import_lens
 from ..operators.lens_operators import (
@@ -162,6 +164,26 @@ def _draw_work(column):
         row.operator(APLANAT_OT_background_work.bl_idname, text="Go On", icon="PLAY").stop = False
 
 
+class APLANAT_CAMERA_PT_lens_distortion(CameraPanel, bpy.types.Panel):
+    """Distortion: how the lens bends straight lines."""
+
+    bl_label = "Distortion"
+    bl_parent_id = "APLANAT_CAMERA_PT_lens"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw the choice, and warnings about what cannot be met."""
+        camera = context.camera
+        column = self.column()
+        column.prop(camera.aplanat, "distortion")
+        if camera.aplanat.distortion == "DIVISION":
+            column.prop(camera.aplanat, "distortion_k")
+        tangent = corner_tangent(camera, context.scene)
+        _, problems = read_distortion(camera, real_lens_of(camera), tangent)
+        for problem in problems:
+            draw_alert(column, f"{problem[0].upper()}{problem[1:]}.", letters_across(context))
+
+
 class APLANAT_CAMERA_PT_lens_bokeh(_KnownLensPanel, bpy.types.Panel):
     """Picture of the lens' bokeh over depth and field."""
 
@@ -275,6 +297,7 @@ def _draw_clamp(panel, context):
 CLASSES = (
     APLANAT_MT_lens,
     APLANAT_CAMERA_PT_lens,
+    APLANAT_CAMERA_PT_lens_distortion,
     APLANAT_CAMERA_PT_lens_bokeh,
     APLANAT_CAMERA_PT_lens_facts,
 )

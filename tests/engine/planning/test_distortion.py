@@ -9,12 +9,16 @@ from hypothesis import strategies as st
 
 from addon.engine.planning.distortion import plan_distortion
 from addon.engine.planning.plan import plan_frame, region_projection
-from addon.lens_bokeh.look.distortion import undistorted
-from addon.snapshot.camera import BokehSettings
+from addon.optics.distortion import is_invertible, undistorted
 from tests.gpu.conftest import some_triangles, triangles_snapshot
 
 WIDTH, HEIGHT = 120, 80
-COEFFICIENTS = st.floats(-0.5, 0.25).filter(lambda k: abs(k) > 1e-6)
+ONE = st.floats(-0.5, 0.25).filter(lambda k: abs(k) > 1e-6)
+# As the curves of real lenses: higher terms that are smaller.
+SEVERAL = st.tuples(
+    st.floats(-0.2, 0.1), st.floats(-0.05, 0.05), st.floats(-0.02, 0.02), st.floats(-0.01, 0.01)
+).filter(lambda terms: abs(terms[0]) > 1e-6 and is_invertible(terms, 1.0))
+COEFFICIENTS = st.one_of(ONE, SEVERAL)
 
 
 def snapshot_of(k, region=None, parallel=False, shift=(0.0, 0.0)):
@@ -24,7 +28,7 @@ def snapshot_of(k, region=None, parallel=False, shift=(0.0, 0.0)):
     projection = snapshot.camera.projection.copy()
     projection[:2, 3 if parallel else 2] += shift
     camera = replace(
-        snapshot.camera, projection=projection, bokeh=BokehSettings(distortion=k) if k else None
+        snapshot.camera, projection=projection, distortion=k if isinstance(k, tuple) else (k,)
     )
     return replace(snapshot, camera=camera)
 
@@ -41,7 +45,7 @@ def test_pixels_come_from_where_the_model_says(k, parallel):
     distortion, drawn = plan_distortion(snapshot_of(k, parallel=parallel))
     places = np.random.default_rng(1).uniform(0.0, (WIDTH, HEIGHT), (50, 2))
     middle, corner = 0.5 * np.array([WIDTH, HEIGHT]), 0.5 * np.hypot(WIDTH, HEIGHT)
-    wanted = undistorted((places - middle) / corner, k) * corner
+    wanted = undistorted((places - middle) / corner, k if isinstance(k, tuple) else (k,)) * corner
     # Both cameras put a point of their axis where the axis meets the picture.
     size = np.array([drawn.film.width, drawn.film.height])
     matrix = drawn.camera.projection

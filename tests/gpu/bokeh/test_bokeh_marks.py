@@ -1,5 +1,7 @@
 """The debug view of the bokeh: marks against their twin, and what they say of a scene."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -200,7 +202,8 @@ def test_the_other_passes_and_the_counts_stay_what_they_are(view):
 
 
 def test_marks_lie_where_the_distorted_picture_has_the_lamps():
-    snapshot = scene(debug_view="SOURCES", distortion=-0.3)
+    snapshot = scene(debug_view="SOURCES")
+    snapshot = replace(snapshot, camera=replace(snapshot.camera, distortion=(-0.3,)))
     plan = plan_frame(snapshot)
     picture = render_snapshot(snapshot, plan)["Combined"]
     for name in ("SEEN", "HIDDEN"):

@@ -116,9 +116,9 @@ def test_an_anamorphic_lens_leaves_the_discs_to_a_thin_lens_and_says_so_on_every
     assert line.startswith("camera 'Camera': lens 'Anamorphic") and "shapes no bokeh" in line
     # Whatever the samples leave to the discs: nothing has been drawn to find it out.
     assert (found.bokeh.appearance.edge, found.bokeh.vignetting) == (0.75, "NONE")
-    bokeh.distortion_source = "LENS"
+    camera.aplanat.distortion = "LENS"
     assert "distortion along the height" in read(aplanat_bpy).report[-1]
-    bokeh.distortion_source, camera.dof.use_dof = "NONE", False
+    camera.aplanat.distortion, camera.dof.use_dof = "NONE", False
     assert read(aplanat_bpy).report == ()
 
 
@@ -159,43 +159,6 @@ def test_a_parallel_camera_has_no_cats_eyes_and_says_so(camera, bokeh, aplanat_b
     found = read(aplanat_bpy)
     assert found.bokeh.appearance.rims == ()
     assert "camera 'Camera': cat's eyes are left out" in found.report[0]
-
-
-def test_distortion_by_number_and_by_the_lens(camera, bokeh, aplanat_bpy, empty_scene):
-    bokeh.distortion = -0.25
-    assert read(aplanat_bpy).bokeh.distortion == 0.0
-    bokeh.distortion_source = "DIVISION"
-    assert read(aplanat_bpy).bokeh.distortion == -0.25
-    bokeh.distortion_source = "LENS"
-    without = read(aplanat_bpy)
-    assert without.bokeh.distortion == 0.0
-    assert "has no real lens whose distortion" in without.report[0]
-    camera.aplanat.lens = TESSAR
-    bokeh.distortion_source = "LENS"
-    found = read(aplanat_bpy)
-    # A Tessar of 50 mm has a barrel of well below 1 % in the corner of 36 x 24 mm.
-    assert -0.01 < found.bokeh.distortion < 0.0
-    assert found.report == ()
-
-
-def test_a_lens_that_bends_more_than_can_be_drawn_says_so(camera, bokeh, aplanat_bpy, monkeypatch):
-    camera.aplanat.lens = TESSAR
-    bokeh.distortion_source = "LENS"
-    monkeypatch.setattr("addon.scene.camera.bokeh._distortion_of_lens", lambda *_: -3.0)
-    found = read(aplanat_bpy)
-    assert found.bokeh.distortion == -0.5
-    assert "-0.5 is drawn" in found.report[0]
-
-
-def test_distortion_of_a_lens_grows_with_the_square_of_the_picture(camera, bokeh, aplanat_bpy):
-    camera.aplanat.lens = TESSAR
-    bokeh.distortion_source = "LENS"
-    # Small enough for the third order, by which it grows so.
-    camera.sensor_width /= 8.0
-    wide = read(aplanat_bpy).bokeh.distortion
-    camera.sensor_width /= 2.0
-    half = read(aplanat_bpy).bokeh.distortion
-    assert wide / half == pytest.approx(4.0, rel=0.1)
 
 
 def iris_image(bpy, picture, name="iris"):
