@@ -98,7 +98,7 @@ BOKEH_PRESETS = (
     ),
     Preset(
         "Vintage",
-        "Slightly bright edges, curved blades, soft cat's eyes, a barrel, some grain and dust",
+        "Slightly bright edges, curved blades, soft cat's eyes, some grain and dust",
         {
             "hardness": 0.4,
             "blade_curvature": 0.4,

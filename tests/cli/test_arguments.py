@@ -120,12 +120,14 @@ def test_all_words_of_render_are_understood():
             *("--resolution", "64x48", "--method", "reference", "--samples", "9", "--seed", "3"),
             *("--filter", "box", "--filter-size", "1.5", "--no-bokeh", "--no-chromatic"),
             *("--fstop", "1.4", "--focus", "2.5", "--stats", "s.json", "--json"),
+            *("--distortion", "lens"),
         ]
     )
     assert list(arguments.frames.numbers(2)) == [-2, 0, 2]
     assert arguments.resolution == (64, 48)
     assert arguments.focus == 2.5
     assert arguments.fstop == 1.4
+    assert arguments.distortion == "lens"
     assert [path.name for path in arguments.output] == ["a_####.exr", "a_####.PNG"]
 
 

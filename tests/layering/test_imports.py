@@ -58,14 +58,14 @@ ROOMS = {
     "scene.images": ("snapshot",),
     "scene.nodes": ("snapshot", "scene.images"),
     "scene.camera": (
-        *("optics.rays", "sampling", "lens_bokeh.look", "lens_io", "lens_io.glasses"),
+        *("optics", "optics.rays", "sampling", "lens_bokeh.look", "lens_io", "lens_io.glasses"),
         *("settings", "snapshot", "scene.images"),
     ),
     "scene.shading": ("snapshot", "scene.images", "scene.nodes"),
     "scene.geometry": ("snapshot", "scene.camera", "scene.shading"),
     "scene": ("settings", "snapshot", "scene.camera", "scene.geometry", "scene.shading"),
     # A frame: planned, drawn, shown.
-    "engine.planning": ("layers", "sampling", "snapshot", "levels"),
+    "engine.planning": ("layers", "optics", "sampling", "snapshot", "levels"),
     "engine.drawing": (
         *("device", "sampling", "passes", "passes.surface"),
         *("levels", "levels.making"),

@@ -16,7 +16,20 @@ from addon.ui.properties.moved_settings import move, move_animation
 from .saved_by_0_1.make import all_values, values_of
 
 FOLDER = Path(__file__).parent / "saved_by_0_1"
-SAVED = json.loads((FOLDER / "settings.json").read_text(encoding="utf-8"))
+
+
+def saved():
+    """Return the settings that 0.1 read, by the paths that they have now."""
+    found = json.loads((FOLDER / "settings.json").read_text(encoding="utf-8"))
+    for settings in found["cameras"].values():
+        # There was none without bokeh.
+        source = settings.pop("bokeh.distortion_source")
+        settings["distortion"] = source if settings["bokeh.use"] else "NONE"
+        settings["distortion_k"] = settings.pop("bokeh.distortion")
+    return found
+
+
+SAVED = saved()
 
 
 # Choices that 0.1 did not have.
@@ -59,7 +72,7 @@ def test_the_file_has_every_choice_but_defaults(aplanat_bpy, opened):
         for path in SAVED[kind][name]:
             owner = group.path_resolve(path.rpartition(".")[0]) if "." in path else group
             prop = owner.bl_rna.properties[path.rpartition(".")[2]]
-            if prop.type == "ENUM":
+            if prop.type == "ENUM" and path != "distortion":
                 used = {settings[path] for settings in SAVED[kind].values()} | {prop.default}
                 assert used == set(prop.enum_items.keys()) - LATER, path
 
@@ -81,10 +94,10 @@ def test_what_a_lens_remembers_is_kept(aplanat_bpy, opened):
     assert (settings.bokeh.onion, settings.chromatic.axial) == (0.25, 3.5)
 
 
-def test_opening_changes_nothing(aplanat_bpy, opened):
+def test_opening_changes_nothing_but_what_moved(aplanat_bpy, opened):
     assert not aplanat_bpy.data.is_dirty
-    for scene in aplanat_bpy.data.scenes:
-        assert "settings_version" not in stored_settings(scene)
+    for camera in aplanat_bpy.data.cameras:
+        assert "distortion_source" not in stored_settings(camera)["bokeh"]
     changed = aplanat_bpy.data.cameras["overridden"].override_library
     assert {prop.rna_path for prop in changed.properties} == {
         "aplanat.bokeh.model",
@@ -234,3 +247,33 @@ def test_a_setting_moves_with_its_keys_and_drivers(aplanat_bpy, empty_scene):
     assert (settings.chromatic.axial, settings.bokeh.gain) == (pytest.approx(0.4), 7.0)
     empty_scene.frame_set(1)
     assert settings.chromatic.axial == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("link", [True, False], ids=["linked", "appended"])
+def test_distortion_of_an_older_file_belongs_to_the_lens(aplanat_bpy, tmp_path, link):
+    bpy = aplanat_bpy
+    path = str(tmp_path / "old.blend")
+    camera = bpy.data.cameras.new("linked")
+    camera.use_fake_user = True
+    camera.aplanat.bokeh.distortion_source = "DIVISION"
+    for frame, k in ((1, -0.2), (10, 0.1)):
+        camera.aplanat.distortion_k = k
+        camera.keyframe_insert("aplanat.distortion_k", frame=frame)
+    action, slot = camera.animation_data.action, camera.animation_data.action_slot
+    (curve,) = action.layers[0].strips[0].channelbag(slot).fcurves
+    curve.data_path = "aplanat.bokeh.distortion"
+    stored = stored_settings(camera)
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    # Saving stamps it: an older Aplanat had not.
+    stored["settings_version"] = 1
+    bpy.data.libraries.write(path, {camera})
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    camera = bring_in(bpy, path, link)
+    holder = bpy.data.objects.new("holder", camera)
+    bpy.context.scene.collection.objects.link(holder)
+    assert camera.aplanat.distortion == "DIVISION"
+    for frame, k in ((1, -0.2), (10, 0.1)):
+        bpy.context.scene.frame_set(frame)
+        seen = holder.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+        assert seen.aplanat.distortion_k == pytest.approx(k)
+    bpy.ops.wm.read_factory_settings(use_empty=True)

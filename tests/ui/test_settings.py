@@ -16,7 +16,7 @@ from addon.scene.settings import read_preview_sampling, read_sampling
 from addon.settings.bokeh_settings import BOKEH
 from addon.settings.chromatic_settings import CHROMATIC
 from addon.settings.refocus_settings import DEPTH_PASS, REFOCUS
-from addon.settings.scene_part_settings import LAMP, LENS, MATERIAL, WORLD
+from addon.settings.scene_part_settings import DISTORTION, LAMP, LENS, MATERIAL, WORLD
 from addon.settings.scene_settings import CAPTURE, MEASURING, PREVIEW, SCENE, VIEW_LAYER
 from addon.settings.setting import settings_of
 from addon.snapshot.camera import BokehSettings
@@ -31,7 +31,7 @@ GROUPS = {
     "AplanatCaptureSettings": (CAPTURE,),
     "AplanatRefocusSettings": (REFOCUS, DEPTH_PASS),
     "AplanatViewLayerSettings": VIEW_LAYER,
-    "AplanatCameraSettings": (LENS,),
+    "AplanatCameraSettings": (LENS, DISTORTION),
     "AplanatBokehSettings": BOKEH,
     "AplanatChromaticSettings": CHROMATIC,
     "AplanatMaterialSettings": (MATERIAL,),
@@ -51,6 +51,7 @@ UNDECLARED = {
         *("lens_choice", "zoom", "bokeh", "chromatic"),
         *("bokeh_lens", "bokeh_memory", "chromatic_lens", "chromatic_memory"),
     },
+    "AplanatBokehSettings": {"distortion_source", "distortion"},
     "AplanatChromaticSettings": {"curves", "spectrum", "curve_text"},
 }
 # A menu with pictures stands for the first, a menu of the lens' positions for the second.

@@ -135,8 +135,6 @@ def _stereo(render, data):
 
 def _distortion(scene, data, lens):
     terms, _ = read_distortion(data, lens, corner_tangent(data, scene))
-    if not terms:
-        return None
     return {"source": told(data.aplanat.distortion), "terms": list(terms)}
 
 

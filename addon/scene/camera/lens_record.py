@@ -78,6 +78,11 @@ def apply_lens(told, camera):
         The picture of the opening that was made.
     """
     own = camera.aplanat
+    bokeh = told.get("bokeh")
+    if isinstance(bokeh, dict) and "distortion_source" in bokeh:
+        # Recorded when distortion was part of the bokeh.
+        source = bokeh["distortion_source"] if bokeh.get("use", True) else "NONE"
+        told = {"distortion": source, "distortion_k": bokeh.get("distortion"), **told}
     _assign(own, settings_of(LENS, DISTORTION), told)
     _assign(own.bokeh, _BOKEH, told.get("bokeh"))
     _assign(own.chromatic, _CHROMATIC, told.get("chromatic"))

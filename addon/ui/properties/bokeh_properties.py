@@ -1,19 +1,34 @@
 """Bokeh of a camera: what is stored."""
 
 import bpy
+from bpy.props import EnumProperty, FloatProperty
 
 from ...settings.bokeh_settings import BOKEH
-from ...settings.setting import kept_names
+from ...settings.scene_part_settings import DISTORTION
+from ...settings.setting import kept_names, settings_of
 from .declared import properties
-from .overrides import SHARED
+from .overrides import OVERRIDABLE, SHARED
+
+_OLD = {"options": {"HIDDEN"}, "override": OVERRIDABLE}
 
 
 class AplanatBokehSettings(bpy.types.PropertyGroup):
     """Bokeh settings of a camera."""
 
-    __annotations__ = properties(
-        *BOKEH, callbacks={"iris_image": {"type": bpy.types.Image}}, **SHARED
-    )
+    __annotations__ = {
+        **properties(*BOKEH, callbacks={"iris_image": {"type": bpy.types.Image}}, **SHARED),
+        # Of files before version 2, for library overrides: see `migrations`.
+        "distortion_source": EnumProperty(
+            name="Distortion",
+            description="Moved to the lens",
+            items=tuple(
+                (item.identifier, item.label, "", "NONE", item.number)
+                for item in settings_of(DISTORTION)["distortion"].items
+            ),
+            **_OLD,
+        ),
+        "distortion": FloatProperty(name="K", description="Moved to the lens", **_OLD),
+    }
 
 
 # What a disc looks like: this a preset and a lens keep. An image cannot be kept as a value.

@@ -2,7 +2,7 @@
 
 A property is stored under its name, a choice as its number, and only what was ever set is stored.
 So a file of an older Aplanat opens as it is as long as names and numbers stay. What can not stay
-gets a new name, a new version, and a step here that moves what was stored.
+gets a new name, a new version, and a step (`migration_steps`) that moves what was stored.
 
 Each data-block tells the version of its own settings, as `settings_version` among what is stored,
 so that one that is linked or appended is judged by what the Aplanat of its file wrote. It is
@@ -22,14 +22,10 @@ setting that moves leaves its old property declared, hidden, for a step to read.
 import bpy
 from bpy.app.handlers import persistent
 
-# What this Aplanat stores.
-VERSION = 1
+from .migration_steps import STEPS
 
-# By the version that it leads to: called as step(kind, block, stored) for each data-block that has
-# stored settings. `kind` is the name of its collection in bpy.data, or "view_layers"; `stored`
-# holds the stored values by name, groups inside as groups, and also those whose property is gone.
-# Keys and drivers of the block name a setting, too: `moved_settings` moves both.
-STEPS = {}
+# What this Aplanat stores.
+VERSION = 2
 
 _VERSION_NAME = "settings_version"
 # By the type of a data-block: the name of its collection.
