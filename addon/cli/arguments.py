@@ -160,6 +160,7 @@ def _add_render(commands):
         help="lens of the library, or a lens file; the camera's focal length stays",
     )
     add_distortion(parser)
+    add("--breathing", action="store_true", help="focus breathing, if the camera has it not yet")
     add(
         "--fstop",
         metavar="X",

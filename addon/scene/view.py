@@ -6,6 +6,7 @@ import numpy as np
 
 from ..snapshot.camera import Camera
 from ..snapshot.film import Film
+from .camera.breathing import with_breathing
 from .camera.camera import evaluated_camera, read_optics
 from .settings import filter_size
 
@@ -72,8 +73,8 @@ def read_view(depsgraph, space, region, region_3d, pixel_size, sources=None):
     if through_camera and space.camera.type == "CAMERA":
         camera = evaluated_camera(depsgraph, space.camera)
         frame = _camera_frame(camera, scene, window @ view)
-        field_radius = _field_radius(camera, scene)
         optics = read_optics(depsgraph, camera, sources=sources)
+        field_radius = _field_radius(camera, scene) / optics["breathing"]
     if through_camera:
         border = _border_in_frame(scene.render, frame)
     else:
@@ -93,7 +94,7 @@ def read_view(depsgraph, space, region, region_3d, pixel_size, sources=None):
     orthographic = window[3, 3] != 0.0
     camera = Camera(
         view,
-        stretch @ window,
+        with_breathing(stretch @ window, optics.get("breathing", 1.0)),
         orthographic=bool(orthographic),
         field_radius=field_radius,
         **optics,

@@ -14,6 +14,9 @@ LENS = Section("Real lens", "Camera Properties > Lens > Real Lens", (
             " limits the f-number. It never changes the focal length by itself", told="lens"),
     Setting("zoom_label", "", "Zoom Position", "Name of the position of a zoom lens; empty for"
             " its first one", told="zoom_position"),
+    Setting("use_breathing", False, "Focus Breathing", "The nearer the focus, the larger the"
+            " picture, as with most lenses: by the focal length of a thin lens, or by the focus"
+            " group of a real one. With depth of field only", told="breathing"),
 ))
 
 DISTORTION = Section("Distortion", "Camera Properties > Lens > Real Lens > Distortion", (

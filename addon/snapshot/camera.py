@@ -129,6 +129,8 @@ class Camera:
     distortion : tuple of float
         K1, K2, ... of the division model (`optics.distortion`), in units of the distance from the
         optical axis to the picture's outermost corner; empty: none.
+    breathing : float
+        How much larger the picture is drawn than with the focus at infinity; `projection` has it.
     field_radius : float or None
         Distance of the outermost corner of the camera's own picture from the optical axis: as a
         tangent, for a parallel projection in m. None: that of `projection`.
@@ -145,4 +147,5 @@ class Camera:
     report: tuple[str, ...] = ()
     chromatic: ChromaticAberration | None = None
     distortion: tuple[float, ...] = ()
+    breathing: float = 1.0
     field_radius: float | None = None

@@ -222,7 +222,7 @@ def test_options_are_in_force_and_told(aplanat, small_blend, tmp_path):
         *("--samples", "3", "--seed", "5", "--filter", "box", "--filter-size", "1.25"),
         *("--camera", "Second", "--fstop", "2", "--focus", "Far", "--frame", "9"),
         *("--method", "reference", "--no-bokeh", "--no-chromatic", "--stats", stats, "--json"),
-        *("--distortion", "-0.1"),
+        *("--distortion", "-0.1", "--breathing"),
     )
     assert done.code == 0, done
     assert iio.imread(tmp_path / "a.png").shape == (10, 20, 3)
@@ -235,6 +235,7 @@ def test_options_are_in_force_and_told(aplanat, small_blend, tmp_path):
     assert (settings["camera"], settings["fstop"], settings["focus_object"]) == ("Second", 2, "Far")
     assert settings["no_bokeh"] and settings["no_chromatic"]
     assert settings["chromatic"] is None
+    assert settings["breathing"] > 1.0
     assert settings["distortion"] == {"source": "division", "terms": [pytest.approx(-0.1)]}
     assert told["frames"][0]["frame"] == 9
 

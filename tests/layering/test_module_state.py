@@ -33,6 +33,7 @@ MEMOS = {
     "optics.media": ("_index",),
     "passes.surface.environment": ("ggx_table",),
     "sampling.spectrum": ("_colour", "_matrix", "_observer"),
+    "scene.camera.breathing": ("_of_lens",),
     "scene.camera.bokeh": ("_ringing_spectrum",),
     "scene.camera.chromatic": ("_aberration", "_equalizer", "_field_map", "_problems"),
     "scene.camera.distortion": ("_terms_of_lens",),

@@ -97,6 +97,9 @@ def apply_frame(scene, frame, arguments, lens_id=None):
     check_camera(scene)
     if lens_id is not None:
         use_lens(scene.camera, lens_id, arguments.lens)
+    if arguments.breathing:
+        _stop_animation(scene.camera.data, "aplanat.use_breathing")
+        scene.camera.data.aplanat.use_breathing = True
     if arguments.distortion is not None:
         use_distortion(scene.camera.data, arguments.distortion)
     if arguments.no_bokeh:

@@ -10,6 +10,7 @@ from ...files.version import version
 from ...lens_bokeh.look.iris_mask import PictureIris
 from ...sampling.chromatic import RGB_WAVELENGTHS_NM
 from ...scene.camera.bokeh import corner_tangent, read_bokeh
+from ...scene.camera.breathing import read_breathing
 from ...scene.camera.camera import focus_distance
 from ...scene.camera.chromatic import read_chromatic
 from ...scene.camera.distortion import read_distortion
@@ -85,6 +86,7 @@ def settings_in_force(scene, sources, arguments=None):
         "aperture_blades": dof.aperture_blades,
         "aperture_rotation": dof.aperture_rotation,
         "aperture_ratio": dof.aperture_ratio,
+        "breathing": _breathing(depsgraph, camera, lens),
         "distortion": _distortion(scene, data, lens),
         "bokeh": _bokeh(scene, data, lens, sources.irises),
         "chromatic": _chromatic(data, lens),
@@ -131,6 +133,13 @@ def _stereo(render, data):
         "interocular_distance_m": stereo.interocular_distance,
         "pivot": stereo.pivot.lower(),
     }
+
+
+def _breathing(depsgraph, camera, lens):
+    """Return how much larger the picture is for its focus; null where it does not breathe."""
+    if not (camera.data.aplanat.use_breathing and camera.data.dof.use_dof):
+        return None
+    return read_breathing(camera.data, lens, focus_distance(depsgraph, camera))[0]
 
 
 def _distortion(scene, data, lens):

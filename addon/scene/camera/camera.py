@@ -11,6 +11,7 @@ from ...sampling.iris import Iris
 from ...sampling.thin_lens import ThinLens, aperture_radius
 from ...snapshot.camera import Camera
 from .bokeh import corner_tangent, read_bokeh
+from .breathing import read_breathing, with_breathing
 from .chromatic import read_chromatic
 from .distortion import read_distortion
 from .irises import IrisReader
@@ -62,24 +63,36 @@ def read_camera(depsgraph, camera, film, view=None, sources=None):
         If there is no camera or it is panoramic or custom.
     """
     camera, world, projection = _read_pose(depsgraph, camera, film, view)
+    optics = read_optics(depsgraph, camera, world, sources)
     return Camera(
         view=np.array(world.inverted(), np.float64),
-        projection=projection,
+        projection=with_breathing(projection, optics["breathing"]),
         orthographic=camera.data.type == "ORTHO",
-        **read_optics(depsgraph, camera, world, sources),
+        **optics,
     )
 
 
-def read_pose(depsgraph, camera, film, view=None):
+def read_pose(depsgraph, camera, film, view=None, real_lens=None):
     """Return view and projection of the scene's camera, without its lens.
+
+    Parameters
+    ----------
+    depsgraph, camera, film, view
+        As of `read_camera`.
+    real_lens : LensSettings or None
+        Of the camera, for its focus breathing.
 
     Returns
     -------
     view, projection : ndarray of shape (4, 4)
         As in `Camera`.
     """
-    _, world, projection = _read_pose(depsgraph, camera, film, view)
-    return np.array(world.inverted(), np.float64), projection
+    camera, world, projection = _read_pose(depsgraph, camera, film, view)
+    focus = None
+    if camera.data.dof.use_dof:
+        focus = focus_distance(depsgraph, camera, world)
+    scale, _ = read_breathing(camera.data, real_lens, focus)
+    return np.array(world.inverted(), np.float64), with_breathing(projection, scale)
 
 
 def _read_pose(depsgraph, camera, film, view):
@@ -124,8 +137,8 @@ def read_optics(depsgraph, camera, world=None, sources=None):
     -------
     dict
         Arguments of `Camera`: ``lens``, ``real_lens``, ``chromatic``, ``bokeh``,
-        ``distortion``, and ``report``, warnings about settings that cannot be met, as lines that
-        name the camera.
+        ``distortion``, ``breathing``, and ``report``, warnings about settings that cannot be met,
+        as lines that name the camera.
     """
     data = camera.data
     sources = sources or CameraSources()
@@ -133,16 +146,18 @@ def read_optics(depsgraph, camera, world=None, sources=None):
     lens, of_focus = read_lens(depsgraph, camera, real_lens, world)
     focus = lens.focus_distance if lens else None
     chromatic, of_chromatic = read_chromatic(data, real_lens, focus)
-    corner = corner_tangent(data, depsgraph.scene)
+    breathing, of_breathing = read_breathing(data, real_lens, focus)
+    corner = corner_tangent(data, depsgraph.scene) / breathing
     bokeh, of_bokeh = read_bokeh(data, real_lens, corner, sources.irises)
     distortion, of_distortion = read_distortion(data, real_lens, corner)
-    problems = (*of_lens, *of_focus, *of_chromatic, *of_bokeh, *of_distortion)
+    problems = (*of_lens, *of_focus, *of_chromatic, *of_bokeh, *of_distortion, *of_breathing)
     return {
         "lens": lens,
         "real_lens": real_lens,
         "chromatic": chromatic,
         "bokeh": bokeh,
         "distortion": distortion,
+        "breathing": breathing,
         "report": tuple(f"camera '{camera.name}': {line}" for line in problems),
     }
 

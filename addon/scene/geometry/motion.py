@@ -71,7 +71,8 @@ def add_motion(snapshot, sources, depsgraph, frame_set, view=None):
                 " finite; it stands still in the Vector pass"
                 for name in lost
             ]
-            poses.append((world, moved, read_pose(depsgraph, camera, snapshot.film, view)))
+            pose = read_pose(depsgraph, camera, snapshot.film, view, snapshot.camera.real_lens)
+            poses.append((world, moved, pose))
     finally:
         frame_set(frame, subframe)
     (world_before, moved_before, camera_before), (world_after, moved_after, camera_after) = poses

@@ -82,6 +82,9 @@ class APLANAT_CAMERA_PT_lens(CameraPanel, bpy.types.Panel):
         letters = letters_across(context)
         if settings.lens:
             _draw_state(column, camera, letters)
+        breathing = column.column()
+        breathing.active = camera.dof.use_dof and camera.type == "PERSP"
+        breathing.prop(settings, "use_breathing")
         _draw_work(column)
 
 
