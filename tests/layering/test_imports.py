@@ -24,6 +24,8 @@ ROOMS = {
     # Settings, each declared once: name, type, bounds, default; and the presets.
     "settings": ("sampling",),
     "lens_bokeh.tables": ("optics", "optics.rays", "sampling"),
+    # What a real lens does to lens samples.
+    "lens_bokeh.samples": ("optics", "optics.rays", "lens_bokeh.tables"),
     "lens_bokeh.look": ("optics", "lens_bokeh.tables"),
     "lens_io.glasses": ("optics", "sampling"),
     "lens_io.toml": ("optics", "optics.rays", "lens_io.glasses"),
@@ -65,7 +67,7 @@ ROOMS = {
     "scene.geometry": ("snapshot", "scene.camera", "scene.shading"),
     "scene": ("settings", "snapshot", "scene.camera", "scene.geometry", "scene.shading"),
     # A frame: planned, drawn, shown.
-    "engine.planning": ("layers", "optics", "sampling", "snapshot", "levels"),
+    "engine.planning": (*("layers", "optics", "sampling", "snapshot", "levels"),),
     "engine.drawing": (
         *("device", "sampling", "passes", "passes.surface"),
         *("levels", "levels.making"),

@@ -1,0 +1,223 @@
+"""A real lens for lens samples: where the ray of a point through a place of the iris lands.
+
+A point of field H (tangents) and vergence V (one over its distance along the axis from the entrance
+pupil), seen through the place q of the iris (in units of its radius), lands on the sensor at s; the
+picture has it at ``t = T(s / m)``, with m the paraxial scale of the picture, so that t is H but for
+what the lens does. T makes the picture free of distortion: it takes the rays through the middle of
+the iris, of points in the plane of focus, to their H. Without it, the picture has the distortion.
+
+What is kept is what the lens adds to a thin one,
+
+    t(H, V, q) - H = p q (Vf - V) + p B(H, V, q) + C(H, V)
+
+with p the radius of the paraxial pupil, Vf the vergence of the focus, B the aberrations (0 at
+q = 0) and C the movement of the rays through the middle. B is a sum of `disc_terms` over q; its
+coefficients are functions of the field alone, for four vergences, between which all is a cubic.
+Lens of revolution: they are found for points along one direction and turned.
+
+The light of a ray (`StopAim.throughput`) and its clearances of the rims do not depend on the
+vergence, for a place of the iris and one of the sensor make one ray: they are those of points in
+focus. Losses at the surfaces of the glass are left out.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import FocusError, PrescriptionError
+from ...optics.focus import focused
+from ...optics.glass import REFERENCE_WAVELENGTH_NM
+from ...optics.paraxial import first_order
+from ..tables.spline import spline_matrix
+from .ray_fan import RayFan, undistorted
+from .stop_rays import StopAim
+
+_MM = 1000.0
+_FIELDS = 17
+VERGENCES = 4
+# The nearest point of the fit is this many times as near as the focus; nearer ones go on as they
+# went.
+_NEAREST = 4.0
+# Room before surface 1 that no point of the fit comes into, in focal lengths.
+_ROOM = 0.25
+# Fields beyond the lens' own, in which rays are looked for; fewest of them that light comes from.
+_BEYOND, _FEWEST = 1.15, 5
+_WIDEST_DEG = 80.0
+_PARAXIAL = 1e-4
+_FOCUS_STEPS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class LensRays:
+    """Where rays land, and with how much light, for one lens at one focus and f-number.
+
+    Parameters
+    ----------
+    orders : ndarray of int, shape (T, 2)
+        Of the `disc_terms`.
+    fields : ndarray of shape (F,)
+        Tangents, from 0.
+    vergences : ndarray of shape (4,)
+        Rising, 1/m.
+    focus_vergence : float
+        1/m.
+    largest_vergence : float
+        Of the points that the lens was traced for, 1/m.
+    aberrations : ndarray of shape (F, 4, 2, T)
+        Coefficients of B, 1/m, for a point in direction e1 of the picture: of the part along e1
+        (cosine terms of the angle from e1) and of that along e2, e1 turned by 90 degrees (sine
+        terms). The mean is included; B is what is left after its value at q = 0.
+    chief : ndarray of shape (F, 4)
+        C along e1.
+    light : ndarray of shape (F, T)
+        Throughput over that of the middle of the picture, cosine terms.
+    rims : ndarray of shape (F, S, T)
+        1 - (radius / semi-diameter)^2 at the rims that may cut, cosine terms.
+    distorted : ndarray of shape (M, 2)
+        Fields, and where the ray through the middle of the iris lands of a point in focus there,
+        over m; both rising from 0.
+    flat : bool
+        Whether T takes the distortion away.
+    reach : float or None
+        None: q are places of the stop. Else the stop of this lens turns rays back before its rim,
+        and q are places of the plane of the pupil around the chief ray, in units of `reach` mm.
+    """
+
+    orders: np.ndarray
+    fields: np.ndarray
+    vergences: np.ndarray
+    focus_vergence: float
+    largest_vergence: float
+    aberrations: np.ndarray
+    chief: np.ndarray
+    light: np.ndarray
+    rims: np.ndarray
+    distorted: np.ndarray
+    flat: bool
+    reach: float | None = None
+
+    def of_fields(self, values, odd, wanted):
+        """Interpolate over the field.
+
+        Parameters
+        ----------
+        values : ndarray of shape (F, ...)
+        odd : ndarray of bool, broadcast to values[0]
+            Which change their sign on the other side of the axis.
+        wanted : ndarray of shape (P,)
+            Fields, at least 0; beyond the last one it is that.
+
+        Returns
+        -------
+        ndarray of shape (P, ...)
+        """
+        mirrored = np.where(odd, -values[:0:-1], values[:0:-1])
+        nodes = np.concatenate([-self.fields[:0:-1], self.fields])
+        matrix = spline_matrix(nodes, np.minimum(wanted, self.fields[-1]))
+        return np.tensordot(matrix, np.concatenate([mirrored, values]), 1)
+
+    def field_shown(self, tangents):
+        """Return the fields of points in focus that are shown at distances from the axis.
+
+        Parameters
+        ----------
+        tangents : ndarray of shape (P,)
+            In the picture, at least 0.
+
+        Returns
+        -------
+        ndarray of shape (P,)
+        """
+        return tangents if self.flat else undistorted(self.distorted, tangents)
+
+
+def lens_rays(
+    prescription,
+    label,
+    focus_distance,
+    f_number,
+    largest_tangent,
+    flat=True,
+    wavelength_nm=REFERENCE_WAVELENGTH_NM,
+):
+    """Trace a lens for lens samples.
+
+    Parameters
+    ----------
+    prescription : Prescription
+    label : str or None
+        Of the zoom position.
+    focus_distance : float
+        From the centre of the entrance pupil, m.
+    f_number : float
+    largest_tangent : float
+        Of the fields that are wanted; fewer are traced where no light comes through.
+    flat : bool
+        Without distortion.
+    wavelength_nm : float
+
+    Returns
+    -------
+    LensRays
+
+    Raises
+    ------
+    FocusError, PrescriptionError
+        If the lens cannot be focused there, has cylinders, or no ray comes through.
+    """
+    configuration, order = _focused(prescription, label, focus_distance)
+    lens = configuration.stopped_down(f_number)
+    focus = 1.0 / (focus_distance * _MM)
+    room = max(order.enp_z, 0.0) + _ROOM * order.efl
+    if focus * room >= 1.0:
+        raise FocusError(
+            f"focus distance {focus_distance:g} m is inside the lens; focus farther away"
+        )
+    nearest = min(_NEAREST * focus, 1.0 / room)
+    turn = (np.arange(VERGENCES) + 0.5) / VERGENCES * np.pi
+    vergences = nearest * 0.5 * (1.0 - np.cos(turn))
+    scale, aim = _paraxial(lens, order.enp_z, focus, wavelength_nm)
+    limit = np.tan(np.radians(min(configuration.half_field_deg * _BEYOND, _WIDEST_DEG)))
+    fields = np.linspace(0.0, min(largest_tangent, limit), _FIELDS)
+    fan = RayFan(aim, scale, focus, vergences)
+    found = fan.follow(fields)
+    if len(found) < _FEWEST:
+        raise PrescriptionError("no ray gets through the lens but near its axis")
+    fields = fields[: len(found)]
+    distorted = fan.chiefs(fields)
+    return LensRays(
+        fan.orders,
+        fields,
+        vergences * _MM,
+        focus * _MM,
+        nearest * _MM,
+        *fan.fitted(fields, found, distorted if flat else None),
+        distorted,
+        flat,
+        fan.reach,
+    )
+
+
+def _focused(prescription, label, focus_distance):
+    """Return the lens focused at a distance from its entrance pupil, and its first order."""
+    wide = lens = prescription.configuration(label)
+    if not wide.of_revolution:
+        raise PrescriptionError(
+            "lens samples are traced through lenses of revolution; this lens has a cylinder"
+        )
+    for _ in range(_FOCUS_STEPS):
+        distance = focus_distance * _MM - first_order(lens).enp_z
+        lens = focused(wide, distance, prescription.focus)
+    return lens, first_order(lens)
+
+
+def _paraxial(lens, pupil, focus, wavelength):
+    """Return the scale of the picture, mm a tangent, and the aim with the signed pupil radius."""
+    aim = StopAim(lens, pupil, 1.0, wavelength)
+    focus = np.array([focus])
+    stops, _ = aim.through(0.0, focus, np.array([[0.0, _PARAXIAL]]))
+    _, landing = aim.through(_PARAXIAL, focus, np.zeros((1, 2)))
+    if not (stops[0, 1] != 0.0 and landing[0, 1] != 0.0):
+        raise PrescriptionError("rays near the axis do not get through the lens")
+    radius = _PARAXIAL / stops[0, 1]
+    return landing[0, 1] / _PARAXIAL, StopAim(lens, pupil, radius, wavelength)

@@ -1,0 +1,241 @@
+"""Fans of rays through a lens, field by field, and the sums of `disc_terms` that follow them."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..tables.spline import spline_matrix
+from .disc_terms import disc_orders, radial_terms
+
+_MM = 1000.0
+_DEGREE = 12
+_RADII, _ANGLES = 10, 19
+# Steps of the field past the last one, for the rays that land there with more blur.
+_CHIEFS = 5
+# Weight in the fit of rays that a rim stops: how fast it falls with how far outside they are, the
+# least, and that of what the last field had.
+_STEEP, _BLOCKED, _KEPT = 30.0, 1e-5, 1e-7
+# Light of rays that counts: no ray inside the rims has more.
+_MOST_LIGHT = 3.0
+# Rims that can cut: those that some ray of the fit comes so near to.
+_NEAR_RIM, _MOST_RIMS = 0.05, 8
+# Light of an axial ray, over that through the middle, from which on the stop counts as one that
+# turns rays back before its rim.
+_FOLDED = 1.6
+# Where the edge of the rays that pass is looked for: in radii of the paraxial pupil.
+_WIDEST_PUPIL, _REACH_RAYS = 2.0, 2001
+
+
+class RayFan:
+    """The rays of all fields: each field's, at all vergences, over half of the iris.
+
+    Parameters
+    ----------
+    aim : StopAim
+    scale : float
+        Of the picture, mm a tangent.
+    focus : float
+        Vergence of the focus, 1/mm.
+    vergences : ndarray of shape (K,)
+        1/mm.
+    """
+
+    def __init__(self, aim, scale, focus, vergences):
+        self.aim, self.scale, self.focus = aim, scale, focus
+        self.radius_mm = abs(aim.pupil_radius)
+        self.reach = None
+        self.orders = disc_orders(_DEGREE)
+        self.slabs = np.append(vergences, focus)
+        # Denser towards the rim, as polynomials want it; mirror symmetry: half of the disc.
+        radius = np.sin(0.5 * np.pi * (np.arange(_RADII) + 1.0) / _RADII)
+        angle = np.linspace(0.0, np.pi, _ANGLES)
+        radius, angle = (each.ravel() for each in np.meshgrid(radius, angle))
+        self.radius, self.angle = np.append(radius, 0.0), np.append(angle, 0.0)
+        self.local = np.stack(
+            [self.radius * np.cos(self.angle), self.radius * np.sin(self.angle)], axis=-1
+        )
+        terms = radial_terms(self.orders, self.radius)
+        turn = self.angle[:, None] * self.orders[:, 1]
+        self.cosines, self.sines = terms * np.cos(turn), terms * np.sin(turn)
+        # Rays on the mirror line stand for themselves alone.
+        self.weight = np.where((self.angle == 0.0) | (self.angle == np.pi), 1.0, 2.0)
+
+    def follow(self, fields):
+        """Return `StopRays` of each field with its light, up to the last that rays come from."""
+        followed = self._follow(fields, None)
+        if followed:
+            rays, light = followed[0]
+            if rays.found.all() and light.max() < _FOLDED:
+                return followed
+        self.reach = self._reach()
+        return self._follow(fields, self.reach)
+
+    def _follow(self, fields, reach):
+        count = len(self.local)
+        seen = np.tile(_turned_back(self.local), (len(self.slabs), 1)) * self.radius_mm
+        # The stop may be seen upside down.
+        targets = seen / self.aim.pupil_radius
+        vergences = np.repeat(self.slabs, count)
+        places = before = seen
+        followed = []
+        for field in fields:
+            start = 2.0 * places - before
+            if reach is None:
+                rays = self.aim.rays(field, vergences, targets, start)
+            else:
+                rays = self._through_pupil(field, vergences, start)
+            focus = rays.found.reshape(-1, count)[-1]
+            if not focus[-1] or focus.mean() < 0.5:
+                break
+            chief = rays.places.reshape(-1, count, 2)[:, -1:]
+            guess = (chief + seen.reshape(-1, count, 2)).reshape(-1, 2)
+            before, places = places, np.where(rays.found[:, None], rays.places, guess)
+            at = slice(-count, None)
+            light = self.aim.throughput(field, vergences[at], rays.places[at], reach)
+            followed.append((rays, light * (self.scale / self.radius_mm) ** 2))
+        return followed
+
+    def _through_pupil(self, field, vergences, start):
+        """Rays through places of the pupil around those of the rays through the stop's middle."""
+        count = len(self.local)
+        middle = start.reshape(-1, count, 2)[:, -1]
+        chief = self.aim.rays(field, self.slabs, np.zeros_like(middle), middle)
+        places = chief.places[:, None] + _turned_back(self.local) * self.reach
+        rays = self.aim.rays_of(field, vergences, places.reshape(-1, 2))
+        return replace(rays, found=rays.found & np.repeat(chief.found, count))
+
+    def _reach(self):
+        """Return how far from the axis rays of the axial point in focus pass, mm."""
+        heights = self.radius_mm * np.linspace(0.0, _WIDEST_PUPIL, _REACH_RAYS)
+        places = np.stack([np.zeros_like(heights), heights], axis=-1)
+        rays = self.aim.rays_of(0.0, np.full(len(heights), self.focus), places)
+        clear = np.where(rays.found, rays.rims.min(axis=0), -1.0)
+        last = int(np.argmax(clear < 0.0)) if (clear < 0.0).any() else len(heights) - 1
+        return float(heights[last])
+
+    def chiefs(self, fields):
+        """Return fields and landing places of rays through the middle of the iris, over m."""
+        step = fields[1]
+        pairs, places, before = [], np.zeros((1, 2)), np.zeros((1, 2))
+        for field in np.append(fields, fields[-1] + step * np.arange(1, _CHIEFS)):
+            rays = self.aim.rays(
+                field, np.array([self.focus]), np.zeros((1, 2)), 2.0 * places - before
+            )
+            landing = rays.landing[0, 1] / self.scale
+            if not rays.found[0] or (pairs and landing <= pairs[-1][1]):
+                break
+            before, places = places, rays.places
+            pairs.append((field, landing))
+        return np.array(pairs)
+
+    def fitted(self, fields, followed, distorted):
+        """Return aberrations, chief rays, light and rims, as `LensRays` has them.
+
+        Parameters
+        ----------
+        fields : ndarray of shape (F,)
+        followed : list
+            Of `follow`.
+        distorted : ndarray of shape (M, 2) or None
+            Of `chiefs`: the distortion that is taken away.
+        """
+        count, slabs, radius = len(self.local), len(self.slabs), self.radius_mm
+        aberrations, chiefs, lights, rims = [], [], [], []
+        last = {}
+        for rays, light in followed:
+            known = rays.found.reshape(slabs, count)
+            seen = _turned(rays.landing.reshape(slabs, count, 2)) / self.scale
+            if distorted is not None:
+                away = np.linalg.norm(seen, axis=-1)
+                shown = undistorted(distorted, away.ravel()).reshape(away.shape)
+                seen = seen * (shown / np.maximum(away, 1e-30))[..., None]
+            clear = rays.rims.reshape(-1, slabs, count)
+            others = np.delete(clear, self.aim.stop, axis=0) if self.reach is None else clear
+            weight = self.weight * np.exp(_STEEP * np.minimum(others.min(axis=0), 0.0))
+            weight = np.where(known, np.maximum(weight, _BLOCKED), 0.0)
+            here, chief = [], []
+            for k in range(slabs - 1):
+                defocus = self.local * (radius * (self.focus - self.slabs[k]))
+                own = (seen[k] - defocus) / radius
+                parts = [
+                    self._fit((k, axis), basis, own[:, axis], weight[k], last)
+                    for axis, basis in enumerate((self.cosines, self.sines))
+                ]
+                here.append(parts)
+                chief.append(self.cosines[-1] @ parts[0] * radius)
+            aberrations.append(here)
+            chiefs.append(chief)
+            sure = np.where(light < _MOST_LIGHT, weight[-1], 0.0)
+            lights.append(self._fit("light", self.cosines, light, sure, last))
+            rims.append(
+                [
+                    self._fit(("rim", s), self.cosines, each[-1], weight[-1], last)
+                    for s, each in enumerate(clear)
+                ]
+            )
+        return (
+            np.array(aberrations) * _MM,
+            np.array(chiefs) - fields[:, None],
+            np.array(lights),
+            np.array(rims)[:, self._cutting(followed)],
+        )
+
+    def _cutting(self, followed):
+        count = len(self.local)
+        least = np.min(
+            [
+                np.where(rays.found[-count:], rays.rims[:, -count:], 1.0).min(axis=1)
+                for rays, _ in followed
+            ],
+            axis=0,
+        )
+        if self.reach is None:
+            # Places of the iris are those of the stop: its own rim cuts none of them.
+            least[self.aim.stop] = 1.0
+        order = np.argsort(least)[:_MOST_RIMS]
+        return np.sort(order[least[order] < _NEAR_RIM])
+
+    def _fit(self, key, basis, values, weight, last):
+        """Least squares; what the rays leave open stays as it was at the last field."""
+        used = np.abs(basis).max(axis=0) > 1e-9
+        root = np.sqrt(weight)[:, None]
+        matrix = basis[:, used] * root
+        goal = np.where(weight > 0.0, values, 0.0) * root[:, 0]
+        before = last.get(key, np.zeros(len(used)))[used]
+        size = _KEPT * len(values)
+        normal = matrix.T @ matrix + size * np.eye(used.sum())
+        result = np.zeros(len(used))
+        result[used] = np.linalg.solve(normal, matrix.T @ goal + size * before)
+        last[key] = result
+        return result
+
+
+def undistorted(distorted, places):
+    """Return the field of each distance from the axis on the sensor; odd, and linear far out.
+
+    Parameters
+    ----------
+    distorted : ndarray of shape (M, 2)
+        As of `LensRays`.
+    places : ndarray of shape (P,)
+
+    Returns
+    -------
+    ndarray of shape (P,)
+    """
+    fields, landing = distorted.T
+    nodes, values = (np.concatenate([-each[:0:-1], each]) for each in (landing, fields))
+    last = landing[-1]
+    inner = spline_matrix(nodes, np.minimum(places, last)) @ values
+    end = spline_matrix(nodes, np.array([last * (1.0 - 1e-4)])) @ values
+    slope = (fields[-1] - end[0]) / (1e-4 * last)
+    return inner + slope * np.maximum(places - last, 0.0)
+
+
+def _turned(places):
+    """From the lens' x and y to the directions e1 (+y) and e2."""
+    return np.stack([places[..., 1], -places[..., 0]], axis=-1)
+
+
+def _turned_back(local):
+    return np.stack([-local[..., 1], local[..., 0]], axis=-1)

@@ -1,0 +1,364 @@
+"""What a real lens does to lens samples, as small tables over the picture: for shaders and bounds.
+
+Two grids over the picture's field (tangents), evenly spaced in x and y; texels lie on its nodes:
+
+- *moves*: by how much a point of field H and vergence V is displaced by a sample beyond the thin
+  lens' shear, in tangents, a cubic in V. Over H; outside of the grid what its edge has.
+- *light*: which share of the light of a place of the picture a sample lets through, over the share
+  of the axis or over the mean of all places of the iris. Between nodes it is linear, and so is the
+  sum over samples.
+
+The thin lens is the camera's: aperture radius a, focus 1 / Vf. A sample at v = a q moves a point by
+``v (Vf - V)``; the real lens moves it by a share ``a / p`` of what it does to one at p q, so that a
+camera whose focal length is not that of the lens keeps its blur (as discs do). An anamorphic ratio
+makes the opening narrower, and movements with it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .disc_terms import disc_terms
+
+# Nodes along the picture's longer side.
+_COLUMNS = 49
+_GRADIENT_PLACES, _NUDGE = 96, 1e-3
+_FIT_PLACES = 300
+_GOLDEN_ANGLE = 2.399963229728653
+# Width of a rim's edge over the distance of samples: it takes noise away, but more would darken.
+_SOFT = 0.5
+# Clearance of rims that never cut, at the places that the slope is found for.
+_CLEAR = 0.1
+# Least light of a place of the picture, over the middle's, that an even exposure raises to the
+# middle's.
+LEAST_LIGHT = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class FieldGrid:
+    """Nodes over a rectangle of the field.
+
+    Parameters
+    ----------
+    low, high : ndarray of shape (2,)
+        Corners, as tangents.
+    columns, rows : int
+    """
+
+    low: np.ndarray
+    high: np.ndarray
+    columns: int
+    rows: int
+
+    @property
+    def nodes(self):
+        """Places, shape (rows * columns, 2)."""
+        x = np.linspace(self.low[0], self.high[0], self.columns)
+        y = np.linspace(self.low[1], self.high[1], self.rows)
+        return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+
+    def taps(self, places):
+        """Return indices and weights of linear interpolation, shape (P, 4) each."""
+        size = np.array([self.columns, self.rows])
+        at = (places - self.low) / (self.high - self.low) * (size - 1)
+        at = np.clip(at, 0.0, size - 1.0)
+        cell = np.minimum(at.astype(int), size - 2)
+        x, y = np.moveaxis(at - cell, -1, 0)
+        first = cell[..., 1] * self.columns + cell[..., 0]
+        index = np.stack([first, first + 1, first + self.columns, first + self.columns + 1], -1)
+        weights = np.stack([(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y], -1)
+        return index, weights
+
+
+def field_grid(low, high, margin=0.0):
+    """Return a grid over a rectangle, wider by a share of its sides.
+
+    Parameters
+    ----------
+    low, high : sequence of 2 float
+    margin : float
+
+    Returns
+    -------
+    FieldGrid
+    """
+    low, high = np.asarray(low, float), np.asarray(high, float)
+    wider = margin * (high - low)
+    low, high = low - wider, high + wider
+    width, height = high - low
+    short = max(int(np.ceil((_COLUMNS - 1) * min(width, height) / max(width, height))) + 1, 5)
+    size = (_COLUMNS, short) if width >= height else (short, _COLUMNS)
+    return FieldGrid(low, high, *size)
+
+
+@dataclass(frozen=True, eq=False)
+class SampleTables:
+    """Tables of a lens over a picture, from which those of any lens sample are made.
+
+    Parameters
+    ----------
+    moves_grid, light_grid : FieldGrid
+    aperture_radius : float
+        Of the camera's thin lens, m.
+    ratio : float
+        Anamorphic.
+    focus_vergence, largest_vergence : float
+        1/m. Nearer points go on as those at the largest vergence.
+    """
+
+    moves_grid: FieldGrid
+    light_grid: FieldGrid
+    aperture_radius: float
+    ratio: float
+    focus_vergence: float
+    largest_vergence: float
+    orders: np.ndarray
+    _moves: np.ndarray
+    _chief: np.ndarray
+    _light: np.ndarray
+    _rims: np.ndarray
+    _slopes: np.ndarray
+
+    def places(self, lens_positions):
+        """Places of the iris of lens positions, shape (N, 2).
+
+        Parameters
+        ----------
+        lens_positions : ndarray of shape (N, 2)
+            In m.
+        """
+        return lens_positions * np.array([self.ratio, 1.0]) / self.aperture_radius
+
+    def moves(self, lens_positions):
+        """Tables of the displacement of lens samples.
+
+        Parameters
+        ----------
+        lens_positions : ndarray of shape (N, 2)
+            In m.
+
+        Returns
+        -------
+        ndarray of float32, shape (N, rows, columns, 4, 2)
+            Coefficients of the powers of V over the largest vergence, x and y.
+        """
+        grid = self.moves_grid
+        terms = disc_terms(self.orders, np.append(self.places(lens_positions), [[0.0, 0.0]], 0))
+        terms = (terms[:-1] - terms[-1]).reshape(len(lens_positions), -1)
+        found = (terms @ self._moves).reshape(-1, len(self._chief), 4, 2) + self._chief
+        return found.reshape(-1, grid.rows, grid.columns, 4, 2).astype(np.float32)
+
+    def light(self, lens_positions, spacing=0.0):
+        """Tables of the light of lens samples, without a division.
+
+        Parameters
+        ----------
+        lens_positions : ndarray of shape (N, 2)
+            In m.
+        spacing : float
+            Distance of neighbouring samples in radii of the iris: rims are half as soft.
+
+        Returns
+        -------
+        ndarray of shape (N, rows, columns)
+            Over that of a ray through the middle of picture and iris; at least 0.
+        """
+        grid = self.light_grid
+        found = self._light_at(self.places(lens_positions), spacing)
+        return found.reshape(-1, grid.rows, grid.columns)
+
+    def mean_light(self, density):
+        """Mean light of places of the iris.
+
+        Parameters
+        ----------
+        density : ndarray of shape (N, 2)
+            Lens positions spread as those of the samples, in m.
+
+        Returns
+        -------
+        ndarray of shape (rows, columns)
+        """
+        return self.light(density, np.sqrt(np.pi / len(density))).mean(axis=0)
+
+    def displaced(self, eye, moves, lens_position):
+        """Displace points as a shader does, for one sample: the numpy twin.
+
+        Parameters
+        ----------
+        eye : ndarray of shape (P, 3)
+            Points of camera space, m.
+        moves : ndarray of shape (rows, columns, 4, 2)
+            Of the sample.
+        lens_position : ndarray of shape (2,)
+            In m.
+
+        Returns
+        -------
+        ndarray of shape (P, 3)
+            Where a pinhole in the camera's place has them.
+        """
+        depth = np.maximum(-eye[:, 2], 1e-9)
+        vergence = 1.0 / depth
+        index, weights = self.moves_grid.taps(eye[:, :2] * vergence[:, None])
+        table = moves.reshape(-1, 4, 2).astype(float)
+        coefficients = np.einsum("pt,ptkc->pkc", weights, table[index])
+        near = np.minimum(vergence / self.largest_vergence, 1.0)
+        powers = near[:, None] ** np.arange(4)
+        delta = np.einsum("pk,pkc->pc", powers, coefficients)
+        beyond = (vergence - self.focus_vergence) / (self.largest_vergence - self.focus_vergence)
+        delta *= np.maximum(beyond, 1.0)[:, None]
+        moved = eye.copy()
+        moved[:, :2] -= lens_position * (1.0 + eye[:, 2] * self.focus_vergence)[:, None]
+        moved[:, :2] += delta * depth[:, None]
+        return moved
+
+    def _light_at(self, places, spacing):
+        terms = disc_terms(self.orders, places).reshape(len(places), -1)
+        light = np.maximum(terms @ self._light, 0.0)
+        for rim, slope in zip(self._rims, self._slopes, strict=True):
+            clear = terms @ rim
+            if spacing > 0.0:
+                light *= np.clip(0.5 + clear / (_SOFT * spacing * slope), 0.0, 1.0)
+            else:
+                light *= clear >= 0.0
+        return light
+
+
+def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0):
+    """Lay out a lens over a picture.
+
+    Parameters
+    ----------
+    rays : LensRays
+    grid : FieldGrid
+        Of the picture, for the light.
+    wide_grid : FieldGrid
+        Wider, for points outside of the picture that are blurred into it.
+    aperture_radius : float
+        Of the camera's thin lens, m.
+    ratio : float
+        Anamorphic.
+
+    Returns
+    -------
+    SampleTables
+    """
+    largest = float(rays.largest_vergence)
+    moves, chief = _moves(rays, wide_grid.nodes, aperture_radius, ratio)
+    odd = rays.orders[:, 1] % 2 == 1
+    away, turn = _polar(grid.nodes)
+    away = rays.field_shown(away)
+    every = np.concatenate([rays.light[:, None], rays.rims], axis=1)
+    every = rays.of_fields(every, odd, away)
+    every = np.stack([_scalar(each, rays.orders, turn) for each in np.moveaxis(every, 1, 0)])
+    every = _where_they_land(every, rays, grid, aperture_radius)
+    light, rims = every[0], every[1:]
+    slopes = [_rim_slope(rim, rays.orders) for rim in rims]
+    # Rims that cut nothing of this picture.
+    cutting = [s for s, (_, least) in enumerate(slopes) if least < _CLEAR]
+    rims, slopes = [rims[s] for s in cutting], [slopes[s][0] for s in cutting]
+    return SampleTables(
+        moves_grid=wide_grid,
+        light_grid=grid,
+        aperture_radius=aperture_radius,
+        ratio=ratio,
+        focus_vergence=rays.focus_vergence,
+        largest_vergence=largest,
+        orders=rays.orders,
+        _moves=np.ascontiguousarray(moves.reshape(len(moves), -1)),
+        _chief=chief,
+        _light=light,
+        _rims=np.array(rims).reshape(-1, *light.shape),
+        _slopes=np.array(slopes).reshape(-1, light.shape[1]),
+    )
+
+
+def _moves(rays, nodes, aperture_radius, ratio):
+    """Lay out the aberrations over nodes of a field.
+
+    Returns
+    -------
+    moves : ndarray of shape (2 T, P, 4, 2)
+        Coefficients of the terms in the picture's frame, for each power of the vergence over the
+        largest, x and y.
+    chief : ndarray of shape (P, 4, 2)
+        Of the rays through the middle of the iris.
+    """
+    away, turn = _polar(nodes)
+    # Seen from the other side of the axis, both directions of the picture are turned round.
+    aberrations = rays.of_fields(rays.aberrations, rays.orders[:, 1] % 2 == 0, away)
+    chief = rays.of_fields(rays.chief, True, away)
+    powers = np.linalg.inv((rays.vergences / rays.largest_vergence)[:, None] ** np.arange(4))
+    aberrations = np.einsum("jk,nkct->njct", powers, aberrations) * aperture_radius
+    angle = turn[:, None] * rays.orders[:, 1]
+    cos, sin = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    along, across = aberrations[:, :, 0], aberrations[:, :, 1]
+    first, second = np.cos(turn)[:, None, None], np.sin(turn)[:, None, None]
+    # The cosine and the sine term of each angle from e1 in terms of those from the x axis.
+    one = np.concatenate([along * cos, along * sin], axis=-1)
+    other = np.concatenate([-across * sin, across * cos], axis=-1)
+    moves = np.stack(
+        [(one * first - other * second) / ratio, one * second + other * first], axis=-2
+    )
+    axes = np.concatenate([first, second], axis=-1)
+    return np.moveaxis(moves, -1, 0), (chief @ powers.T)[..., None] * axes
+
+
+def _where_they_land(every, rays, grid, aperture_radius):
+    """Move functions of the field to the places of the picture that rays in focus land at.
+
+    Parameters
+    ----------
+    every : ndarray of shape (K, 2 T, nodes)
+        By the field of the points in focus.
+
+    Returns
+    -------
+    ndarray of shape (K, 2 T, nodes)
+        By the place where a ray lands: to first order in its distance from the chief ray's.
+    """
+    moves, _ = _moves(rays, grid.nodes, aperture_radius, 1.0)
+    powers = (rays.focus_vergence / rays.largest_vergence) ** np.arange(4)
+    moves = np.einsum("tnkc,k->tnc", moves, powers)
+    places = _spread_places(_FIT_PLACES)
+    terms = disc_terms(rays.orders, places).reshape(len(places), -1)
+    middle = disc_terms(rays.orders, np.zeros((1, 2))).reshape(1, -1)
+    shift = np.tensordot(terms - middle, moves, 1)
+    values = terms @ every
+    steps = (grid.high - grid.low) / (grid.columns - 1, grid.rows - 1)
+    shaped = values.reshape(*values.shape[:2], grid.rows, grid.columns)
+    by_y, by_x = np.gradient(shaped, steps[1], steps[0], axis=(2, 3))
+    gradient = np.stack([by_x, by_y], axis=-1).reshape(*values.shape, 2)
+    moved = values - (gradient * shift).sum(axis=-1)
+    return np.linalg.pinv(terms) @ moved
+
+
+def _spread_places(count):
+    """Places of the unit disc, evenly spread."""
+    turn = _GOLDEN_ANGLE * np.arange(count)
+    radius = np.sqrt((np.arange(count) + 0.5) / count)
+    return radius[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+
+
+def _polar(places):
+    return np.hypot(*places.T), np.arctan2(places[:, 1], places[:, 0])
+
+
+def _scalar(coefficients, orders, turn):
+    """Turn cosine terms about each node; shape (2 T, nodes)."""
+    angle = turn[:, None] * orders[:, 1]
+    return np.concatenate([coefficients * np.cos(angle), coefficients * np.sin(angle)], axis=1).T
+
+
+def _rim_slope(rim, orders):
+    """Return how fast a clearance changes over the iris where it is 0, for each node; its least."""
+    count = _GRADIENT_PLACES
+    places = _spread_places(count)
+    at, right, up = (
+        disc_terms(orders, places + step).reshape(count, -1) @ rim
+        for step in ((0.0, 0.0), (_NUDGE, 0.0), (0.0, _NUDGE))
+    )
+    slope = np.hypot(right - at, up - at) / _NUDGE
+    near = np.exp(-np.abs(at) / 0.1) + 1e-9
+    return np.maximum((slope * near).sum(axis=0) / near.sum(axis=0), 1e-6), at.min()

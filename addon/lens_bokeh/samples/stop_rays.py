@@ -1,0 +1,254 @@
+"""Rays of scene points through given places of a lens' stop.
+
+A point is given by its field h, the tangent of its angle to the axis, and its vergence V, one over
+its distance from the plane of the entrance pupil: it lies at ``h / V`` above the axis. The ray from
+it through a place x of that plane has the slope ``x V - h``, at infinity, too. The place for which
+the ray passes the stop at a target is found by Newton's method, field by field, each beginning
+where the last one ended. Lens of revolution: points lie in the yz plane. Lengths in mm.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...optics.rays.trace import Rays, trace
+
+_STEPS = 12
+_TOLERANCE = 1e-9
+# Step of the derivatives, in units of the stop's radius.
+_NUDGE = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class StopRays:
+    """Rays of points of one field through places of the stop.
+
+    Parameters
+    ----------
+    places : ndarray of shape (N, 2)
+        On the plane of the entrance pupil, mm.
+    landing : ndarray of shape (N, 2)
+        On the sensor, mm.
+    rims : ndarray of shape (S, N)
+        1 - (radius / semi-diameter)^2 where the rays meet each surface.
+    found : ndarray of bool, shape (N,)
+        Whether there is such a ray; numbers of the others mean nothing.
+    """
+
+    places: np.ndarray
+    landing: np.ndarray
+    rims: np.ndarray
+    found: np.ndarray
+
+
+class StopAim:
+    """Aims rays at the stop of a lens.
+
+    Parameters
+    ----------
+    configuration : Configuration
+        A focused lens of revolution, its stop as far open as it is used.
+    pupil : float
+        z of the paraxial entrance pupil.
+    pupil_radius : float
+        Of the stop's paraxial image, positive; negative if the stop is seen upside down.
+    wavelength_nm : float
+    """
+
+    def __init__(self, configuration, pupil, pupil_radius, wavelength_nm):
+        self._configuration = configuration
+        self._pupil = pupil
+        self.pupil_radius = pupil_radius
+        # Its place among the surfaces.
+        self.stop = configuration.stop - 1
+        self._wavelength = wavelength_nm
+        self._radii = np.array([surface.semi_diameter for surface in configuration.surfaces])
+
+    def rays(self, field, vergences, targets, start):
+        """Find rays.
+
+        Parameters
+        ----------
+        field : float
+        vergences : ndarray of shape (N,)
+            1/mm.
+        targets : ndarray of shape (N, 2)
+            Places in the stop, in units of its radius.
+        start : ndarray of shape (N, 2)
+            Places on the pupil to begin from, mm.
+
+        Returns
+        -------
+        StopRays
+        """
+        places, found = self._solve(field, vergences, targets, start)
+        rays = self.rays_of(field, vergences, places)
+        return replace(rays, found=found & rays.found)
+
+    def rays_of(self, field, vergences, places):
+        """Trace rays through given places of the pupil.
+
+        Parameters
+        ----------
+        field : float
+        vergences : ndarray of shape (N,)
+        places : ndarray of shape (N, 2)
+            mm.
+
+        Returns
+        -------
+        StopRays
+        """
+        traced = self._traced((0.0, field), vergences, places, record=True)
+        rims = 1.0 - np.sum(traced.hits[..., :2] ** 2, axis=-1) / self._radii[:, None] ** 2
+        landing = traced.at_plane(self._configuration.sensor)
+        return StopRays(places, landing, rims, traced.reached)
+
+    def through(self, field, vergences, places):
+        """Trace rays through places of the pupil.
+
+        Parameters
+        ----------
+        field : float
+        vergences : ndarray of shape (N,)
+        places : ndarray of shape (N, 2)
+            mm.
+
+        Returns
+        -------
+        stops, landing : ndarray of shape (N, 2)
+            In units of the stop's radius, and mm on the sensor; 0 where a ray fails.
+        """
+        traced = self._traced((0.0, field), vergences, places, record=True)
+        stops = traced.hits[self.stop, :, :2] / self._radii[self.stop]
+        landing = traced.at_plane(self._configuration.sensor)
+        return np.where(traced.reached[:, None], stops, 0.0), landing
+
+    def throughput(self, field, vergences, places, reach=None):
+        """Light of rays of one radiance, for even places of the iris and of the sensor.
+
+        Etendue is what an optical system keeps: the light of a cell of the iris that comes to a
+        cell of the sensor is ``cos^4(a) |dx/dq| / |ds/dh|``, a the angle of the ray to the axis,
+        ``|dx/dq|`` the area of the pupil's plane for one of the iris at the same point, ``|ds/dh|``
+        that of the sensor for one of the field at the same place of the iris.
+
+        Parameters
+        ----------
+        field : float
+        vergences : ndarray of shape (N,)
+        places : ndarray of shape (N, 2)
+            As `rays` found them.
+        reach : float or None
+            None: q are places of the stop, in units of its radius. Else the places are
+            ``chief + reach q``, the last one being that of the chief ray.
+
+        Returns
+        -------
+        ndarray of shape (N,)
+            mm^2 of the pupil per area of the iris, over mm^2 of the sensor per squared tangent;
+            not finite where a ray fails.
+        """
+        by_place = [self._slopes(field, vergences, places, axis, "place") for axis in (0, 1)]
+        by_field = [self._slopes(field, vergences, places, axis, "field") for axis in (0, 1)]
+        stop_x, land_x = (np.stack([each[k] for each in by_place], axis=-1) for k in (0, 1))
+        stop_h, land_h = (np.stack([each[k] for each in by_field], axis=-1) for k in (0, 1))
+        with np.errstate(all="ignore"):
+            # Where the field moves, the place on the pupil goes along, so that q stays.
+            follow = -_inverse(stop_x) @ stop_h
+            opened = 1.0 / _determinant(stop_x)
+            if reach is not None:
+                follow, opened = follow[-1:], reach**2
+            total = land_h + land_x @ follow
+            slopes = places * vergences[:, None] - (0.0, field)
+            cosine2 = 1.0 / (1.0 + np.sum(slopes**2, axis=-1))
+            return cosine2**2 * np.abs(opened / _determinant(total))
+
+    def _slopes(self, field, vergences, places, axis, moved):
+        """Return derivatives of the places in the stop and on the sensor, shape (N, 2) each."""
+        step = np.zeros(2)
+        step[axis] = _NUDGE * (abs(self.pupil_radius) if moved == "place" else 1.0)
+        ends = []
+        for sign in (1.0, -1.0):
+            at, seen = places, np.array([0.0, field])
+            if moved == "place":
+                at = places + sign * step
+            else:
+                seen = seen + sign * step
+            traced = self._traced(seen, vergences, at, record=True)
+            landing = traced.at_plane(self._configuration.sensor)
+            stops = traced.hits[self.stop, :, :2] / self._radii[self.stop]
+            bad = ~traced.reached
+            landing[bad], stops[bad] = np.nan, np.nan
+            ends.append((stops, landing))
+        width = 2.0 * step[axis]
+        return tuple((a - b) / width for a, b in zip(*ends, strict=True))
+
+    def _solve(self, field, vergences, targets, start):
+        places, step = start.copy(), np.zeros_like(start)
+        seen = np.array([0.0, field])
+        stops, valid = self._at_stop(seen, vergences, places)
+        error = np.where(valid, np.linalg.norm(stops - targets, axis=1), np.inf)
+        going = np.flatnonzero(valid)
+        step[going] = self._step(
+            seen, vergences[going], places[going], stops[going] - targets[going]
+        )
+        for _ in range(_STEPS):
+            going = np.flatnonzero(np.isfinite(error) & (error > _TOLERANCE))
+            if not len(going):
+                break
+            trial = places[going] + step[going]
+            stops, valid = self._at_stop(seen, vergences[going], trial)
+            left = stops - targets[going]
+            size = np.where(valid, np.linalg.norm(left, axis=1), np.inf)
+            better = size < error[going]
+            step[going[~better]] *= 0.5
+            took = going[better]
+            places[took], error[took] = trial[better], size[better]
+            on = error[took] > _TOLERANCE
+            again = took[on]
+            if len(again):
+                step[again] = self._step(seen, vergences[again], places[again], left[better][on])
+        return places, error <= 1e-6
+
+    def _step(self, seen, vergences, places, left):
+        nudge = _NUDGE * abs(self.pupil_radius)
+        columns = []
+        for offset in ((nudge, 0.0), (0.0, nudge)):
+            ahead, good = self._at_stop(seen, vergences, places + offset)
+            behind, also = self._at_stop(seen, vergences, places - offset)
+            slope = (ahead - behind) / (2.0 * nudge)
+            columns.append(np.where((good & also)[:, None], slope, 0.0))
+        matrix = np.stack(columns, axis=-1)
+        determinant = _determinant(matrix)
+        usable = np.abs(determinant) > 1e-30
+        matrix[~usable] = np.eye(2)
+        step = -np.einsum("nij,nj->ni", _inverse(matrix), left)
+        step[~usable] = 0.0
+        most = 0.5 * abs(self.pupil_radius)
+        size = np.linalg.norm(step, axis=1, keepdims=True)
+        return step * np.minimum(1.0, most / np.maximum(size, 1e-30))
+
+    def _at_stop(self, seen, vergences, places):
+        stop = self._configuration.stop
+        traced = self._traced(seen, vergences, places, last=stop)
+        return traced.points[:, :2] / self._radii[stop - 1], traced.reached
+
+    def _traced(self, seen, vergences, places, **options):
+        slopes = places * vergences[:, None] - seen
+        directions = np.concatenate([slopes, np.ones((len(slopes), 1))], axis=1)
+        directions /= np.linalg.norm(directions, axis=1)[:, None]
+        origins = np.concatenate([places, np.full((len(places), 1), self._pupil)], axis=1)
+        # Before surface 1: rays are traced from a plane that they cross on their way to it.
+        return trace(
+            self._configuration, Rays(origins, directions), self._wavelength, clip=False, **options
+        )
+
+
+def _determinant(matrices):
+    return matrices[..., 0, 0] * matrices[..., 1, 1] - matrices[..., 0, 1] * matrices[..., 1, 0]
+
+
+def _inverse(matrices):
+    (a, b), (c, d) = np.moveaxis(matrices, (-2, -1), (0, 1))
+    adjoint = np.moveaxis(np.array([[d, -b], [-c, a]]), (0, 1), (-2, -1))
+    return adjoint / _determinant(matrices)[..., None, None]

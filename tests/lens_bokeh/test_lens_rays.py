@@ -1,0 +1,122 @@
+"""Lens samples of a real lens against traced rays: where points land, and with how much light."""
+
+import numpy as np
+import pytest
+
+from addon.errors import FocusError, PrescriptionError
+from addon.lens_bokeh.samples.lens_rays import lens_rays, undistorted
+from addon.lens_bokeh.samples.sample_tables import field_grid, sample_tables
+from addon.lens_io.lens_shelf import LensShelf
+from addon.optics.rays.aiming import aim
+from addon.optics.rays.beam import Beam
+from addon.optics.rays.trace import trace
+from benchmarks.referees.osl_lens import osl_lens, rays_from_sensor
+
+LINE = 587.5618
+FOCUS = 2.0
+# Of the picture, px, and its corner, mm from the axis.
+WIDTH, CORNER = 1920, 21.6
+
+
+def _prescription(name):
+    return LensShelf([]).find(name).lens.prescription
+
+
+def _tables(name, f_number, flat=True, focus=FOCUS):
+    prescription = _prescription(name)
+    lens = osl_lens(prescription, None, focus, f_number)
+    # Lenses of a smaller picture have their own corner.
+    covered = np.tan(np.radians(lens.configuration.half_field_deg))
+    tangent = min(CORNER / abs(lens.scale), covered)
+    half = tangent * np.array([3.0, 2.0]) / np.sqrt(13.0)
+    rays = lens_rays(prescription, None, focus, f_number, 1.2 * tangent, flat)
+    wide = lens.configuration.f_number
+    radius = lens.pupil_radius * min(1.0, wide / f_number) / 1000.0
+    tables = sample_tables(rays, field_grid(-half, half), field_grid(-half, half, 0.1), radius)
+    return lens, rays, tables, half
+
+
+@pytest.mark.parametrize(
+    ("name", "f_number", "flat"),
+    [
+        ("double-gauss-50mm-f2", 2.0, True),
+        ("petzval-51mm-f1.4", 1.4, False),
+        ("retrofocus-35mm-f2.5", 4.0, True),
+    ],
+)
+def test_points_land_where_traced_rays_do(name, f_number, flat):
+    lens, rays, tables, half = _tables(name, f_number, flat)
+    rng = np.random.default_rng(1)
+    configuration = lens.configuration
+    stop = configuration.stop - 1
+    radius = configuration.surfaces[stop].semi_diameter
+    compared = 0
+    for _ in range(16):
+        seen = rng.uniform(-1.0, 1.0, 2) * half
+        vergence = rng.uniform(0.02, rays.largest_vergence)
+        q = rng.uniform(-0.7, 0.7, 2)
+        point = np.array([*(seen / vergence), -1.0 / vergence])
+        beam = Beam.from_point((*point[:2] * 1000.0, lens.pupil + point[2] * 1000.0))
+        aimed = aim(configuration, beam, q[None] * radius, LINE)
+        if not aimed.found[0]:
+            continue
+        traced = trace(configuration, beam.rays(aimed.coordinates), LINE)
+        if not traced.passed[0]:
+            continue
+        place = traced.at_plane(configuration.sensor)[0] / lens.scale
+        if flat:
+            away = np.hypot(*place)
+            place *= undistorted(rays.distorted, np.array([away]))[0] / away
+        position = q * tables.aperture_radius
+        moved = tables.displaced(point[None], tables.moves(position[None])[0], position)[0]
+        error = np.linalg.norm(moved[:2] * vergence - place) * WIDTH / (2.0 * half[0])
+        assert error < 0.1, (seen, vergence, q)
+        compared += 1
+    assert compared > 6
+
+
+def test_straight_lines_in_focus_stay_straight_without_distortion():
+    _, rays, tables, half = _tables("petzval-100mm-f2.2", 22.0)
+    points = np.linspace(-1.0, 1.0, 9)[:, None] * [half[0], 0.0] + [0.0, 0.9 * half[1]]
+    eye = np.column_stack([points * FOCUS, np.full(9, -FOCUS)])
+    centre = np.zeros(2)
+    moved = tables.displaced(eye, tables.moves(centre[None])[0], centre)
+    assert np.abs(moved - eye).max() / FOCUS * WIDTH / (2.0 * half[0]) < 0.02
+
+
+@pytest.mark.parametrize(
+    ("name", "f_number"),
+    [("double-gauss-50mm-f2", 2.0), ("petzval-100mm-f2.2", 2.2), ("retrofocus-35mm-f2.5", 2.5)],
+)
+def test_an_even_world_is_as_bright_as_traced_from_the_sensor(name, f_number):
+    lens, rays, tables, half = _tables(name, f_number)
+    count = 1000
+    turn = 2.399963 * np.arange(count)
+    places = np.sqrt((np.arange(count) + 0.5) / count)[:, None] * np.stack(
+        [np.cos(turn), np.sin(turn)], axis=-1
+    )
+    light = tables.mean_light(places * tables.aperture_radius).ravel()
+    shares = np.array([0.0, 0.3, 0.6, 0.9])
+    seen = shares[:, None] * half
+    index, weights = tables.light_grid.taps(seen)
+    ours = (light[index] * weights).sum(axis=1)
+    # What falls on the sensor: cos^4 over the places of the last surface that light comes through.
+    axis = (np.arange(160) + 0.5) / 80.0 - 1.0
+    aimed = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2) * lens.aim_radius
+    theirs = []
+    fields, landing = rays.distorted.T
+    for place in seen:
+        away = np.hypot(*place)
+        sensor = place * (np.interp(away, fields, landing) / max(away, 1e-9)) * lens.scale
+        start = np.broadcast_to(sensor, aimed.shape)
+        bundle = rays_from_sensor(start, aimed, lens.configuration.sensor, lens.aim)
+        passed = trace(lens.configuration, bundle, LINE, backwards=True).passed
+        theirs.append((bundle.directions[:, 2] ** 4)[passed].sum())
+    assert ours / ours[0] == pytest.approx(np.array(theirs) / theirs[0], abs=0.006)
+
+
+def test_a_lens_with_cylinders_and_a_focus_inside_the_lens_are_refused():
+    with pytest.raises(PrescriptionError, match="cylinder"):
+        lens_rays(_prescription("anamorphic-60mm-f2"), None, FOCUS, 2.0, 0.3)
+    with pytest.raises((FocusError, PrescriptionError)):
+        lens_rays(_prescription("double-gauss-50mm-f2"), None, 0.01, 2.0, 0.3)
