@@ -14,9 +14,10 @@ import bpy
 from ..device import context
 from ..device.shaders import compiled_count
 from ..levels.choosing import meshes_with_levels
+from ..snapshot.render_passes import render_pass
 from .frame.pacing import Pacer
 from .frame.pipeline import FrameRenderer
-from .frame.render_passes import cryptomatte_metadata, fill_layer, render_pass
+from .frame.render_passes import cryptomatte_metadata, fill_layer
 from .gpu_thread import gpu_of_render
 from .outcome import LayerPicture, PassPicture
 from .planning.plan import plan_frame

@@ -90,7 +90,7 @@ def count(mattes, tables, kinds, weights, active=None):
     tables : GPUTexture
         ``slot_pairs(kinds)`` layers a kind, cleared to zero before the first sample.
     kinds : dict of str to int
-        As `engine.frame.render_passes.cryptomatte_kinds` gives them.
+        As `snapshot.render_passes.cryptomatte_kinds` gives them.
     weights : ndarray of shape (2, k)
         Of the columns and rows of a pixel's sub-pixels; `mattes` is ``k`` times as large.
     active : GPUTexture or None

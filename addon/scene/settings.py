@@ -1,12 +1,22 @@
 """Render settings of a scene to `Film` and `Sampling`."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
 
 from ..errors import InputError
-from ..settings.scene_settings import ADVANCED, LEVELS, MEASURING, PREVIEW, RENDER, SAMPLING
+from ..settings.scene_settings import (
+    ADVANCED,
+    LEVELS,
+    MEASURING,
+    PASSES,
+    PREVIEW,
+    RENDER,
+    SAMPLING,
+)
 from ..settings.setting import fields_of
+from ..snapshot import render_passes
 from ..snapshot.film import Film, Sampling
 
 # 16384 squared: the largest texture of today's graphics devices; 4 GB a target.
@@ -111,21 +121,12 @@ def read_passes(view_layer):
     tuple of str
         As in Blender; Combined is always the first.
     """
-    own = view_layer.aplanat
-    switches = (
-        ("Defocus", own.use_pass_defocus),
-        ("Bokeh", own.use_pass_bokeh),
-        ("Depth", view_layer.use_pass_z),
-        ("Normal", view_layer.use_pass_normal),
-        ("Position", view_layer.use_pass_position),
-        ("Vector", view_layer.use_pass_vector),
-        ("CoC", own.use_pass_coc),
-        ("Detail", own.use_pass_detail),
-        ("Focus Matte", own.use_pass_focus_matte),
-        ("Fringe", own.use_pass_fringe),
-        ("Sample Count", own.use_pass_sample_count),
+    ours = fields_of(view_layer.aplanat, PASSES)
+    wanted = (
+        getattr(view_layer, entry.blenders_switch) if entry.blenders_switch else ours.get(name)
+        for name, entry in render_passes.PASSES.items()
     )
-    names = ["Combined", *(name for name, wanted in switches if wanted)]
+    names = ["Combined", *itertools.compress(render_passes.PASSES, wanted)]
     # Two ranks a pass.
     passes = (view_layer.pass_cryptomatte_depth + 1) // 2
     for kind, wanted in (

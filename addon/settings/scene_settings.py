@@ -132,21 +132,28 @@ PERFORMANCE = Section("Performance", "Render Properties > Performance", (
 
 PASSES = Section("Passes", "View Layer Properties > Passes > Data", (
     Setting("use_pass_coc", False, "Circle of Confusion", "Radius of the blur disk of the point"
-            " in each pixel's centre, in pixels; negative in front of the focus plane"),
+            " in each pixel's centre, in pixels; negative in front of the focus plane",
+            field="CoC"),
     Setting("use_pass_focus_matte", False, "Focus Matte", "Share of each pixel that is in focus,"
             " blurred like the picture: 1 up to a blur of 1/1500 of the picture's diagonal (at"
-            " least a pixel), then falling to 0"),
+            " least a pixel), then falling to 0",
+            field="Focus Matte"),
     Setting("use_pass_fringe", False, "Fringe", "What chromatic aberration adds and takes away:"
-            " Combined less the same picture without it, which is rendered beside it"),
+            " Combined less the same picture without it, which is rendered beside it",
+            field="Fringe"),
     Setting("use_pass_defocus", False, "Defocus", "What the lens samples show: Combined without"
-            " the highlights that were drawn one by one"),
+            " the highlights that were drawn one by one",
+            field="Defocus"),
     Setting("use_pass_bokeh", False, "Bokeh", "The highlights that were drawn one by one. Defocus"
-            " and Bokeh together are Combined"),
+            " and Bokeh together are Combined",
+            field="Bokeh"),
     Setting("use_pass_detail", False, "Detail", "Where the adaptive method saves work: level of"
             " detail (X), share of the lens samples that copy a drawing of the object (Y), and 1"
-            " where there is an object (Z)"),
+            " where there is an object (Z)",
+            field="Detail"),
     Setting("use_pass_sample_count", False, "Sample Count", "Lens samples that each pixel got:"
-            " with a noise threshold, more where the picture needs them"),
+            " with a noise threshold, more where the picture needs them",
+            field="Sample Count"),
 ))
 # fmt: on
 

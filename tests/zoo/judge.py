@@ -17,6 +17,8 @@ import numpy as np
 
 from addon.engine.shared_resources import listen
 from addon.errors import AplanatError
+from addon.settings.scene_settings import PASSES
+from addon.settings.setting import settings_of
 
 from . import agreement
 from .blenders_part import digests_of_scenes
@@ -29,15 +31,7 @@ LAYER_PASSES = {
     "use_pass_position": "Position",
     "use_pass_vector": "Vector",
 }
-OWN_PASSES = {
-    "use_pass_coc": "CoC",
-    "use_pass_detail": "Detail",
-    "use_pass_focus_matte": "Focus Matte",
-    "use_pass_defocus": "Defocus",
-    "use_pass_bokeh": "Bokeh",
-    "use_pass_fringe": "Fringe",
-    "use_pass_sample_count": "Sample Count",
-}
+OWN_PASSES = {name: setting.field for name, setting in settings_of(PASSES).items()}
 CRYPTOMATTES = {
     "use_pass_cryptomatte_object": "CryptoObject",
     "use_pass_cryptomatte_material": "CryptoMaterial",
@@ -202,7 +196,7 @@ def channels_of(path):
 
 
 def expected_passes(layer):
-    """Return the passes that the switches of a view layer ask for, by a list of our own."""
+    """Return the passes that the switches of a view layer ask for."""
     names = ["Combined"]
     names += [name for switch, name in LAYER_PASSES.items() if getattr(layer, switch)]
     names += [name for switch, name in OWN_PASSES.items() if getattr(layer.aplanat, switch)]

@@ -13,8 +13,8 @@ from ...passes import cryptomatte, resolve
 from ...passes.bokeh import marks
 from ...passes.surface import data
 from ...sampling.tile_control import TILE
+from ...snapshot.render_passes import cryptomatte_kinds
 from ..bokeh.marks import mark_targets, shows_marks
-from . import render_passes
 
 
 class FramePictures:
@@ -42,7 +42,7 @@ class FramePictures:
         self._view = view
         self._targets = targets
         self._fullscreen = fullscreen
-        self._kinds = render_passes.cryptomatte_kinds(plan.passes)
+        self._kinds = cryptomatte_kinds(plan.passes)
         self._nearest = None
 
     @staticmethod
@@ -51,7 +51,7 @@ class FramePictures:
         specs = [TargetSpec("image", "RGBA32F", size=plan.size), *mark_targets(plan)]
         if plan.distortion and plan.automatic:
             specs.append(TargetSpec("mean", "RGBA32F"))
-        if plan.distortion and render_passes.cryptomatte_kinds(plan.passes):
+        if plan.distortion and cryptomatte_kinds(plan.passes):
             specs.append(TargetSpec("ranks", "RGBA32F"))
         return specs
 

@@ -8,21 +8,23 @@ from contextlib import nullcontext
 from dataclasses import replace
 
 from ...device import geometry, keeping, readback
-from ...device.targets import Targets, TargetSpec
+from ...device.targets import Targets
 from ...device.uniforms import uniform_buffer
-from ...passes import background, cryptomatte
+from ...passes import background
 from ...passes.surface import chromatic, surface_target
+from ...snapshot.render_passes import cryptomatte_kinds
 from ..bokeh.stage import BokehStage, highlight_buffer
 from ..drawing.scene_drawing import DrawingCounts, SceneDrawing
 from ..drawing.view_resources import chromatic_resources, view_params
 from ..layered.layered_drawing import LayeredDrawing
 from ..planning.plan import extended
 from ..visibility.stage import SceneOccluders
-from . import render_passes, sample_sums
+from . import sample_sums
 from .frame_bokeh import FrameBokeh
 from .frame_pictures import FramePictures
 from .readable_frame import ReadableFrame
 from .subsampling import SubsampleBlur
+from .target_specs import needs_mattes, target_specs
 from .tile_sampling import TileSampling
 
 # Most samples in the device's queue, to bound the memory of the queue.
@@ -76,8 +78,8 @@ class FrameRenderer(ReadableFrame):
         self._stopped = False
         self._earlier_rounds = DrawingCounts()
         self._tiles = TileSampling(plan, self._fullscreen, leader) if plan.automatic else None
-        self._cryptomattes = render_passes.cryptomatte_kinds(plan.passes)
-        self._mattes = bool(render_passes.made_by(plan.passes, "MATTE", "CRYPTOMATTE"))
+        self._cryptomattes = cryptomatte_kinds(plan.passes)
+        self._mattes = needs_mattes(plan)
         target = surface_target.COLOR_AND_MATTES if self._mattes else surface_target.COLOR
         self._highlights = None
         if plan.bokeh:
@@ -195,22 +197,7 @@ class FrameRenderer(ReadableFrame):
                 self._targets.clear(name, (0.0, 0.0, 0.0, 0.0))
 
     def _target_specs(self):
-        fine = self.plan.subpixels
-        specs = [
-            TargetSpec("sample", "RGBA32F", scale=fine),
-            TargetSpec("sample_depth", "DEPTH_COMPONENT32F", scale=fine),
-            TargetSpec("sum", "RGBA32F"),
-            *FramePictures.target_specs(self.plan),
-        ]
-        if self.plan.bokeh:
-            specs.append(TargetSpec("bokeh", "RGBA32F"))
-        if self._mattes:
-            specs.append(TargetSpec("mattes", "RGBA32F", scale=fine))
-        if "Focus Matte" in self.plan.passes:
-            specs.append(TargetSpec("focus_sum", "R32F"))
-        if self._cryptomattes:
-            layers = len(self._cryptomattes) * cryptomatte.slot_pairs(self._cryptomattes)
-            specs.append(TargetSpec("tables", "RGBA32F", layers))
+        specs = target_specs(self.plan)
         specs += self._drawing.specs()
         if self._tiles:
             specs += self._tiles.specs()

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...sampling.tile_control import TILE
-from . import render_passes
+from ...snapshot.render_passes import made_by
 from .tile_sampling import SamplingReport, weights_of
 
 
@@ -76,7 +76,7 @@ class ReadableFrame:
         -------
         list of tuple of str
         """
-        together = render_passes.made_by(self.plan.passes, "DATA")
+        together = made_by(self.plan.passes, "DATA")
         groups = [(name,) for name in self.plan.passes if name not in together]
         return [*groups, together] if together else groups
 
@@ -96,7 +96,7 @@ class ReadableFrame:
         names = self.plan.passes if names is None else names
         self._targets.forget_framebuffers()
         made, weights = self._pictures, self._weights
-        pictures = made.read_data(render_passes.made_by(names, "DATA"))
+        pictures = made.read_data(made_by(names, "DATA"))
         for name in names:
             if name == "Combined":
                 pictures[name] = made.read_shown(weights)
