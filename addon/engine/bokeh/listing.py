@@ -14,8 +14,8 @@ from ...device.uniforms import uniform_buffer
 from ...passes import background
 from ...passes.bokeh import highlights, peel
 from ...passes.surface import surface
-from ..planning.bokeh_search import tiles_of
 from .lamp_areas import NO_AREAS, LampAreas, lamp_areas
+from .search_tiles import tiles_of
 
 # Room for fragments: first guess a texel, least and most in all; a tile with more is divided.
 _ROOM = 0.25

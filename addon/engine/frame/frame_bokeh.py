@@ -6,8 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..planning.bokeh_plan import draft_of
-
 # Seconds below which a whole bokeh needs no draft.
 _QUICK = 0.03
 
@@ -46,7 +44,7 @@ class FrameBokeh:
         if plan.bokeh:
             self.stage = self._whole = make_stage(plan)
             if drafts and self.seconds > _QUICK:
-                self._draft = make_stage(replace(plan, bokeh=draft_of(plan.bokeh)))
+                self._draft = make_stage(replace(plan, bokeh=plan.bokeh.drafted()))
         self.drafted = self._draft is not None
 
     def run(self, fullscreen, targets, view, stage=nullcontext):

@@ -17,7 +17,6 @@ from ..bokeh.stage import BokehStage, highlight_buffer
 from ..drawing.scene_drawing import DrawingCounts, SceneDrawing
 from ..drawing.view_resources import chromatic_resources, view_params
 from ..layered.layered_drawing import LayeredDrawing
-from ..planning.plan import extended
 from ..visibility.stage import SceneOccluders
 from . import sample_sums
 from .frame_bokeh import FrameBokeh
@@ -264,7 +263,7 @@ class FrameRenderer(ReadableFrame):
     def _begin_round(self):
         """Plan the samples of the next round, for the active tiles."""
         self._earlier_rounds += self._drawing.counts
-        self.plan = extended(self.plan)
+        self.plan = self.plan.extended()
         wavelengths = self._wavelength if self.plan.chromatic else None
         if earlier := self._blur:
             self._blur = SubsampleBlur(self.plan, self._drawing.nearest, wavelengths)

@@ -79,7 +79,7 @@ class BokehPlan:
     colors : BokehColors or None
         None: one disc for all wavelengths.
     draft : bool
-        A draft with bounded work, for a moving view; see `draft_of`.
+        A draft with bounded work, for a moving view; see `drafted`.
     """
 
     settings: BokehSettings
@@ -137,6 +137,35 @@ class BokehPlan:
     def layers(self):
         """Most highlights behind one another that are found, without the world's."""
         return self.settings.layers
+
+    def drafted(self):
+        """Return the plan of a draft: few sources, few layers, coarse masks.
+
+        Light is split between splats and lens samples in the same way, so that the same samples fit
+        to both.
+
+        Returns
+        -------
+        BokehPlan
+        """
+        settings = self.settings
+        _, _, width, height = self.part
+        affordable = int(np.sqrt(_DRAFT_RASTER / max(width * height, 1)))
+        return replace(
+            self,
+            settings=replace(
+                settings,
+                model="CLUSTERED",
+                similarity=max(settings.similarity, 1.0),
+                global_merge=False,
+                visibility="WARP",
+                layers=min(settings.layers, _DRAFT_LAYERS),
+                lens_views=1,
+            ),
+            subpixels=max(1, min(self.subpixels, LEAST_SUBPIXELS, affordable)),
+            colors=self.colors and self.colors.draft(),
+            draft=True,
+        )
 
 
 def plan_bokeh(snapshot, plan):
@@ -217,40 +246,6 @@ def shaping_lens(camera):
     """Return the traced lens that shapes a camera's discs, as `LensSettings`, or None."""
     lens = camera.real_lens
     return lens if lens and lens.shapes_bokeh and not camera.orthographic else None
-
-
-def draft_of(bokeh):
-    """Return a plan of a draft: few sources, few layers, coarse masks.
-
-    Light is split between splats and lens samples in the same way, so that the same samples fit
-    to both.
-
-    Parameters
-    ----------
-    bokeh : BokehPlan
-
-    Returns
-    -------
-    BokehPlan
-    """
-    settings = bokeh.settings
-    _, _, width, height = bokeh.part
-    affordable = int(np.sqrt(_DRAFT_RASTER / max(width * height, 1)))
-    return replace(
-        bokeh,
-        settings=replace(
-            settings,
-            model="CLUSTERED",
-            similarity=max(settings.similarity, 1.0),
-            global_merge=False,
-            visibility="WARP",
-            layers=min(settings.layers, _DRAFT_LAYERS),
-            lens_views=1,
-        ),
-        subpixels=max(1, min(bokeh.subpixels, LEAST_SUBPIXELS, affordable)),
-        colors=bokeh.colors and bokeh.colors.draft(),
-        draft=True,
-    )
 
 
 def _shining(content, threshold):

@@ -1,7 +1,7 @@
 """Region and resolution of the search for a frame's highlights.
 
 The raster of the search has a texel for each sub-pixel; only the part where surfaces may exceed the
-highlight threshold is drawn, tile by tile.
+highlight threshold is drawn, tile by tile (`engine.bokeh.search_tiles`).
 """
 
 import numpy as np
@@ -9,10 +9,8 @@ import numpy as np
 from ...levels.choosing import extents, world_corners
 from ...snapshot.brightness import emits
 
-# Of the raster that highlights are searched in, in sub-pixels, and of a tile of it (20 bytes each a
-# layer).
+# Of the raster that highlights are searched in, in sub-pixels.
 _LARGEST_RASTER = 1 << 26
-_LARGEST_TILE = 1 << 22
 LEAST_SUBPIXELS, _MOST_SUBPIXELS = 2, 4
 # Sub-pixels along a side of a triangle that shines: the light of a lamp of one triangle is then
 # found to a few per cent.
@@ -23,45 +21,12 @@ _HITS_A_LAMP = 45.0
 # Most sub-pixels for the sake of single lamps: along a side of a pixel, and in all.
 _FINEST = 64
 _FINE_RASTER = 1 << 21
-# Longest side of a tile, in sub-pixels.
-_LONGEST_TILE = 8192
 
 
 def graph_of(content, key):
     """Return the `SurfaceGraph` of a surface, given as group and slot."""
     number, slot = key
     return content.materials[content.groups[number].materials[slot]].graph
-
-
-def tiles_of(part, subpixels):
-    """Divide a part of the raster into tiles that are searched one after another.
-
-    Parameters
-    ----------
-    part : tuple of 4 int
-        x, y, width and height, px; without area there are no tiles.
-    subpixels : int
-        Along each side of a pixel.
-
-    Returns
-    -------
-    list of tuple of 4 int
-        x, y, width and height in pixels; the first is the largest.
-    """
-    left, below, width, height = part
-    if width == 0 or height == 0:
-        return []
-    most = max(_LARGEST_TILE // subpixels**2, 1)
-    longest = max(_LONGEST_TILE // subpixels, 1)
-    if width * height > most:
-        longest = min(longest, int(np.sqrt(most)))
-    w = -(-width // -(-width // longest))
-    h = min(max(most // w, 1), height, max(_LONGEST_TILE // subpixels, 1))
-    return [
-        (left + x, below + y, min(w, width - x), min(h, height - y))
-        for y in range(0, height, h)
-        for x in range(0, width, w)
-    ]
 
 
 def emitting(content, shining):

@@ -1,6 +1,6 @@
 """The plan of a frame: every number that drawing it needs, as a frozen value."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -94,8 +94,7 @@ class FramePlan:
     source : SampleSource or None
         Source of the lens samples.
     automatic : AutomaticSampling or None
-        The plan then has the samples up to the end of a round; see
-        `engine.planning.plan.extended`.
+        The plan then has the samples up to the end of a round; see `extended`.
     first : int
         First sample of the round: levels of detail and shared drawings are chosen for the samples
         from here on.
@@ -150,6 +149,25 @@ class FramePlan:
     def samples(self):
         """Number of lens samples."""
         return len(self.lens_positions)
+
+    def extended(self):
+        """Return the plan of the next round: twice the samples, the first half as they are.
+
+        Returns
+        -------
+        FramePlan
+            With `automatic` sampling; the plain frame of Fringe has a plan of its own.
+        """
+        drawn = self.source.draw(2 * self.samples)
+        chromatic = self.chromatic
+        if chromatic is not None:
+            chromatic = chromatic.with_samples(self.source.aberration, drawn.colors)
+        return replace(
+            self,
+            **drawn.arrays(self.width, self.height),
+            first=self.samples,
+            chromatic=chromatic,
+        )
 
     def weight(self, samples):
         """Return the summed weight of the first `samples` lens samples.

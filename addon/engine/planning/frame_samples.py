@@ -38,6 +38,27 @@ class FrameSamples:
     subsample_counts: np.ndarray
     colors: SpectralSamples | None
 
+    def arrays(self, width, height):
+        """Return the fields of a `FramePlan` that these samples give, by name.
+
+        Parameters
+        ----------
+        width, height : int
+            Of the rendered region, in pixels.
+
+        Returns
+        -------
+        dict of str to ndarray
+        """
+        return {
+            "lens_positions": self.lens_positions,
+            # A sample at +x in the pixel sees what lies to its right: the picture moves left.
+            "jitter": -2.0 * self.pixel_offsets / np.array([width, height]),
+            "subpixel_weights": self.subpixel_weights,
+            "subsample_offsets": self.subsample_offsets,
+            "subsample_counts": self.subsample_counts,
+        }
+
 
 @dataclass(frozen=True, eq=False)
 class SampleSource:

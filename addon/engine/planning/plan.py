@@ -218,7 +218,7 @@ def _plan(snapshot, sampling, automatic=None):
         orthographic=camera.orthographic,
         focus_distance=focus,
         subpixels=source.subpixels,
-        **_arrays(drawn, width, height),
+        **drawn.arrays(width, height),
         level_bias=sampling.level_bias if adaptive and sampling.uses_levels else None,
         least_triangles=sampling.least_triangles,
         reuse_grid=sampling.reuse_grid if adaptive else 0,
@@ -236,41 +236,6 @@ def _plan(snapshot, sampling, automatic=None):
         automatic=automatic,
         time_limit=sampling.time_limit,
         layered=plan_layered(sampling, source, snapshot.stack, projection),
-    )
-
-
-def _arrays(drawn, width, height):
-    return {
-        "lens_positions": drawn.lens_positions,
-        # A sample at +x in the pixel sees what lies to its right: the picture moves to the left.
-        "jitter": -2.0 * drawn.pixel_offsets / np.array([width, height]),
-        "subpixel_weights": drawn.subpixel_weights,
-        "subsample_offsets": drawn.subsample_offsets,
-        "subsample_counts": drawn.subsample_counts,
-    }
-
-
-def extended(plan):
-    """Extend a plan by the next round: twice the samples, of which the first half is the same.
-
-    Parameters
-    ----------
-    plan : FramePlan
-        With `automatic` sampling; the plain frame of Fringe has a plan of its own.
-
-    Returns
-    -------
-    FramePlan
-    """
-    drawn = plan.source.draw(2 * plan.samples)
-    chromatic = plan.chromatic
-    if chromatic is not None:
-        chromatic = chromatic.with_samples(plan.source.aberration, drawn.colors)
-    return replace(
-        plan,
-        **_arrays(drawn, plan.width, plan.height),
-        first=plan.samples,
-        chromatic=chromatic,
     )
 
 

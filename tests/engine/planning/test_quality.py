@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine.planning.plan import extended, plan_frame
+from addon.engine.planning.plan import plan_frame
 from addon.engine.planning.quality import largest_coc
 from addon.sampling.thin_lens import ThinLens
 from addon.snapshot.content import InstanceGroup, InstanceTable, MeshSnapshot, next_uid
@@ -94,7 +94,7 @@ def test_what_hardly_blurs_has_no_subsamples():
 def test_the_samples_of_a_plan_are_the_first_of_the_extended_one():
     plan = plan_frame(box_frame((0, 0, -1.5), (0.1, 0.1, 0.5), ThinLens(0.3, FOCUS)))
     assert plan.blurs
-    longer = extended(plan)
+    longer = plan.extended()
     assert (longer.first, longer.samples) == (16, 32)
     for name in ("lens_positions", "jitter", "subpixel_weights", "subsample_counts"):
         assert np.array_equal(getattr(longer, name)[:16], getattr(plan, name))

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine.bokeh import listing
-from addon.engine.planning import bokeh_search
+from addon.engine.bokeh import listing, search_tiles
 from addon.engine.planning.plan import plan_frame
 from addon.sampling.highlights import highlight_light
 from addon.sampling.iris import Iris
@@ -100,9 +99,9 @@ def test_light_from_outside_the_frame_reaches_in():
 
 def test_tiles_find_what_the_whole_raster_does(monkeypatch):
     whole = render_snapshot(with_bokeh(lamps()))["Bokeh"]
-    monkeypatch.setattr(bokeh_search, "_LARGEST_TILE", 1 << 14)
+    monkeypatch.setattr(search_tiles, "_LARGEST_TILE", 1 << 14)
     plan = plan_frame(with_bokeh(lamps())).bokeh
-    assert len(bokeh_search.tiles_of(plan.part, plan.subpixels)) > 3
+    assert len(search_tiles.tiles_of(plan.part, plan.subpixels)) > 3
     tiles = render_snapshot(with_bokeh(lamps()))["Bokeh"]
     # The same highlights in another order.
     assert tiles == pytest.approx(whole, abs=1e-5 * float(whole.max()))
