@@ -4,11 +4,16 @@ A raster counts texels: a lamp w texels wide covers w of them, or one more or le
 direction. The light that is found of a lamp is therefore scaled by the area of its triangles in the
 raster over its number of texels. Hidden texels are counted as well, so that a partly hidden lamp
 keeps the share of its light that is visible.
+
+The search sees lamps from the middle of the lens, which may see less of them than the rest, such as
+the face of a cube but none of its sides. The light is scaled by that as well.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+
+from ..planning.projected_area import projected_areas
 
 # A lamp thinner than this, in texels, may be missed altogether: then those that are found stand for
 # those that are missed, and are not scaled.
@@ -18,6 +23,9 @@ _LONGEST = 1024.0
 # Most triangles that are measured, those of the first lamps; where there are more, there are so
 # many lamps that the errors of their counts cancel in the sum.
 _MOST_TRIANGLES = 1 << 21
+# Most that the light of an instance grows by what the rest of the lens sees. Where surfaces as a
+# whole need more they are not splatted (see `engine.planning.projected_area`); one of many may.
+_MOST_GROWTH = 2.0
 # Triangles that are measured at once, to bound memory.
 _AT_ONCE = 1 << 16
 
@@ -34,12 +42,15 @@ class LampAreas:
         Summed area of the triangles, front and back facing, hidden or not, px^2.
     lower, upper : ndarray of shape (K, 2)
         Corners of their bounding rectangle, px.
+    growth : ndarray of shape (K,)
+        Mean of the area over the lens, relative to that from its middle.
     """
 
     rows: np.ndarray
     areas: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
+    growth: np.ndarray
 
     def in_tile(self, tile, subpixels, count):
         """Return the areas of the instances whose texels are counted in a tile.
@@ -69,6 +80,12 @@ class LampAreas:
         found[self.rows[used]] = areas[used]
         return found
 
+    def growths(self, count):
+        """Return what the light of each instance is multiplied by, shape (count,); 1 if unknown."""
+        found = np.ones(count)
+        found[self.rows] = self.growth
+        return found
+
     def any_cut(self, tiles, subpixels, areas):
         """Return whether a tile's edge cuts any instance that is counted.
 
@@ -85,10 +102,10 @@ class LampAreas:
         return bool((found[areas > 0.0] == 0).any())
 
 
-NO_AREAS = LampAreas(np.zeros(0, int), np.zeros(0), np.zeros((0, 2)), np.zeros((0, 2)))
+NO_AREAS = LampAreas(np.zeros(0, int), np.zeros(0), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
 
 
-def lamp_areas(content, surfaces, view, projection, size):
+def lamp_areas(content, surfaces, plan, projection, size):
     """Measure the areas in the raster of all instances with one of some surfaces.
 
     Parameters
@@ -96,8 +113,10 @@ def lamp_areas(content, surfaces, view, projection, size):
     content : SceneContent
     surfaces : set of (int, int)
         Group and slot; only their triangles count.
-    view, projection : ndarray of shape (4, 4)
-        World to camera space, and camera space to clip space of the raster.
+    plan : FramePlan
+        For its view and lens.
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the raster.
     size : tuple of 2 int
         Of the raster, px.
 
@@ -107,7 +126,7 @@ def lamp_areas(content, surfaces, view, projection, size):
         Instances that lie between the near and the far plane.
     """
     budget, found = _MOST_TRIANGLES, [NO_AREAS]
-    to_clip = np.asarray(projection, float) @ view
+    projection = np.asarray(projection, float)
     for number in sorted({number for number, _ in surfaces}):
         group = content.groups[number]
         mesh = content.meshes[group.mesh]
@@ -126,23 +145,29 @@ def lamp_areas(content, surfaces, view, projection, size):
         at_once = max(1, _AT_ONCE // len(triangles))
         for first in range(0, measured, at_once):
             rows = group.first + np.arange(first, min(first + at_once, measured))
-            clip = np.einsum("rab,vb->rva", to_clip @ content.instances.world[rows], points)
-            found.append(_areas_of(rows, clip, corners.reshape(-1, 3), size))
+            eye = np.einsum("rab,vb->rva", plan.view @ content.instances.world[rows], points)
+            found.append(_areas_of(rows, eye, corners.reshape(-1, 3), plan, projection, size))
     return LampAreas(
         *(
             np.concatenate([getattr(part, name) for part in found])
-            for name in ("rows", "areas", "lower", "upper")
+            for name in ("rows", "areas", "lower", "upper", "growth")
         )
     )
 
 
-def _areas_of(rows, clip, triangles, size):
-    """Measure instances by the corners of their triangles in clip space, shape (R, V, 4)."""
+def _areas_of(rows, eye, triangles, plan, projection, size):
+    """Measure instances by the corners of their triangles in camera space, shape (R, V, 4)."""
+    clip = eye @ projection.T
     w = clip[..., 3]
     whole = ((w > 0.0) & (np.abs(clip[..., 2]) <= w)).all(axis=1)
-    rows, clip = rows[whole], clip[whole]
+    rows, eye, clip = rows[whole], eye[whole], clip[whole]
     places = (clip[..., :2] / clip[..., 3:] * 0.5 + 0.5) * size
     a, b, c = (places[:, triangles[:, i]] for i in range(3))
     u, v = b - a, c - a
     areas = 0.5 * np.abs(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]).sum(axis=1)
-    return LampAreas(rows, areas, places.min(axis=1), places.max(axis=1))
+    corners = eye[:, triangles, :3]
+    lens = (plan.focus_distance, plan.lens_extent, plan.orthographic)
+    middle, mean = (area.sum(axis=1) for area in projected_areas(corners, *lens))
+    growth = np.minimum(mean / np.maximum(middle, 1e-300), _MOST_GROWTH)
+    growth = np.where(middle > 0.0, growth, 1.0)
+    return LampAreas(rows, areas, places.min(axis=1), places.max(axis=1), growth)

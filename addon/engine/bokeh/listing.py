@@ -113,8 +113,9 @@ class HighlightSearch:
         fine = search.subpixels
         room = int(np.clip(_ROOM * raster.width * raster.height * fine**2, _LEAST_ROOM, _MOST_ROOM))
         lists = highlights.FragmentLists(raster.width, raster.height, fine, room)
-        areas = search.areas.in_tile(search.part, fine, len(self._drawing.content.instances.world))
-        counts = highlights.TexelCounts(areas)
+        rows = len(self._drawing.content.instances.world)
+        areas = search.areas.in_tile(search.part, fine, rows)
+        counts = highlights.TexelCounts(areas, search.areas.growths(rows))
         # Where a tile's edge cuts a lamp, its texels are counted before any of its light is listed.
         cut = search.areas.any_cut(tiles, fine, areas)
         try:
@@ -141,7 +142,7 @@ class HighlightSearch:
         areas = NO_AREAS
         if not bokeh.draft:
             content, size = self._drawing.content, bokeh.whole[2:]
-            areas = lamp_areas(content, steady, self._plan.view, bokeh.projection, size)
+            areas = lamp_areas(content, steady, self._plan, bokeh.projection, size)
         searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone, areas)]
         if bokeh.mirroring:
             several = views if len(views) > 1 else alone

@@ -82,7 +82,7 @@ class FrameRenderer(ReadableFrame):
         target = surface_target.COLOR_AND_MATTES if self._mattes else surface_target.COLOR
         self._highlights = None
         if plan.bokeh:
-            target = surface_target.without_highlights(target)
+            target = surface_target.without_highlights(target, plan.bokeh.unsplit)
             self._highlights = highlight_buffer(plan.bokeh)
         if plan.chromatic:
             target = surface_target.in_wavelengths(target)

@@ -28,6 +28,7 @@ from .bokeh_search import (
     subpixels_of_lamps,
     subpixels_of_triangles,
 )
+from .projected_area import seen_from_edge
 
 # Depth that represents infinity, in focus distances: the circle of confusion differs by 1e-6.
 INFINITY = 1e6
@@ -46,11 +47,14 @@ class BokehPlan:
     ----------
     settings : BokehSettings
     shining : frozenset of (int, int)
-        Group and slot of the surfaces that may be brighter than the threshold.
+        Group and slot of the surfaces that may be brighter than the threshold and are splatted.
     mirroring : frozenset of (int, int)
         Those of them whose reflections depend on the place on the lens.
     uneven : frozenset of int
         Groups with shining surfaces whose light varies over the surface.
+    unsplit : frozenset of (int, int)
+        Group and slot of bright surfaces whose light the lens samples keep: the lens' middle, from
+        where highlights are searched, sees them from the edge.
     least_coc : float
         Radius of the circle of confusion from which on light is splatted, px.
     width, height : int
@@ -86,6 +90,7 @@ class BokehPlan:
     shining: frozenset[tuple[int, int]]
     mirroring: frozenset[tuple[int, int]]
     uneven: frozenset[int]
+    unsplit: frozenset[tuple[int, int]]
     least_coc: float
     width: int
     height: int
@@ -188,7 +193,9 @@ def plan_bokeh(snapshot, plan):
     if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
         return None
     least = least_splatted(plan)
-    shining = _shining(snapshot.content, settings.threshold)
+    bright = _shining(snapshot.content, settings.threshold)
+    unsplit = seen_from_edge(snapshot.content, bright, plan)
+    shining = bright - unsplit
     rows, _ = rows_of(snapshot.content, shining)
     seen = extents(corners_of(snapshot.content, rows), plan.view)
     colors = None
@@ -217,6 +224,7 @@ def plan_bokeh(snapshot, plan):
         shining=shining,
         mirroring=mirroring,
         uneven=_uneven(snapshot.content, shining),
+        unsplit=unsplit,
         least_coc=least,
         width=width,
         height=height,

@@ -47,6 +47,7 @@ def plan_stack_bokeh(snapshot, plan):
         shining=frozenset(),
         mirroring=frozenset(),
         uneven=frozenset(),
+        unsplit=frozenset(),
         least_coc=least,
         width=width,
         height=height,

@@ -160,14 +160,19 @@ class TexelCounts:
     areas : sequence of float
         Of each row of the instance table, in texels: the light that is found of it is scaled by
         this area over the counted texels; 0 leaves the light as it is.
+    growth : sequence of float, optional
+        Of each row: another factor of its light.
     """
 
-    def __init__(self, areas=()):
+    def __init__(self, areas=(), growth=()):
         rows = max(1, -(-len(areas) // COLUMNS))
-        table = np.zeros((rows, COLUMNS, 1), np.float32)
-        table.reshape(-1)[: len(areas)] = areas
-        self.areas = texture_2d(table, "R32F")
-        self._none = texture_2d(np.zeros_like(table), "R32F")
+        table = np.zeros((rows * COLUMNS, 2), np.float32)
+        table[:, 1] = 1.0
+        table[: len(areas), 0] = areas
+        table[: len(growth), 1] = growth
+        table = table.reshape(rows, COLUMNS, 2)
+        self.areas = texture_2d(table, "RG32F")
+        self._none = texture_2d(np.zeros_like(table), "RG32F")
         self._targets = Targets(COLUMNS, rows, [TargetSpec("hits", "R32UI")])
         self.hits.clear(format="UINT", value=(0,))
 

@@ -186,7 +186,7 @@ def build_glow_draws(content, buffers, target=COLOR):
 
 def _list_draws(content, buffers, target, glow, wanted=None):
     draws = []
-    shaders, made = {}, {}
+    kinds, made = {}, {}
     # Where two surfaces lie at one depth, the first one drawn is seen: the order must be that of
     # the content, whenever its parts were read.
     materials, meshes = (
@@ -201,13 +201,17 @@ def _list_draws(content, buffers, target, glow, wanted=None):
             material = content.materials[group.materials[slot]]
             # Many groups, and all levels of one, are drawn alike.
             widths = tuple((key, values.shape[1]) for key, values in mesh.attributes.items())
-            alike = (material.uid, widths, group.holdout, mesh.motion is not None)
+            split = material.highlights and (number, slot) not in target.unsplit
+            alike = (material.uid, widths, group.holdout, mesh.motion is not None, split)
             if alike not in made:
-                made[alike] = _code_and_shader(material, mesh, group.holdout, target, glow)
-            code, shader = made[alike]
+                code, shader, kind = _code_and_shader(
+                    material, mesh, group.holdout, target, glow, split
+                )
+                # What is split must not change the order either.
+                made[alike] = code, shader, kinds.setdefault(kind, len(kinds))
+            code, shader, order = made[alike]
             if shader is None:
                 continue
-            order = shaders.setdefault(id(shader), len(shaders))
             constants, textures = None, ()
             transparent = code.transparent and not group.holdout
             shaded = target.shades and not group.holdout
@@ -240,15 +244,17 @@ def _list_draws(content, buffers, target, glow, wanted=None):
     return [draw for _, draw in draws]
 
 
-def _code_and_shader(material, mesh, holdout, target, glow):
-    """Return a surface's code, and its shader or None where it is not drawn."""
+def _code_and_shader(material, mesh, holdout, target, glow, split):
+    """Return a surface's code, its shader or None where it is not drawn, and the kind of shader.
+
+    The kind is that of the target, the same whether the surface's own light is split or not.
+    """
     code = surface_code.generate(material.graph, mesh.attributes)
     if glow and (holdout or not code.glows):
-        return code, None
-    drawn = target if material.highlights else whole(target)
-    deforms = mesh.motion is not None
-    info = surface_info(drawn, code, mesh.attributes, holdout, deforms, glow)
-    return code, compile_shader(info)
+        return code, None, None
+    how = (code, mesh.attributes, holdout, mesh.motion is not None, glow)
+    kind = surface_info(target, *how)
+    return code, compile_shader(kind if split else surface_info(whole(target), *how)), kind
 
 
 def _levels_of_groups(content, buffers):

@@ -36,6 +36,8 @@ class SurfaceTarget:
         It calls ``surface_closure()`` for every surface, not only for transparent ones.
     splits : bool
         It splits light at the highlight threshold; reads ``highlight_buf``.
+    unsplit : frozenset of (int, int)
+        Group and slot of surfaces whose light it does not split.
     seen : bool
         It is drawn through the lens: reads ``view_buf``, `lens_sample` and `sample_index`.
     vertex : str
@@ -56,6 +58,7 @@ class SurfaceTarget:
     names_material: bool = False
     shades: bool = True
     splits: bool = False
+    unsplit: frozenset[tuple[int, int]] = frozenset()
     seen: bool = True
     vertex: str = "passes/surface/surface_vert.glsl"
 
@@ -72,13 +75,24 @@ COLOR_AND_MATTES = SurfaceTarget(
 SPLIT = "HIGHLIGHTS"
 
 
-def without_highlights(target):
-    """Return a target of the colour picture from which the splatted light is left out."""
-    return replace(target, splits=True, defines=(*target.defines, SPLIT))
+def without_highlights(target, unsplit=frozenset()):
+    """Return a target of the colour picture from which the splatted light is left out.
+
+    Parameters
+    ----------
+    target : SurfaceTarget
+    unsplit : frozenset of (int, int)
+        Group and slot of surfaces of which nothing is splatted.
+
+    Returns
+    -------
+    SurfaceTarget
+    """
+    return replace(target, splits=True, unsplit=unsplit, defines=(*target.defines, SPLIT))
 
 
 def whole(target):
-    """Return the target for a material whose light is never splatted."""
+    """Return the target for a surface whose light is not splatted."""
     if not target.splits:
         return target
     defines = tuple(name for name in target.defines if name != SPLIT)

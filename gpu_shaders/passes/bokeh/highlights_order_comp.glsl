@@ -7,7 +7,7 @@
 // A thread for each fragment; the thread of a texel's last fragment sorts the texel.
 // Inputs: nodes_tx, heads_img, light_img (see highlights_append; fragments without light only dim); scene_tx (window depth of the
 // nearest opaque surface); areas_tx and hits_tx (of each instance: area in the raster, 0 where it is
-// not known, and number of its texels there); view_buf (of the raster), highlight_buf; number (of fragments); layers
+// not known, its growth over the lens, and number of its texels in the raster); view_buf (of the raster), highlight_buf; number (of fragments); layers
 // (that are kept of a texel, one for all see-through fragments that are put at one depth); same_view
 // (parallax, px, from which on visibility counts a surface in front). WORLD: the world at infinity, nothing in front. CHROMATIC: chromatic_buf,
 // field_tx (field table) and lens_view (xy: place on the lens that the raster was seen from, m).
@@ -129,15 +129,16 @@ void dim(uint first, uint start)
   }
 }
 
-// Factor of the light of an instance's texels: its area in the raster over its number of texels.
+// Factor of the light of an instance's texels: its area in the raster over its number of texels, times
+// its area over the lens relative to that from the middle.
 float area_per_hit(uint instance)
 {
   if (instance == 0u) {
     return 1.0;
   }
-  float area = texelFetch(areas_tx, list_texel(instance - 1u), 0).x;
+  vec2 area = texelFetch(areas_tx, list_texel(instance - 1u), 0).xy;
   uint hits = texelFetch(hits_tx, list_texel(instance - 1u), 0).x;
-  return (area > 0.0 && hits > 0u) ? area / float(hits) : 1.0;
+  return area.y * ((area.x > 0.0 && hits > 0u) ? area.x / float(hits) : 1.0);
 }
 #endif
 

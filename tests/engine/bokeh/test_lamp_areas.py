@@ -1,6 +1,7 @@
 """The areas that lamps have in the raster of the search."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,14 +15,20 @@ TRIANGLE = np.array([[-0.1, -0.1, -8.0], [0.3, -0.1, -8.0], [-0.1, 0.1, -8.0]])
 WHITE = (5.0, 5.0, 5.0)
 
 
-def measure(corners, projection=None, surfaces=None, world=None):
+def measure(corners, projection=None, surfaces=None, world=None, lens=0.05):
     content = triangles_snapshot(corners, [WHITE] * len(corners), WIDTH, HEIGHT).content
     if world is not None:
         instances = replace(content.instances, world=np.asarray(world, np.float32))
         content = replace(content, instances=instances)
     surfaces = {(i, 0) for i in range(len(corners))} if surfaces is None else surfaces
     projection = perspective(WIDTH, HEIGHT) if projection is None else projection
-    return lamp_areas(content, surfaces, np.eye(4), projection, SIZE)
+    plan = SimpleNamespace(
+        view=np.eye(4),
+        focus_distance=4.0,
+        lens_extent=np.full(2, lens),
+        orthographic=projection[3, 3] == 1.0,
+    )
+    return lamp_areas(content, surfaces, plan, projection, SIZE)
 
 
 @pytest.mark.parametrize("projection", [orthographic, perspective])
@@ -70,3 +77,15 @@ def test_a_tile_counts_what_lies_in_it_and_cannot_be_missed():
     assert not found.any_cut([tile], 8, areas)
     assert not found.in_tile(tile, 1, 3).any()
     assert not found.in_tile(tile, 512, 3).any()
+
+
+def test_light_grows_by_what_the_rest_of_the_lens_sees_besides():
+    assert measure([TRIANGLE]).growths(2).tolist() == [1.0, 1.0]
+    # Its plane passes the middle of the lens at 0.02 m.
+    steep = np.array([[0.02, -0.1, -8.0], [0.02, -0.1, -12.0], [0.02, 0.1, -8.0]])
+    growths = [measure([steep], lens=lens).growths(1)[0] for lens in (0.01, 0.03, 0.04, 0.2)]
+    assert growths[0] == 1.0
+    # A larger lens sees more of it, up to the limit.
+    assert 1.0 < growths[1] < growths[2] < growths[3] == 2.0
+    # Where the middle sees nothing, there is nothing to grow.
+    assert measure([steep - [0.02, 0.0, 0.0]]).growths(1).tolist() == [1.0]
