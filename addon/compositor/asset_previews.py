@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..lens_bokeh.look.appearance import Appearance
-from ..lens_bokeh.look.iris_mask import BladedIris
 from ..lens_bokeh.look.sprite import sprite
+from ..lens_bokeh.openings.blades import BladedIris
 from .node_groups import FRINGE, MIX, SPRITE
 
 SIZE = 128

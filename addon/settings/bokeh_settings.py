@@ -66,13 +66,19 @@ APPEARANCE = Section("Appearance", "Camera Properties > Bokeh > Appearance", (
     Setting("profile_strength", 1.0, "Lens Profile", "How much of the real lens' own distribution"
             " of light a disc shows: 1 as it is traced, 0 an even disc", limits=(0.0, 1.0),
             subtype="FACTOR", field="profile_strength", told="bokeh.profile_strength", kept=True),
+))
+
+IRIS = Section("Iris", "Camera Properties > Lens > Iris", (
     Setting("blade_curvature", 0.0, "Blade Curvature", "How round the iris' blades are: 0"
             " straight, 1 a circle", limits=(0.0, 1.0), subtype="FACTOR",
-            told="bokeh.blade_curvature",
-            kept=True),
+            told="blade_curvature", kept=True),
+    Setting("use_round_stop", True, "Round Wide Open", "With a real lens: its blades lie behind a"
+            " round stop, so that the opening is round at the lens' widest f-number and shows"
+            " blades as it is stopped down. Off: the same blades at every f-number, as with a thin"
+            " lens", told="round_wide_open", kept=True),
     Setting("iris_image", None, "Iris Image", "Picture of the opening, white where light passes;"
             " its longer side is the opening's diameter. It takes the place of the blades",
-            told="bokeh.iris_image"),
+            told="iris_image"),
 ))
 
 FIELD = Section("Vignetting", "Camera Properties > Bokeh > Appearance > Vignetting", (
@@ -132,4 +138,4 @@ DEBUG = Section("Debug view", "Camera Properties > Bokeh > Debug View", (
 ))
 # fmt: on
 
-BOKEH = (LIGHT, SEARCH, APPEARANCE, FIELD, TEXTURE, RINGS, DEBUG)
+BOKEH = (LIGHT, SEARCH, APPEARANCE, IRIS, FIELD, TEXTURE, RINGS, DEBUG)

@@ -38,6 +38,11 @@ class LensSettings:
         """Whether bokeh discs can be traced through it; else they are those of a thin lens."""
         return self.prescription.configuration(self.label).of_revolution
 
+    @property
+    def closing(self):
+        """F-number over that of the lens wide open."""
+        return max(self.f_number / self.prescription.configuration(self.label).f_number, 1.0)
+
     def limits(self, f_number):
         """Whether `f_number` asks for a wider opening than the lens has (`self.f_number`)."""
         return f_number < self.f_number * (1.0 - _SAME_F_NUMBER)

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from addon.lens_bokeh.look.iris_mask import BladedIris
+from addon.lens_bokeh.openings.blades import BladedIris
 from addon.optics.focus import focused
 from addon.optics.glass import REFERENCE_WAVELENGTH_NM
 from addon.optics.media import indices
@@ -239,7 +239,8 @@ def shader_source(lens, sensor_size, focal_length, offset=(0.0, 0.0), table=None
         "offset_x": offset[0],
         "offset_y": offset[1],
         "box": box,
-        "blades": iris.blades,
+        "blades": 0 if iris.is_round else iris.blades,
+        "blade_radius": iris.blade_radius,
         "blade_curvature": iris.curvature,
         "rotation": iris.rotation,
     }
@@ -266,14 +267,16 @@ _LOOK_UP = """float top = 0.0;
                       "interp", "closest", "wrap", "clamp", "alpha", top);"""
 
 _SHADER = """
-/* Signed clearance of an iris of curved blades of unit circumradius. */
+/* Signed clearance of curved blades over a round stop of unit radius. */
 float iris_clearance(float x, float y)
 {
   int blades = %(blades)d;
   float radius = sqrt(x * x + y * y);
+  float stop = 1.0 - radius;
   if (blades == 0) {
-    return 1.0 - radius;
+    return stop;
   }
+  radius /= %(blade_radius).9g;
   float k = %(blade_curvature).9g;
   float part = M_PI / blades;
   float angle = mod(atan2(y, x) - %(rotation).9g + part, 2.0 * part) - part;
@@ -281,7 +284,7 @@ float iris_clearance(float x, float y)
   float t = radius * sin(angle);
   float w = sqrt(1.0 - k * k * sin(part) * sin(part));
   float upper = k * (sin(part) * sin(part) - q * q - t * t) - 2.0 * q * w;
-  return upper / (1.0 + hypot(k * q + w, k * t));
+  return min(stop, %(blade_radius).9g * upper / (1.0 + hypot(k * q + w, k * t)));
 }
 
 shader traced_lens(output point position = point(0.0),

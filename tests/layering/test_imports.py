@@ -26,7 +26,9 @@ ROOMS = {
     "lens_bokeh.tables": ("optics", "optics.rays", "sampling"),
     # What a real lens does to lens samples.
     "lens_bokeh.samples": ("optics", "optics.rays", "lens_bokeh.tables"),
-    "lens_bokeh.look": ("optics", "lens_bokeh.tables"),
+    # The shape of the opening, of lens samples and discs alike.
+    "lens_bokeh.openings": ("sampling",),
+    "lens_bokeh.look": ("optics", "lens_bokeh.openings", "lens_bokeh.tables"),
     "lens_io.glasses": ("optics", "sampling"),
     "lens_io.toml": ("optics", "optics.rays", "lens_io.glasses"),
     "lens_io.importers.draft": ("optics", "lens_io.glasses", "lens_io.toml"),
@@ -60,8 +62,8 @@ ROOMS = {
     "scene.images": ("snapshot",),
     "scene.nodes": ("snapshot", "scene.images"),
     "scene.camera": (
-        *("optics", "optics.rays", "sampling", "lens_bokeh.look", "lens_io", "lens_io.glasses"),
-        *("settings", "snapshot", "scene.images"),
+        *("optics", "optics.rays", "sampling", "lens_bokeh.openings", "lens_bokeh.look"),
+        *("lens_io", "lens_io.glasses", "settings", "snapshot", "scene.images"),
     ),
     "scene.shading": ("snapshot", "scene.images", "scene.nodes"),
     "scene.geometry": ("snapshot", "scene.camera", "scene.shading"),
@@ -79,7 +81,8 @@ ROOMS = {
         "engine.drawing",
     ),
     "engine.bokeh": (
-        *("device", "optics", "lens_bokeh.look", "lens_bokeh.tables", "lens_io"),
+        *("device", "optics", "lens_bokeh.openings", "lens_bokeh.look", "lens_bokeh.tables"),
+        *("lens_io",),
         *("passes", "passes.surface", "passes.bokeh"),
         *("engine.layered", "engine.visibility"),
     ),
@@ -89,7 +92,15 @@ ROOMS = {
     ),
     # A captured picture instead of a scene.
     "engine.refocus": (
-        *("files", "layers", "device", "sampling", "snapshot", "scene.camera"),
+        *(
+            "files",
+            "layers",
+            "device",
+            "sampling",
+            "snapshot",
+            "lens_bokeh.openings",
+            "scene.camera",
+        ),
         *("engine.planning", "engine.drawing", "engine.layered", "engine.frame"),
     ),
     "engine": (
@@ -99,10 +110,12 @@ ROOMS = {
     # Another engine's pictures, or ours, as depth layers.
     "capture": ("files", "sampling", "settings", "layers", "scene.camera"),
     # Blender's compositor: node groups, wiring, the traced sprite as an image.
-    "compositor": ("lens_bokeh.look", "scene.camera", "engine", "engine.bokeh"),
+    "compositor": (
+        *("lens_bokeh.openings", "lens_bokeh.look", "scene.camera", "engine", "engine.bokeh"),
+    ),
     # What a user meets.
     "ui.jobs": ("layers", "engine", "engine.refocus"),
-    "ui.previews": ("lens_bokeh.look", "plots", "scene.camera", "ui.jobs"),
+    "ui.previews": ("lens_bokeh.openings", "lens_bokeh.look", "plots", "scene.camera", "ui.jobs"),
     "ui.operators": (
         *("optics", "sampling", "lens_io", "lens_io.importers.draft"),
         *("files", "layers", "scene.camera", "engine", "engine.refocus", "capture", "ui.jobs"),
@@ -117,8 +130,8 @@ ROOMS = {
     "ui": (),
     "cli.words": ("files",),
     "cli.render": (
-        *("files", "device", "sampling", "lens_bokeh.look", "lens_io", "scene", "scene.camera"),
-        *("settings", "engine", "cli.words"),
+        *("files", "device", "sampling", "lens_bokeh.openings", "lens_io", "scene"),
+        *("scene.camera", "settings", "engine", "cli.words"),
     ),
     "cli.lens": (
         *("files", "optics", "optics.rays", "lens_bokeh.tables", "plots", "scene.camera"),

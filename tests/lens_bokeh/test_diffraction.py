@@ -9,7 +9,8 @@ from addon.lens_bokeh.look.diffraction import (
     fresnel_number,
     pattern_extent,
 )
-from addon.lens_bokeh.look.iris_mask import BladedIris, iris_mask
+from addon.lens_bokeh.openings.blades import BladedIris
+from addon.lens_bokeh.openings.masks import iris_mask
 
 ROUND = BladedIris()
 

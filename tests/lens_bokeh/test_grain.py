@@ -3,7 +3,7 @@ import pytest
 
 from addon.errors import InputError
 from addon.lens_bokeh.look.grain import Grain, transmission
-from addon.lens_bokeh.look.iris_mask import texel_centres
+from addon.lens_bokeh.openings.masks import texel_centres
 
 DUSTY = Grain(strength=0.2, cell=0.06, dust=20, seed=5)
 

@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from addon.errors import InputError
-from addon.lens_bokeh.look.iris_mask import texel_centres
 from addon.lens_bokeh.look.onion import (
     OnionRings,
     aspheric_surfaces,
@@ -10,6 +9,7 @@ from addon.lens_bokeh.look.onion import (
     rings_of_lens,
     transmission,
 )
+from addon.lens_bokeh.openings.masks import texel_centres
 from addon.lens_io.toml.toml_reader import read_lens
 from addon.optics.paraxial import first_order
 from addon.optics.rays.trace import Rays, trace

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from addon.lens_bokeh.look.iris_mask import BladedIris
 from addon.lens_bokeh.look.opening import LAYERS, LEAST_BLUR, extent, opening_layers
+from addon.lens_bokeh.openings.blades import BladedIris
 
 SIZE = 256
 

@@ -8,8 +8,9 @@ import pytest
 from addon.errors import InputError, RenderCancelledError
 from addon.lens_bokeh.look.appearance import Appearance
 from addon.lens_bokeh.look.deposit import open_weights, pattern
-from addon.lens_bokeh.look.iris_mask import BladedIris, iris_mask
 from addon.lens_bokeh.look.sprite import sprite, sprite_of_beam
+from addon.lens_bokeh.openings.blades import BladedIris
+from addon.lens_bokeh.openings.masks import iris_mask
 from addon.lens_bokeh.tables.pupil_beam import beam_from_infinity, beam_from_point
 from addon.lens_bokeh.tables.pupil_box import beam_rays
 from addon.lens_bokeh.tables.pupil_parts import pack, unpack

@@ -7,7 +7,6 @@ from addon.engine.bokeh.lens_profiles import lens_pupil
 from addon.engine.bokeh.look import describe_look
 from addon.lens_bokeh.look.appearance import Appearance
 from addon.lens_bokeh.look.deposit import deposit, open_weights
-from addon.lens_bokeh.look.iris_mask import BladedIris
 from addon.lens_bokeh.look.splat_pupil import (
     AZIMUTHS,
     BLURS,
@@ -19,6 +18,7 @@ from addon.lens_bokeh.look.splat_pupil import (
     reach,
 )
 from addon.lens_bokeh.look.tile_drawing import draw_tile
+from addon.lens_bokeh.openings.blades import BladedIris
 from addon.lens_bokeh.tables.pupil_beam import beam_from_point
 from tests.splat_pictures import library_lens, plan_of
 

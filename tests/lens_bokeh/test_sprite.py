@@ -8,10 +8,11 @@ from hypothesis import strategies as st
 from addon.errors import InputError
 from addon.lens_bokeh.look.appearance import Appearance, Diffraction
 from addon.lens_bokeh.look.grain import Grain
-from addon.lens_bokeh.look.iris_mask import BladedIris, PictureIris
 from addon.lens_bokeh.look.onion import OnionRings
 from addon.lens_bokeh.look.sprite import sprite
 from addon.lens_bokeh.look.vignetting_model import cat_eye
+from addon.lens_bokeh.openings.blades import BladedIris
+from addon.lens_bokeh.openings.pictures import PictureIris
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from addon.errors import InputError
-from addon.lens_bokeh.look.iris_mask import texel_centres
 from addon.lens_bokeh.look.vignetting_model import Rim, cat_eye, transmission
+from addon.lens_bokeh.openings.masks import texel_centres
 
 POINTS = texel_centres(256, 1.0)
 TEXEL = 2.0 / 256

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from addon.errors import RenderCancelledError
-from addon.lens_bokeh.look.iris_mask import BladedIris
+from addon.lens_bokeh.openings.blades import BladedIris
 from addon.lens_io.library import SHIPPED_FOLDER
 from addon.lens_io.toml.toml_reader import read_lens
 from addon.plots import lens_pictures

@@ -6,8 +6,8 @@ import pytest
 from addon.engine.bokeh.marks import FATE_COLORS
 from addon.lens_bokeh.look.appearance import Appearance
 from addon.lens_bokeh.look.grain import Grain
-from addon.lens_bokeh.look.iris_mask import BladedIris
 from addon.lens_bokeh.look.vignetting_model import cat_eye
+from addon.lens_bokeh.openings.blades import BladedIris
 from addon.passes.bokeh.marks import FATES
 from addon.ui.panels import bokeh_panel
 from addon.ui.panels.bokeh_panel import counts_as_lines

@@ -149,12 +149,16 @@ def test_the_iris_of_the_lens_is_taken_over(camera, aplanat_bpy, own_folder):
     head, _, tail = text.partition("[diaphragm]")
     tail = tail[tail.index("[[surface]]") :]
     own = own_folder / "many.toml"
-    own.write_text(f"{head}[diaphragm]\nblades = 20\nrotation_deg = 270.0\n\n{tail}", "utf-8")
+    own.write_text(
+        f"{head}[diaphragm]\nblades = 20\nblade_curvature = 0.4\nrotation_deg = 270.0\n\n{tail}",
+        "utf-8",
+    )
     resources().lenses.reload()
     camera.aplanat.lens = "many"
     assert aplanat_bpy.ops.camera.aplanat_use_iris() == {"FINISHED"}
     assert camera.dof.aperture_blades == 16
     assert camera.dof.aperture_rotation == pytest.approx(-math.pi / 2)
+    assert camera.aplanat.bokeh.blade_curvature == pytest.approx(0.4)
 
 
 def test_a_lens_file_is_imported_and_used(camera, aplanat_bpy, own_folder, shared):

@@ -67,8 +67,6 @@ _BOKEH_TRADES = {
 _PLAIN_LOOKS = {
     "gain": 1.0,
     "hardness": 0.0,
-    "iris_image": None,
-    "blade_curvature": 0.0,
     "grain": 0.0,
     "dust": 0.0,
     "diffraction": 0.0,

@@ -73,7 +73,7 @@ class LensSource:
         with _captured_camera(stack) as camera:
             found, problems = self._read(stack, camera)
         # With all digits.
-        iris = found.iris if self._arguments.blades is not None else None
+        iris = found.iris if self._arguments.blades is not None or found.iris.opening else None
         values = {"focus_distance": None, "f_stop": None, "iris": iris}
         return self._with_numbers(replace(found, **values)), problems
 

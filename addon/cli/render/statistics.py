@@ -7,13 +7,14 @@ import bpy
 from ...device.context import device_name
 from ...engine.views import views_of
 from ...files.version import version
-from ...lens_bokeh.look.iris_mask import PictureIris
+from ...lens_bokeh.openings.pictures import PictureIris
 from ...sampling.chromatic import RGB_WAVELENGTHS_NM
 from ...scene.camera.bokeh import corner_tangent, read_bokeh
 from ...scene.camera.breathing import read_breathing
 from ...scene.camera.camera import focus_distance
 from ...scene.camera.chromatic import read_chromatic
 from ...scene.camera.distortion import read_distortion
+from ...scene.camera.irises import read_opening
 from ...scene.camera.lenses import read_real_lens
 from ...scene.settings import read_passes, read_sampling
 from ...settings.bokeh_settings import BOKEH
@@ -44,6 +45,7 @@ def settings_in_force(scene, sources, arguments=None):
     dof = data.dof
     focus = dof.focus_object
     lens, _ = read_real_lens(data, sources.shelf)
+    opening, _ = read_opening(data, lens, sources.irises)
     return {
         **_sampling(scene),
         "filter": told(scene.aplanat.pixel_filter),
@@ -86,9 +88,10 @@ def settings_in_force(scene, sources, arguments=None):
         "aperture_blades": dof.aperture_blades,
         "aperture_rotation": dof.aperture_rotation,
         "aperture_ratio": dof.aperture_ratio,
+        **_iris(data, opening),
         "breathing": _breathing(depsgraph, camera, lens),
         "distortion": _distortion(scene, data, lens),
-        "bokeh": _bokeh(scene, data, lens, sources.irises),
+        "bokeh": _bokeh(scene, data, lens, opening),
         "chromatic": _chromatic(data, lens),
         "amplify_whites": scene.world.aplanat.amplification if scene.world else 0.0,
         "view_transform": scene.view_settings.view_transform,
@@ -147,20 +150,30 @@ def _distortion(scene, data, lens):
     return {"source": told(data.aplanat.distortion), "terms": list(terms)}
 
 
-def _bokeh(scene, data, lens, irises):
+def _iris(data, opening):
+    if isinstance(opening, PictureIris):
+        name = data.aplanat.bokeh.iris_image.name
+        return {"iris_image": name, "blade_curvature": None, "round_wide_open": None}
+    return {
+        "iris_image": None,
+        "blade_curvature": opening.curvature,
+        "round_wide_open": opening.closing is not None,
+    }
+
+
+def _bokeh(scene, data, lens, opening):
     own = scene.aplanat
-    bokeh, _ = read_bokeh(data, lens, corner_tangent(data, scene), irises)
+    bokeh, _ = read_bokeh(data, lens, corner_tangent(data, scene), opening)
     if bokeh is None or (own.method == "REFERENCE" and not own.use_reference_bokeh):
         return None
-    look = bokeh.appearance
-    picture = isinstance(look.iris, PictureIris)
+    look, iris = bokeh.appearance, _iris(data, opening)
     return {
         **told_by(bokeh, *BOKEH),
         "cluster_levels": bokeh.cluster_levels if bokeh.model == "CLUSTERED" else 0,
         "hardness": look.edge,
         "profile_strength": bokeh.profile_strength if lens and lens.shapes_bokeh else None,
-        "iris_image": data.aplanat.bokeh.iris_image.name if picture else None,
-        "blade_curvature": None if picture else look.iris.curvature,
+        # As Aplanat told them before the iris was one of lens samples, too.
+        **{name: iris[name] for name in ("iris_image", "blade_curvature")},
         "vignetting": bokeh.vignetting.lower(),
         "grain": look.grain.strength if look.grain else 0.0,
         "dust": look.grain.dust if look.grain else 0,

@@ -16,7 +16,6 @@ from ...device.textures import texture_2d, texture_array
 from ...device.uniforms import uniform_buffer
 from ...errors import AplanatError
 from ...lens_bokeh.look import splat_pupil, splat_rims
-from ...lens_bokeh.look.iris_mask import BladedIris, texel_centres
 from ...lens_bokeh.look.opening import LAYERS, LEAST_BLUR, layers_of_mask
 from ...lens_bokeh.look.splat_profile import (
     distance_from_h,
@@ -25,6 +24,9 @@ from ...lens_bokeh.look.splat_profile import (
     rows_of_edge,
     rows_of_lens,
 )
+from ...lens_bokeh.openings.blades import BladedIris
+from ...lens_bokeh.openings.masks import texel_centres
+from ...lens_bokeh.openings.shapes import opening_of
 from ...lens_bokeh.tables.pupil_tracing import build_pupil_tables
 from ...optics.focus import focused
 from ...passes.bokeh.splat import MOST_RIMS, SPLAT_PARAMS
@@ -227,9 +229,9 @@ def _texture(array):
 
 
 def _appearance(appearance, iris):
-    """Return an appearance with the camera's own iris where it has no iris image."""
-    if appearance.iris == BladedIris() and iris.blades >= 3:
-        appearance = replace(appearance, iris=BladedIris(iris.blades, 0.0, iris.rotation))
+    """Return an appearance with the opening of the lens samples where it has none of its own."""
+    if appearance.iris == BladedIris():
+        appearance = replace(appearance, iris=opening_of(iris))
     # Textures hold the opening without the anamorphic ratio, which the shader applies.
     return replace(appearance, anamorphic_ratio=1.0)
 

@@ -48,7 +48,9 @@ class SubsampleBlur:
         if wavelengths:
             # Samples that share their place on the lens count once.
             places /= GROUP
-        self._cell = float(np.sqrt(np.pi * plan.lens_extent.prod() / places))
+        lens = plan.source and plan.source.lens
+        area = lens.iris.shared_area if lens else np.pi
+        self._cell = float(np.sqrt(area * plan.lens_extent.prod() / places))
         # Levels of means for the widest footprint of a cell of the lens.
         widest = self._cell / plan.lens_extent.max() * blur
         self._top = min(max(0, int(np.ceil(np.log2(max(widest, 1.0))))), _MOST_LEVELS)

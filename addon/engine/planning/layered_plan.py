@@ -74,7 +74,7 @@ def plan_layered(sampling, source, stack=None, projection=None):
     if source.lens is not None and sampling.cones:
         different = len(np.unique(places[0], axis=0))
         extent = source.lens.aperture_radius**2 / source.lens.iris.ratio
-        cell = float(np.sqrt(np.pi * extent / different))
+        cell = float(np.sqrt(source.lens.iris.shared_area * extent / different))
     if stack is not None:
         origin = _origin(stack, projection)
         return LayeredPlan(len(stack.layers), places, cell, stack=stack, origin=origin)

@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...sampling.iris import Iris
+from ...lens_bokeh.openings.shapes import iris_of
 from ...scene.camera.bokeh import read_bokeh
 from ...scene.camera.camera import CameraSources, focus_distance
 from ...scene.camera.chromatic import read_chromatic
 from ...scene.camera.distortion import read_distortion
+from ...scene.camera.irises import read_opening
 from ...scene.camera.lenses import read_real_lens
 from ..planning.field_table import picture_radius
 from .settings import RefocusSettings
@@ -49,13 +50,14 @@ def camera_settings(stack, depsgraph, camera, sources=None, samples=128, seed=0)
     if chromatic is not None:
         focal_length = 1.0 if captured.orthographic else captured.focal_length_mm / 1000.0
         chromatic = replace(chromatic, focal_length=focal_length)
-    bokeh, of_bokeh = read_bokeh(data, real_lens, corner, sources.irises)
+    opening, of_iris = read_opening(data, real_lens, sources.irises)
+    bokeh, of_bokeh = read_bokeh(data, real_lens, corner, opening)
     distortion, of_distortion = read_distortion(data, real_lens, corner)
     dof = data.dof
     settings = RefocusSettings(
         focus_distance=focus,
         f_stop=dof.aperture_fstop,
-        iris=Iris(dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio),
+        iris=iris_of(opening, dof.aperture_rotation, dof.aperture_ratio),
         real_lens=real_lens,
         bokeh=bokeh,
         chromatic=chromatic,
@@ -63,5 +65,5 @@ def camera_settings(stack, depsgraph, camera, sources=None, samples=128, seed=0)
         samples=samples,
         seed=seed,
     )
-    problems = (*of_lens, *of_chromatic, *of_bokeh, *of_distortion)
+    problems = (*of_lens, *of_iris, *of_chromatic, *of_bokeh, *of_distortion)
     return settings, tuple(f"camera '{camera.name}': {line}" for line in problems)

@@ -1,7 +1,5 @@
 """A captured picture seen through the lens again: sample by sample, with ever other settings."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from ...device import keeping
@@ -15,7 +13,7 @@ from ..frame.pipeline import FrameRenderer
 from ..layered.layer_raster import clipped_projection
 from ..layered.stack_layers import StackLayers, stack_far, stack_near
 from ..planning.plan import plan_frame
-from .settings import f_stop_of, lens_of
+from .settings import bokeh_of, lens_of, real_lens_of
 
 # Lens samples between two looks at whether to go on.
 _STRETCH = 16
@@ -49,16 +47,13 @@ def refocus_snapshot(stack, settings, content=None):
         # The far plane at infinity, where the world is.
         projection[2, 2:] = -1.0, -2.0 * near
     view = np.eye(4) if stack.camera.view is None else np.array(stack.camera.view, np.float64)
-    real_lens = settings.real_lens
-    if real_lens is not None:
-        real_lens = replace(real_lens, f_number=f_stop_of(stack, settings))
     camera = Camera(
         view=view,
         projection=projection,
         lens=lens_of(stack, settings),
         orthographic=stack.camera.orthographic,
-        real_lens=real_lens,
-        bokeh=settings.bokeh,
+        real_lens=real_lens_of(stack, settings),
+        bokeh=bokeh_of(stack, settings),
         chromatic=settings.chromatic,
         distortion=settings.distortion,
     )

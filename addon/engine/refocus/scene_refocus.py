@@ -9,7 +9,9 @@ import bpy
 from ...errors import CameraError, InputError
 from ...files.frame_path import frame_path
 from ...layers.flat_input import FlatOptions
+from ...lens_bokeh.openings.shapes import iris_of
 from ...scene.camera.camera import evaluated_camera
+from ...scene.camera.lens_record import recorded_opening
 from .camera_settings import camera_settings
 from .settings import RefocusSettings
 
@@ -149,12 +151,19 @@ def read_refocus(scene, depsgraph, stack, sources):
         except CameraError as error:
             problems = (str(error),)
     if not own.use_camera_lens:
-        settings = RefocusSettings(settings.focus_distance, settings.f_stop)
+        settings = RefocusSettings(settings.focus_distance, settings.f_stop, _iris(stack.camera))
     if own.focus_from == "OWN":
         settings = replace(settings, focus_distance=own.focus_distance)
     if own.fstop_from == "OWN":
         settings = replace(settings, f_stop=own.fstop)
     return replace(settings, samples=own.samples), (*_foreign_colors(stack), *problems)
+
+
+def _iris(captured):
+    opening = recorded_opening(captured.lens_settings, captured.blades, captured.blade_rotation)
+    found = iris_of(opening, captured.blade_rotation, captured.aperture_ratio)
+    # Round, or of straight blades: that is what `lens_of` takes.
+    return found if found.opening is not None else None
 
 
 def _foreign_colors(stack):

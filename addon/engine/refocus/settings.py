@@ -1,7 +1,8 @@
 """How a captured picture is seen through the lens: values, without Blender."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from ...lens_bokeh.openings.shapes import stopped_down
 from ...sampling.chromatic import ChromaticAberration
 from ...sampling.iris import Iris
 from ...sampling.thin_lens import ThinLens, aperture_radius
@@ -19,8 +20,8 @@ class RefocusSettings:
     f_stop : float or None
         None: as captured.
     iris : Iris or None
-        Blades, rotation and ratio of the opening; None: as captured. What else shapes the discs of
-        highlights (curvature of the blades, a picture) is the bokeh's appearance.
+        The opening, of lens samples and of the discs of highlights; None: round or of straight
+        blades, as captured.
     real_lens : LensSettings or None
         A real lens, which opens no wider than it can and shapes the discs; None: a thin lens.
     bokeh : BokehSettings or None
@@ -55,6 +56,21 @@ def f_stop_of(stack, settings):
     return max(f_stop, lens.prescription.configuration(lens.label).f_number)
 
 
+def real_lens_of(stack, settings):
+    """Return the real lens that a captured picture is seen through, at its f-number, or None."""
+    lens = settings.real_lens
+    return lens and replace(lens, f_number=f_stop_of(stack, settings))
+
+
+def bokeh_of(stack, settings):
+    """Return the `BokehSettings` of a captured picture, at the f-number that it is seen with."""
+    bokeh, lens = settings.bokeh, real_lens_of(stack, settings)
+    if bokeh is None:
+        return None
+    iris = stopped_down(bokeh.appearance.iris, lens and lens.closing)
+    return replace(bokeh, appearance=replace(bokeh.appearance, iris=iris))
+
+
 def lens_of(stack, settings):
     """Return the thin lens that a captured picture is seen through.
 
@@ -79,5 +95,8 @@ def lens_of(stack, settings):
     if camera.aperture_radius is not None:
         radius = camera.aperture_radius * camera.f_stop / f_stop
     iris = settings.iris or Iris(camera.blades, camera.blade_rotation, camera.aperture_ratio)
+    lens = real_lens_of(stack, settings)
+    if iris.opening is not None:
+        iris = replace(iris, opening=stopped_down(iris.opening, lens and lens.closing))
     focus = settings.focus_distance
     return ThinLens(radius, camera.focus_distance if focus is None else focus, iris)

@@ -10,12 +10,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...errors import InputError
+from ..openings.blades import BladedIris
+from ..openings.pictures import PictureIris
 from . import grain as grain_model
 from . import onion as onion_model
 from . import vignetting_model
 from .diffraction import chromatic_pattern
 from .grain import Grain
-from .iris_mask import BladedIris, PictureIris
 from .onion import OnionRings
 from .vignetting_model import Rim
 

@@ -7,7 +7,7 @@ No energy is lost but what falls outside the picture.
 
 import numpy as np
 
-from .iris_mask import BladedIris
+from ..openings.blades import BladedIris
 
 _FEWEST_RAYS, _MOST_RAYS = 192, 1024
 # Largest distance of neighbouring rays on the sensor, in texels, for nearly all of the energy.

@@ -27,7 +27,7 @@ from functools import lru_cache
 import numpy as np
 
 from ...errors import InputError
-from .iris_mask import iris_mask
+from ..openings.masks import iris_mask
 
 # The FFT form spans this times the radius of the opening on either side. Copies of the opening
 # then stand two radii away from the rim, where the diffracted amplitude is below 1 % for N > 100.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import InputError
-from .iris_mask import texel_centres
+from ..openings.masks import texel_centres
 
 # The finer octave has half the cells and half the amplitude, as film grain has little energy in
 # its finest details.

@@ -9,7 +9,7 @@ the share of light that passes: 1 for an opening without vignetting.
 
 import numpy as np
 
-from .iris_mask import texel_centres
+from ..openings.masks import texel_centres
 
 # Must agree with lib/bokeh/opening_lib.glsl.
 LEAST_BLUR = 1.0 / 128.0

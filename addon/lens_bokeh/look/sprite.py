@@ -9,9 +9,9 @@ Behind the plane of focus the opening appears upright; in front of it, turned by
 
 import numpy as np
 
+from ..openings.masks import texel_centres
 from .appearance import Appearance
 from .deposit import deposit, open_weights, rays_for, spacing
-from .iris_mask import texel_centres
 
 _SUPERSAMPLING = 3
 # Strongest spherical aberration of the edge control: r = p (1 + k (p^2 - 1)). At -0.5 the rim is

@@ -5,26 +5,23 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...errors import InputError
 from ...lens_bokeh.look.appearance import Appearance, Diffraction
 from ...lens_bokeh.look.grain import Grain
-from ...lens_bokeh.look.iris_mask import BladedIris
 from ...lens_bokeh.look.onion import OnionRings
 from ...lens_bokeh.look.vignetting_model import cat_eye
 from ...sampling.spectrum import rgb_weights, spectrum_wavelengths
 from ...settings.bokeh_settings import BOKEH
 from ...settings.setting import fields_of
 from ...snapshot.camera import BokehSettings
+from .irises import read_opening
 
-# Least number of blades; with fewer the iris is round, as in Cycles.
-_FEWEST_BLADES = 3
 # Members of the rim of the softest cat's eye; a single member makes a hard edge.
 _MOST_RIMS = 8
 # Wavelengths of the diffraction ringing: enough that the rings of neighbouring ones overlap.
 _RINGING_WAVELENGTHS = 9
 
 
-def read_bokeh(camera, real_lens, corner, irises):
+def read_bokeh(camera, real_lens, corner, opening):
     """Return a camera's bokeh settings, and warnings about those that cannot be met.
 
     Parameters
@@ -35,8 +32,8 @@ def read_bokeh(camera, real_lens, corner, irises):
         As read from the same camera.
     corner : float
         Tangent of the field angle of the picture's corner; see `corner_tangent`.
-    irises : IrisReader
-        Reads the picture of an iris.
+    opening : BladedIris or PictureIris
+        Of `read_opening`, with the same camera.
 
     Returns
     -------
@@ -47,14 +44,23 @@ def read_bokeh(camera, real_lens, corner, irises):
     """
     if not camera.aplanat.bokeh.use:
         return None, ()
-    return describe_bokeh(camera, real_lens, corner, irises)
+    return _describe(camera, real_lens, corner, opening)
 
 
 def describe_bokeh(camera, real_lens, corner, irises):
-    """Return what `read_bokeh` does, also where it is switched off."""
+    """Return what `read_bokeh` does, also where it is switched off.
+
+    `irises` is the `IrisReader` that reads a picture of an iris; `read_opening` tells what is wrong
+    with one.
+    """
+    opening, _ = read_opening(camera, real_lens, irises)
+    return _describe(camera, real_lens, corner, opening)
+
+
+def _describe(camera, real_lens, corner, opening):
     settings = camera.aplanat.bokeh
     shaping = real_lens if real_lens and real_lens.shapes_bokeh else None
-    appearance, problems = _read_appearance(camera, shaping, corner, irises)
+    appearance, problems = _read_appearance(camera, shaping, corner, opening)
     if shaping is None and real_lens and camera.dof.use_dof:
         problems += (
             f"lens '{real_lens.prescription.name}' shapes no bokeh, a thin lens does: it has"
@@ -98,16 +104,15 @@ def corner_tangent(camera, scene):
     return float(np.linalg.norm(corners[:, :2], axis=1).max())
 
 
-def _read_appearance(camera, real_lens, corner, irises):
+def _read_appearance(camera, real_lens, corner, opening):
     settings, dof = camera.aplanat.bokeh, camera.dof
-    iris, problems = _read_iris(settings, dof, irises)
-    rims = ()
+    problems, rims = (), ()
     if settings.vignetting == "ANALYTIC":
         if corner > 0.0:
             members = 1 + round(settings.vignetting_softness * (_MOST_RIMS - 1))
             rims = cat_eye(settings.vignetting_strength, corner, members)
         else:
-            problems += ("cat's eyes are left out: they need a perspective camera",)
+            problems = ("cat's eyes are left out: they need a perspective camera",)
     grain = onion = ringing = None
     if settings.grain > 0.0 or (settings.dust > 0 and settings.dust_depth > 0.0):
         grain = Grain(
@@ -128,7 +133,7 @@ def _read_appearance(camera, real_lens, corner, irises):
     if settings.diffraction > 0.0:
         ringing = Diffraction(settings.diffraction, *_ringing_spectrum())
     appearance = Appearance(
-        iris=iris,
+        iris=opening,
         grain=grain,
         onion=onion,
         rims=rims,
@@ -147,20 +152,3 @@ def _ringing_spectrum():
     wavelengths = spectrum_wavelengths(_RINGING_WAVELENGTHS)
     weights = rgb_weights(wavelengths)
     return tuple(wavelengths.tolist()), tuple(map(tuple, weights.tolist()))
-
-
-def _read_iris(settings, dof, irises):
-    problems = ()
-    if settings.iris_image is not None:
-        image = settings.iris_image.original
-        try:
-            picture = irises.read(image, dof.aperture_rotation)
-        except InputError as error:
-            problems = (f"iris image '{image.name}': {error}; the blades are drawn instead",)
-        else:
-            return picture, problems
-    blades = dof.aperture_blades if dof.aperture_blades >= _FEWEST_BLADES else 0
-    # A round opening is the same however it is turned.
-    rotation = dof.aperture_rotation if blades else 0.0
-    curvature = settings.blade_curvature if blades else 0.0
-    return BladedIris(blades, curvature, rotation), problems

@@ -6,15 +6,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...errors import CameraError, FocusError
+from ...lens_bokeh.openings.blades import BladedIris
+from ...lens_bokeh.openings.shapes import iris_of
 from ...lens_io.lens_shelf import LensShelf
-from ...sampling.iris import Iris
 from ...sampling.thin_lens import ThinLens, aperture_radius
 from ...snapshot.camera import Camera
 from .bokeh import corner_tangent, read_bokeh
 from .breathing import read_breathing, with_breathing
 from .chromatic import read_chromatic
 from .distortion import read_distortion
-from .irises import IrisReader
+from .irises import IrisReader, read_opening
 from .lenses import read_real_lens, user_folder
 
 
@@ -143,13 +144,18 @@ def read_optics(depsgraph, camera, world=None, sources=None):
     data = camera.data
     sources = sources or CameraSources()
     real_lens, of_lens = read_real_lens(data, sources.shelf)
-    lens, of_focus = read_lens(depsgraph, camera, real_lens, world)
+    opening, of_iris = read_opening(data, real_lens, sources.irises)
+    lens, of_focus = read_lens(depsgraph, camera, real_lens, world, opening)
     focus = lens.focus_distance if lens else None
     chromatic, of_chromatic = read_chromatic(data, real_lens, focus)
     breathing, of_breathing = read_breathing(data, real_lens, focus)
     corner = corner_tangent(data, depsgraph.scene) / breathing
-    bokeh, of_bokeh = read_bokeh(data, real_lens, corner, sources.irises)
+    bokeh, of_bokeh = read_bokeh(data, real_lens, corner, opening)
     distortion, of_distortion = read_distortion(data, real_lens, corner)
+    if not data.dof.use_dof:
+        # Nothing shows its shape.
+        of_iris = ()
+    of_lens = (*of_lens, *of_iris)
     problems = (*of_lens, *of_focus, *of_chromatic, *of_bokeh, *of_distortion, *of_breathing)
     return {
         "lens": lens,
@@ -222,12 +228,12 @@ def check_kind(camera):
         )
 
 
-def read_lens(depsgraph, camera, real_lens=None, world=None):
+def read_lens(depsgraph, camera, real_lens=None, world=None, opening=None):
     """Return the thin lens of a camera with depth of field.
 
     The aperture follows Cycles: focal length over f-number, and 1 m over it where an orthographic
     camera has no focal length. A real lens opens no wider than it can. `world` is as
-    `focus_distance` takes it.
+    `focus_distance` takes it, `opening` of `read_opening`; without one it is round.
 
     Returns
     -------
@@ -242,7 +248,7 @@ def read_lens(depsgraph, camera, real_lens=None, world=None):
         return None, ()
     focal_length = 1.0 if data.type == "ORTHO" else data.lens / 1000.0
     f_number = real_lens.f_number if real_lens else dof.aperture_fstop
-    iris = Iris(dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio)
+    iris = iris_of(opening or BladedIris(), dof.aperture_rotation, dof.aperture_ratio)
     distance = focus_distance(depsgraph, camera, world)
     try:
         lens = ThinLens(aperture_radius(focal_length, f_number), distance, iris)

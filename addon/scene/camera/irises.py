@@ -1,4 +1,4 @@
-"""Reads the iris images of cameras into `PictureIris`."""
+"""Reads the opening of a camera's lens: its blades, or an image of an iris."""
 
 import math
 from functools import lru_cache
@@ -6,13 +6,62 @@ from functools import lru_cache
 import numpy as np
 
 from ...errors import InputError
-from ...lens_bokeh.look.iris_mask import PictureIris
-from ..images.images import ImageReader
+from ...lens_bokeh.openings.blades import BladedIris
+from ...lens_bokeh.openings.pictures import PictureIris
+from ..images.images import ANIMATED, ImageReader
 
 # Largest side of an iris image, in texels: finer than the table of the largest disc.
 _LARGEST_IRIS = 1024
 # Most images, and irises made of them, that a reader keeps.
 _MOST_KEPT = 16
+# Least number of blades; with fewer the iris is round, as in Cycles.
+_FEWEST_BLADES = 3
+
+
+def read_opening(camera, real_lens, irises):
+    """Return the opening of a camera's lens, and warnings about settings that cannot be met.
+
+    Lens samples and discs alike have this shape, whether bokeh is switched on or off.
+
+    Parameters
+    ----------
+    camera : bpy.types.Camera
+        Evaluated in the frame that is drawn.
+    real_lens : LensSettings or None
+        As read from the same camera; it knows how far it opens.
+    irises : IrisReader
+        Reads the picture of an iris.
+
+    Returns
+    -------
+    opening : BladedIris or PictureIris
+    problems : tuple of str
+        One sentence each, without the camera's name.
+    """
+    settings, dof = camera.aplanat.bokeh, camera.dof
+    problems = ()
+    if settings.iris_image is not None:
+        image = settings.iris_image.original
+        try:
+            opening = irises.read(image, dof.aperture_rotation)
+            if image.source in ANIMATED:
+                problems = (
+                    f"iris image '{image.name}' is animated; the picture in its file name, or the"
+                    " first one, is the opening in every frame",
+                )
+            return opening, problems
+        except InputError as error:
+            problems = (f"iris image '{image.name}': {error}; the blades are drawn instead",)
+    if dof.aperture_blades < _FEWEST_BLADES:
+        # A round opening is the same however it is turned.
+        return BladedIris(), problems
+    closing = None
+    if real_lens is not None and settings.use_round_stop:
+        closing = real_lens.closing
+    opening = BladedIris(
+        dof.aperture_blades, settings.blade_curvature, dof.aperture_rotation, closing
+    )
+    return opening, problems
 
 
 class IrisReader:
@@ -23,7 +72,7 @@ class IrisReader:
 
     def __init__(self):
         # Each image has its own reader, which notices when the image changes.
-        self._reader_of = lru_cache(_MOST_KEPT)(lambda _session_uid: ImageReader())
+        self._reader_of = lru_cache(_MOST_KEPT)(lambda _uid: ImageReader(still=True))
         self._iris_of = lru_cache(_MOST_KEPT)(_iris_of_pixels)
 
     def read(self, image, rotation):
@@ -51,11 +100,13 @@ class IrisReader:
         use = reader.read(image)
         if use is None:
             raise InputError("it cannot be read; choose another file")
-        return self._iris_of(_Pixels(use.uid, reader.images[use.uid]), rotation)
+        # Colours that are not multiplied by alpha are here: what is transparent is no light.
+        alpha = not use.associated and image.alpha_mode != "CHANNEL_PACKED"
+        return self._iris_of(_Pixels((use.uid, alpha), reader.images[use.uid]), rotation)
 
 
 class _Pixels:
-    """Pixels of an image, known by their number."""
+    """Pixels of an image, known by their number and whether alpha counts."""
 
     def __init__(self, uid, image):
         self.uid = uid
@@ -65,12 +116,16 @@ class _Pixels:
         return self.uid == other.uid
 
     def __hash__(self):
-        return self.uid
+        return hash(self.uid)
 
 
 def _iris_of_pixels(pixels, rotation):
-    picture = pixels.image.linear_colors().astype(np.float64)
-    return PictureIris(_reduced(picture.mean(axis=-1)), rotation)
+    image = pixels.image
+    picture = image.linear_colors().astype(np.float64).mean(axis=-1)
+    if pixels.uid[1]:
+        alpha = image.pixels[..., 3].astype(np.float64)
+        picture *= alpha / 255.0 if image.pixels.dtype == np.uint8 else alpha
+    return PictureIris(_reduced(picture), rotation)
 
 
 def _reduced(picture):

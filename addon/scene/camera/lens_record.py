@@ -12,6 +12,8 @@ import bpy
 import numpy as np
 
 from ...errors import InputError
+from ...lens_bokeh.openings.blades import BladedIris
+from ...lens_bokeh.openings.pictures import PictureIris
 from ...settings.bokeh_settings import BOKEH, DEBUG
 from ...settings.chromatic_settings import CHROMATIC
 from ...settings.scene_part_settings import DISTORTION, LENS
@@ -62,6 +64,33 @@ def record_lens(camera):
     return told
 
 
+def recorded_opening(told, blades, rotation):
+    """Return the opening of settings that were recorded, behind no round stop.
+
+    Parameters
+    ----------
+    told : dict or None
+        Of `record_lens`.
+    blades : int
+        Below 3 it is round.
+    rotation : float
+        In radians.
+
+    Returns
+    -------
+    BladedIris or PictureIris
+    """
+    told = told or {}
+    picture = _picture(told.get("iris"))
+    bokeh = told.get("bokeh")
+    curvature = bokeh.get("blade_curvature", 0.0) if isinstance(bokeh, dict) else 0.0
+    with contextlib.suppress(InputError, TypeError):
+        if picture is not None:
+            return PictureIris(picture, rotation)
+        return BladedIris(blades, float(curvature), rotation) if blades >= 3 else BladedIris()
+    return BladedIris(blades, 0.0, rotation) if blades >= 3 else BladedIris()
+
+
 def apply_lens(told, camera):
     """Give a camera settings that were recorded.
 
@@ -102,14 +131,20 @@ def _assign(group, names, values):
                 setattr(group, name, values[name])
 
 
-def _image(told):
+def _picture(told):
     try:
         width, height = told["size"]
         levels = zlib.decompress(base64.b64decode(told["texels"]))
-        grey = np.frombuffer(levels, "<u2").reshape(height, width) / _LEVELS
-        name = str(told["name"])
+        return np.frombuffer(levels, "<u2").reshape(height, width) / _LEVELS
     except (KeyError, TypeError, ValueError, zlib.error):
         return None
+
+
+def _image(told):
+    grey = _picture(told)
+    if grey is None:
+        return None
+    name, (height, width) = str(told.get("name", "iris")), grey.shape
     image = bpy.data.images.new(name, width, height, float_buffer=True, is_data=True)
     pixels = np.ones((height, width, 4), np.float32)
     pixels[..., :3] = grey[..., None]

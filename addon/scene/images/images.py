@@ -5,6 +5,7 @@ import threading
 from dataclasses import dataclass
 from functools import partial
 
+import bpy
 import numpy as np
 
 from ...snapshot.content import ImageSnapshot, next_uid
@@ -12,7 +13,7 @@ from . import color_spaces
 from .image_pixels import encode, load_file, read_pixels, reduced
 
 # Frames of these are chosen by the node that uses them.
-_ANIMATED = frozenset({"SEQUENCE", "MOVIE"})
+ANIMATED = frozenset({"SEQUENCE", "MOVIE"})
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,9 @@ class ImageReader:
     is_told : bool
         `note_change` is called when an image is painted on. If False, an unsaved image is read and
         compared in every round, because nothing reports its changes.
+    still : bool
+        Of an animated image one picture is read, whatever the frame: that of its file name, or the
+        one that Blender holds of a movie.
     in_main_thread : callable or None
         Runs a function in the main thread and returns its result; for a reader that is used in
         another thread. Only the main thread can choose the frame of a movie, which all readers of
@@ -64,12 +68,13 @@ class ImageReader:
     report : list of str
     """
 
-    def __init__(self, largest=None, is_told=False, in_main_thread=None):
+    def __init__(self, largest=None, is_told=False, in_main_thread=None, still=False):
         self.images = {}
         self.report = []
         self._largest = largest
         self._is_told = is_told
         self._in_main_thread = in_main_thread
+        self._still = still
         self._entries = {}
         self._seen = {}
         self._repaints = {}
@@ -104,7 +109,7 @@ class ImageReader:
         ImageUse or None
         """
         image = image.original
-        frame = image_user.frame_current if image_user and image.source in _ANIMATED else 0
+        frame = image_user.frame_current if image_user and image.source in ANIMATED else 0
         key = (image.session_uid, frame)
         if key in self._seen:
             return self._seen[key]
@@ -152,7 +157,9 @@ class ImageReader:
         """Return pixels, whether they are as the file stores them, and notes."""
         if image.source == "SEQUENCE" and not image.packed_file and image_user is not None:
             return load_file(image.filepath_from_user(image_user=image_user)), True, []
-        if image.source not in _ANIMATED:
+        if self._still and image.source == "SEQUENCE" and not image.packed_file:
+            return load_file(bpy.path.abspath(image.filepath, library=image.library)), True, []
+        if self._still or image.source not in ANIMATED:
             return read_pixels(image), False, []
         if threading.current_thread() is threading.main_thread():
             return _read_frame(image, frame), False, []
@@ -204,7 +211,7 @@ def _signature(image, image_user, frame):
         image.colorspace_settings.name,
         color_spaces.working_space(),
         image.is_dirty,
-        tuple(image.size) if image.source not in _ANIMATED else (),
+        tuple(image.size) if image.source not in ANIMATED else (),
         image.packed_file.size if image.packed_file else 0,
         generated,
         stat,

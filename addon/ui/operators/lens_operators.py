@@ -153,17 +153,20 @@ class APLANAT_OT_use_iris(_LensOperator, bpy.types.Operator):
 
     bl_idname = "camera.aplanat_use_iris"
     bl_label = "Use Lens Iris"
-    bl_description = "Set blades and rotation of the camera's aperture to those of its real lens"
+    bl_description = (
+        "Set blades of the camera's iris, their curvature and rotation to those of its real lens"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context):
-        """Set blades and rotation."""
+        """Set blades, curvature and rotation."""
         camera = camera_of(context)
         lens = real_lens_of(camera)
         iris = lens.prescription.diaphragm
         dof = camera.dof
         dof.aperture_blades = min(iris.blades, _MOST_BLADES)
         dof.aperture_rotation = math.remainder(math.radians(iris.rotation_deg), math.tau)
+        camera.aplanat.bokeh.blade_curvature = iris.blade_curvature
         if iris.blades > _MOST_BLADES:
             self.report({"INFO"}, f"The iris has {iris.blades} blades; Blender allows 16")
         return {"FINISHED"}

@@ -149,13 +149,7 @@ class APLANAT_CAMERA_PT_bokeh_appearance(_BokehPanel, PresetsHeader, bpy.types.P
             column.prop(settings, "hardness", slider=True)
         else:
             column.prop(settings, "profile_strength", slider=True)
-        curvature = column.column()
-        curvature.active = settings.iris_image is None and camera.dof.aperture_blades > 2
-        curvature.prop(settings, "blade_curvature", slider=True)
-        image = column.column()
-        image.use_property_decorate = False
-        image.template_ID(settings, "iris_image", open="image.open", text="Iris Image")
-        text = "Blades, rotation and ratio (anamorphic): Depth of Field > Aperture."
+        text = "The opening: Lens > Iris, and Depth of Field > Aperture."
         draw_sentences(column.column(align=True), text, letters_across(context), icon="INFO")
 
     def _draw_discs(self, context, column, lens):

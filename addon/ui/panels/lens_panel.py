@@ -4,11 +4,12 @@ import math
 
 import bpy
 
-from ...engine.shared_resources import real_lens_of, shelf
+from ...engine.shared_resources import real_lens_of, resources, shelf
 from ...optics.lens_facts import lens_facts
 from ...scene.camera.bokeh import corner_tangent
 from ...scene.camera.camera import sensor_diagonal
 from ...scene.camera.distortion import read_distortion
+from ...scene.camera.irises import read_opening
 from ..jobs import background
 from ..operators.lens_import import APLANAT_OT_import_lens
 from ..operators.lens_operators import (
@@ -199,8 +200,9 @@ class APLANAT_CAMERA_PT_lens_bokeh(_KnownLensPanel, bpy.types.Panel):
         lens = real_lens_of(camera)
         column = self.layout.column(align=True)
         letters = letters_across(context)
-        icon = lens_thumbnails.bokeh_icon_id(camera, lens)
-        error = lens_thumbnails.bokeh_error(camera, lens)
+        opening, _ = read_opening(camera, lens, resources().panels.sources.irises)
+        icon = lens_thumbnails.bokeh_icon_id(camera, lens, opening)
+        error = lens_thumbnails.bokeh_error(camera, lens, opening)
         if error:
             draw_alert(column, error, letters)
             return
@@ -227,7 +229,7 @@ class APLANAT_CAMERA_PT_lens_facts(_KnownLensPanel, bpy.types.Panel):
         for name, value in _facts(lens, camera, context.scene):
             _draw_fact(column, name, value, letters)
         iris = lens.prescription.diaphragm
-        if _differs_from_iris(camera.dof, iris):
+        if _differs_from_iris(camera, iris):
             self.layout.operator(APLANAT_OT_use_iris.bl_idname)
         found = shelf().find(lens.id)
         if found is not None and found.lens is not None and found.lens.warnings:
@@ -265,7 +267,14 @@ def _facts(lens, camera, scene):
     group = prescription.focus
     yield "Focusing", f"Surfaces {group.first} to {group.last}" if group else "Whole lens moves"
     iris = prescription.diaphragm
-    yield "Iris", f"{iris.blades} blades" if iris.blades else "Round"
+    yield "Iris", _blades(iris)
+
+
+def _blades(iris):
+    if not iris.blades:
+        return "Round"
+    bend = f"curvature {iris.blade_curvature:.3g}" if iris.blade_curvature else "straight"
+    return f"{iris.blades} blades, {bend}"
 
 
 def _circle(diameter, diagonal):
@@ -273,9 +282,13 @@ def _circle(diameter, diagonal):
     return f"{diameter:.3g} mm, {verdict} the sensor's {diagonal:.3g} mm"
 
 
-def _differs_from_iris(dof, iris):
+def _differs_from_iris(camera, iris):
+    dof = camera.dof
+    if dof.aperture_blades != min(iris.blades, 16):
+        return True
     turn = math.remainder(dof.aperture_rotation - math.radians(iris.rotation_deg), math.tau)
-    return dof.aperture_blades != min(iris.blades, 16) or (iris.blades and abs(turn) > 1e-4)
+    bend = camera.aplanat.bokeh.blade_curvature - iris.blade_curvature
+    return iris.blades > 0 and max(abs(turn), abs(bend)) > 1e-4
 
 
 def _draw_fact(column, name, value, letters):

@@ -191,16 +191,19 @@ def lens_in_words(camera):
     str
     """
     lens = real_lens_of(camera)
-    blades = camera.dof.aperture_blades
-    words = [
-        lens.prescription.name if lens else "Thin lens",
-        f"{blades} blades" if blades > 2 else "round iris",
-    ]
+    words = [lens.prescription.name if lens else "Thin lens", _iris_in_words(camera)]
     if camera.aplanat.chromatic.use:
         words.append("fringes")
     if camera.aplanat.bokeh.use:
         words.append("bokeh")
     return ", ".join(words)
+
+
+def _iris_in_words(camera):
+    image, blades = camera.aplanat.bokeh.iris_image, camera.dof.aperture_blades
+    if image is not None:
+        return f"iris '{image.name}'"
+    return f"{blades} blades" if blades > 2 else "round iris"
 
 
 CLASSES = (

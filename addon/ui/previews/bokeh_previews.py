@@ -6,8 +6,8 @@ from functools import lru_cache
 import numpy as np
 
 from ...lens_bokeh.look.grain import transmission
-from ...lens_bokeh.look.iris_mask import texel_centres
 from ...lens_bokeh.look.sprite import sprite
+from ...lens_bokeh.openings.masks import texel_centres
 from .picture_icons import PictureIcons
 
 _SIZE = 96

@@ -4,7 +4,6 @@ from functools import partial
 
 import bpy
 
-from ...lens_bokeh.look.iris_mask import BladedIris
 from ..jobs import background
 from .picture_icons import PictureIcons
 
@@ -35,7 +34,7 @@ def icon_id(found):
     )
 
 
-def bokeh_icon_id(camera, lens):
+def bokeh_icon_id(camera, lens, opening):
     """Return the icon that shows the bokeh of a camera's lens; asked for if there is none yet.
 
     While another f-number or zoom position is being drawn, the picture before stays.
@@ -43,15 +42,16 @@ def bokeh_icon_id(camera, lens):
     Parameters
     ----------
     camera : bpy.types.Camera
-        Its iris is used.
     lens : LensSettings
+    opening : BladedIris or PictureIris
+        Of `read_opening`.
 
     Returns
     -------
     int
         0 while there is no picture.
     """
-    wanted = _wanted_bokeh(camera, lens)
+    wanted = _wanted_bokeh(lens, opening)
     return _icon(
         f"bokeh:{camera.session_uid}",
         wanted,
@@ -61,16 +61,13 @@ def bokeh_icon_id(camera, lens):
     )
 
 
-def bokeh_error(camera, lens):
+def bokeh_error(camera, lens, opening):
     """Return in one line why there is no picture of the bokeh, or None."""
-    return background.error_of(_key(f"bokeh:{camera.session_uid}", _wanted_bokeh(camera, lens)))
+    return background.error_of(_key(f"bokeh:{camera.session_uid}", _wanted_bokeh(lens, opening)))
 
 
-def _wanted_bokeh(camera, lens):
-    blades = camera.dof.aperture_blades
-    # Below three blades Blender's opening is round.
-    iris = BladedIris(blades if blades >= 3 else 0, 0.0, camera.dof.aperture_rotation)
-    return lens.prescription, lens.label, round(lens.f_number, 3), iris
+def _wanted_bokeh(lens, opening):
+    return lens.prescription, lens.label, round(lens.f_number, 3), opening
 
 
 def _key(name, wanted):

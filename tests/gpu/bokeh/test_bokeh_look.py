@@ -5,10 +5,11 @@ import pytest
 
 from addon.lens_bokeh.look.appearance import Appearance, Diffraction
 from addon.lens_bokeh.look.grain import Grain
-from addon.lens_bokeh.look.iris_mask import BladedIris, PictureIris
 from addon.lens_bokeh.look.onion import OnionRings
 from addon.lens_bokeh.look.sprite import sprite
 from addon.lens_bokeh.look.vignetting_model import cat_eye
+from addon.lens_bokeh.openings.blades import BladedIris
+from addon.lens_bokeh.openings.pictures import PictureIris
 from tests.splat_pictures import depth_of, library_lens, plan_of, splatted
 
 pytestmark = pytest.mark.usefixtures("gpu_context")

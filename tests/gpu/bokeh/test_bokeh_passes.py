@@ -12,8 +12,8 @@ from addon.device.targets import Targets, TargetSpec
 from addon.device.textures import texture_2d, texture_array
 from addon.device.uniforms import bind_resource, uniform_buffer
 from addon.engine.bokeh.look import BokehLook
-from addon.lens_bokeh.look.iris_mask import BladedIris
 from addon.lens_bokeh.look.opening import opening_layers
+from addon.lens_bokeh.openings.blades import BladedIris
 from addon.passes.bokeh import highlights, splat
 from addon.passes.surface import surface
 from benchmarks.reference.highlights import Raster

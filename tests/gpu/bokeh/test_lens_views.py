@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.lens_bokeh.look.iris_mask import BladedIris
+from addon.lens_bokeh.openings.blades import BladedIris
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
 from addon.snapshot.camera import BokehSettings, Camera

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.lens_bokeh.look.iris_mask import BladedIris, PictureIris
+from addon.lens_bokeh.openings.blades import BladedIris
+from addon.lens_bokeh.openings.pictures import PictureIris
 from addon.scene.camera.bokeh import corner_tangent
 from addon.scene.camera.camera import read_camera
 from addon.scene.extract import SceneExtractor

@@ -4,7 +4,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from addon.errors import InputError
-from addon.lens_bokeh.look.iris_mask import BladedIris, PictureIris, iris_mask, texel_centres
+from addon.lens_bokeh.openings.blades import BladedIris
+from addon.lens_bokeh.openings.masks import iris_mask, texel_centres
+from addon.lens_bokeh.openings.pictures import PictureIris
 from addon.sampling.halton import halton
 from addon.sampling.iris import Iris, iris_points
 

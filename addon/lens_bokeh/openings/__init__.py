@@ -1,0 +1,1 @@
+"""Openings of the iris: blades behind a round stop, or any grey picture."""
