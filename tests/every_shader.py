@@ -39,15 +39,17 @@ def surface_targets():
             if isinstance(value, surface_target.SurfaceTarget):
                 yield f"{module.__name__}.{name}", value
     for target in (surface_target.COLOR, surface_target.COLOR_AND_MATTES):
-        for splits, disperses in ((True, False), (False, True), (True, True)):
+        for splits, disperses, bends in tuple(product((False, True), repeat=3))[1:]:
             made = surface_target.without_highlights(target) if splits else target
             made = surface_target.in_wavelengths(made) if disperses else made
-            yield f"color {splits=} {disperses=}", made
+            made = surface_target.through_lens(made) if bends else made
+            yield f"color {splits=} {disperses=} {bends=}", made
     for target in (surface_target.COLOR, surface_target.COLOR_AND_MATTES):
         yield "layer", surface_target.of_layers(target)
     for number in range(3):
         for names in combinations(("Vector", "Detail"), number):
-            yield f"data {names}", data.target(names)
+            for bends in (False, True):
+                yield f"data {names} {bends=}", data.target(names, bends)
 
 
 def _node(kind, settings=(), **inputs):

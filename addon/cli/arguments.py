@@ -160,6 +160,11 @@ def _add_render(commands):
         help="lens of the library, or a lens file; the camera's focal length stays",
     )
     add_distortion(parser)
+    add(
+        "--lens-exposure",
+        choices=("even", "lens"),
+        help="brightness of the corners with a real lens",
+    )
     add("--breathing", action="store_true", help="focus breathing, if the camera has it not yet")
     add(
         "--fstop",

@@ -5,18 +5,21 @@ from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
 from ..device.uniforms import bind_resource
 from .bokeh.highlights import APPEND_CONSTANTS, APPEND_DEFINES, APPEND_IMAGES
-from .surface import chromatic
+from .surface import chromatic, real_lens
 from .surface.environment import ENVIRONMENT_PARAMS
 from .surface.surface import HIGHLIGHT_PARAMS, VIEW_PARAMS
 
 
 @variants(
     # The search for highlights has no wavelength of its own.
-    allowed=lambda define, in_wavelengths: define != "EXCESS" or not in_wavelengths,
+    allowed=lambda define, in_wavelengths, through_lens: (
+        define != "EXCESS" or not (in_wavelengths or through_lens)
+    ),
     define=(None, "HIGHLIGHTS", "EXCESS"),
     in_wavelengths=(False, True),
+    through_lens=(False, True),
 )
-def _info(define, in_wavelengths=False):
+def _info(define, in_wavelengths=False, through_lens=False):
     split = define is not None
     lists = define == "EXCESS"
     uniforms = [("ViewParams", "view_buf"), ("EnvironmentParams", "environment_buf")]
@@ -35,7 +38,8 @@ def _info(define, in_wavelengths=False):
         push_constants=(("VEC4", "lens_sample"), *APPEND_CONSTANTS * lists),
         defines=((define, "1"),) * split + APPEND_DEFINES * lists,
     )
-    return chromatic.declared(info) if in_wavelengths else info
+    info = chromatic.declared(info) if in_wavelengths else info
+    return real_lens.declared(info) if through_lens else info
 
 
 def draw(
@@ -46,6 +50,7 @@ def draw(
     lens_sample,
     highlights=None,
     wavelength=None,
+    lens=None,
 ):
     """Draw the world's image where the depth buffer shows no surface.
 
@@ -61,11 +66,12 @@ def draw(
     highlights : GPUUniformBuf or None
         `HighlightParams`: the light that is splatted as bokeh is left out.
     wavelength : passes.surface.chromatic.ChromaticSample, optional
+    lens : passes.surface.real_lens.LensSample, optional
     """
     state.behind()
     define = None if highlights is None else "HIGHLIGHTS"
     world = (view_buffer, environment_buffer, image)
-    _draw(fullscreen, define, *world, lens_sample, highlights, wavelength)
+    _draw(fullscreen, define, *world, lens_sample, highlights, wavelength, lens)
 
 
 def list_highlights(fullscreen, view_buffer, environment_buffer, image, split, lists, through):
@@ -98,9 +104,10 @@ def _draw(
     lens_sample,
     highlights=None,
     wavelength=None,
+    lens=None,
     bindings=(),
 ):
-    shader = compile_shader(_info(define, wavelength is not None))
+    shader = compile_shader(_info(define, wavelength is not None, lens is not None))
     shader.bind()
     shader.uniform_block("view_buf", view_buffer)
     shader.uniform_block("environment_buf", environment_buffer)
@@ -110,6 +117,8 @@ def _draw(
     shader.uniform_float("lens_sample", lens_sample)
     if wavelength is not None:
         wavelength.bind(shader)
+    if lens is not None:
+        lens.bind(shader)
     for name, resource in bindings:
         bind_resource(shader, name, resource)
     shader.draw(fullscreen)

@@ -17,6 +17,7 @@ from ..device.shaders import ShaderInfo, compile_shader, dispatch
 from ..sampling.pixel_filter import MOST_SUBPIXELS
 from ..sampling.tile_control import TILE
 from .accumulate import padded
+from .surface import real_lens
 
 # Channel of the second target of `surface_target.COLOR_AND_MATTES` that holds the id.
 CHANNELS = {"CryptoObject": 0, "CryptoMaterial": 1}
@@ -40,47 +41,72 @@ def slot_pairs(kinds):
     return max(kinds.values()) + _SPARE_PAIRS
 
 
-@variants(pairs=_PAIRS, subpixels=range(1, MOST_SUBPIXELS + 1), tiled=(False, True))
-def _count_info(pairs, subpixels, tiled):
+@variants(
+    pairs=_PAIRS,
+    subpixels=range(1, MOST_SUBPIXELS + 1),
+    tiled=(False, True),
+    lit=(False, True),
+)
+def _count_info(pairs, subpixels, tiled, lit=False):
     return ShaderInfo(
         name="aplanat_cryptomatte_count",
         compute=shader_source.load("passes/cryptomatte_comp.glsl"),
-        samplers=(("FLOAT_2D", "mattes_tx"), *(("FLOAT_2D", "active_tx"),) * tiled),
+        samplers=(
+            ("FLOAT_2D", "mattes_tx"),
+            *(("FLOAT_2D", "active_tx"),) * tiled,
+            *real_lens.LIGHT_SAMPLERS * lit,
+        ),
         images=(("RGBA32F", "FLOAT_2D_ARRAY", "tables_img", ("READ", "WRITE")),),
         push_constants=(
             ("VEC4", "columns"),
             ("VEC4", "rows"),
             ("IVEC2", "channels"),
             ("INT", "kinds"),
+            *real_lens.LIGHT_CONSTANTS * lit,
         ),
         defines=(
             ("SLOT_PAIRS", str(pairs)),
             ("SUBPIXELS", str(subpixels)),
             *_TILED * tiled,
+            *real_lens.LIGHT_DEFINES * lit,
         ),
         local_size=(_GROUP, _GROUP, 1),
     )
 
 
-@variants(pairs=_PAIRS, tiled=(False, True))
-def _rank_info(pairs, tiled):
+@variants(
+    allowed=lambda pairs, tiled, lit: not (tiled and lit),
+    pairs=_PAIRS,
+    tiled=(False, True),
+    lit=(False, True),
+)
+def _rank_info(pairs, tiled, lit=False):
     return ShaderInfo(
         name="aplanat_cryptomatte_rank",
         vertex=shader_source.load("passes/fullscreen_vert.glsl"),
         fragment=shader_source.load("passes/cryptomatte_frag.glsl"),
         attributes=(("VEC2", "pos"),),
         outputs=(("VEC4", "out_color"),),
-        samplers=(("FLOAT_2D_ARRAY", "tables_tx"), *(("FLOAT_2D", "scales_tx"),) * tiled),
+        samplers=(
+            ("FLOAT_2D_ARRAY", "tables_tx"),
+            *(("FLOAT_2D", "scales_tx"),) * tiled,
+            *real_lens.LIGHT_SAMPLERS * lit,
+        ),
         push_constants=(
             ("INT", "first_layer"),
             ("INT", "rank"),
-            *(("FLOAT", "scale"),) * (not tiled),
+            *(("FLOAT", "scale"),) * (not (tiled or lit)),
+            *real_lens.LIGHT_CONSTANTS * lit,
         ),
-        defines=(("SLOT_PAIRS", str(pairs)), *_TILED * tiled),
+        defines=(
+            ("SLOT_PAIRS", str(pairs)),
+            *_TILED * tiled,
+            *real_lens.LIGHT_DEFINES * lit,
+        ),
     )
 
 
-def count(mattes, tables, kinds, weights, active=None):
+def count(mattes, tables, kinds, weights, active=None, light=None):
     """Count the ids of a lens sample.
 
     Parameters
@@ -95,14 +121,19 @@ def count(mattes, tables, kinds, weights, active=None):
         Of the columns and rows of a pixel's sub-pixels; `mattes` is ``k`` times as large.
     active : GPUTexture or None
         1 for the tiles that the sample is drawn for, else 0; None: all tiles.
+    light : real_lens.SampleLight, optional
+        What the lens lets through; without it the same everywhere.
     """
     subpixels = len(weights[0])
-    shader = compile_shader(_count_info(slot_pairs(kinds), subpixels, active is not None))
+    features = (active is not None, light is not None)
+    shader = compile_shader(_count_info(slot_pairs(kinds), subpixels, *features))
     channels = [CHANNELS[kind] for kind in kinds]
     shader.bind()
     shader.uniform_sampler("mattes_tx", mattes)
     if active is not None:
         shader.uniform_sampler("active_tx", active)
+    if light is not None:
+        light.bind(shader)
     shader.image("tables_img", tables)
     shader.uniform_int("kinds", len(channels))
     shader.uniform_int("channels", (channels + [0])[:2])
@@ -112,7 +143,7 @@ def count(mattes, tables, kinds, weights, active=None):
     dispatch(shader, -(-width // _GROUP), -(-height // _GROUP))
 
 
-def draw_ranks(fullscreen, tables, kinds, kind, index, weight, scales=None):
+def draw_ranks(fullscreen, tables, kinds, kind, index, weight, scales=None, light=None):
     """Draw one pass of two ranks into the bound frame buffer.
 
     Parameters
@@ -128,15 +159,19 @@ def draw_ranks(fullscreen, tables, kinds, kind, index, weight, scales=None):
         Summed weight of the samples.
     scales : GPUTexture or None
         Used instead of `weight`: one over the summed weight of each tile.
+    light : real_lens.SampleLight or None
+        Used instead: sums of the weights over the picture.
     """
     pairs = slot_pairs(kinds)
-    shader = compile_shader(_rank_info(pairs, scales is not None))
+    shader = compile_shader(_rank_info(pairs, scales is not None, light is not None))
     shader.bind()
     shader.uniform_sampler("tables_tx", tables)
     shader.uniform_int("first_layer", list(kinds).index(kind) * pairs)
     shader.uniform_int("rank", 2 * index)
     if scales is not None:
         shader.uniform_sampler("scales_tx", scales)
+    elif light is not None:
+        light.bind(shader)
     else:
         shader.uniform_float("scale", 1.0 / weight)
     shader.draw(fullscreen)

@@ -6,16 +6,20 @@ from ..device import shader_source
 from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
 from ..sampling.tile_control import TILE
+from .surface import real_lens
 
 
 @variants(
-    lambda distorted, by_channel, tiled, **_: not (tiled and (distorted or by_channel)),
+    lambda distorted, by_channel, tiled, lit, **_: (
+        not ((tiled or lit) and (distorted or by_channel)) and not (tiled and lit)
+    ),
     with_bokeh=(False, True),
     by_channel=(False, True),
     distorted=(False, True),
     tiled=(False, True),
+    lit=(False, True),
 )
-def _info(with_bokeh, by_channel, distorted, tiled):
+def _info(with_bokeh, by_channel, distorted, tiled, lit=False):
     return ShaderInfo(
         name="aplanat_resolve",
         vertex=shader_source.load("passes/fullscreen_vert.glsl"),
@@ -26,9 +30,11 @@ def _info(with_bokeh, by_channel, distorted, tiled):
             ("FLOAT_2D", "sum_tx"),
             *(("FLOAT_2D", "bokeh_tx"),) * with_bokeh,
             *(("FLOAT_2D", "scales_tx"),) * tiled,
+            *real_lens.LIGHT_SAMPLERS * lit,
         ),
         push_constants=(
-            *(("VEC4" if by_channel else "FLOAT", "scale"),) * (not tiled),
+            *(("VEC4" if by_channel else "FLOAT", "scale"),) * (not (tiled or lit)),
+            *real_lens.LIGHT_CONSTANTS * lit,
             ("IVEC2", "origin"),
             ("INT", "pixel_size"),
             *(
@@ -44,6 +50,7 @@ def _info(with_bokeh, by_channel, distorted, tiled):
             *(("BOKEH", "1"),) * with_bokeh,
             *(("DISTORTED", "1"),) * distorted,
             *(("TILED", "1"), ("TILE", str(TILE))) * tiled,
+            *real_lens.LIGHT_DEFINES * lit,
         ),
     )
 
@@ -57,6 +64,7 @@ def resolve(
     bokeh=None,
     distortion=None,
     scales=None,
+    light=None,
 ):
     """Draw the mean of the samples into the bound frame buffer.
 
@@ -78,16 +86,22 @@ def resolve(
     scales : GPUTexture or None
         Instead of the weight: one over that of each channel, a texel a tile of
         `sampling.tile_control.TILE` px. Not with distortion.
+    light : real_lens.SampleLight or None
+        Instead of the weight: sums of the weights over the picture. Not with distortion.
     """
     by_channel = isinstance(weight, tuple)
     tiled = scales is not None
-    shader = compile_shader(_info(bokeh is not None, by_channel, distortion is not None, tiled))
+    by_channel = by_channel and light is None
+    features = (by_channel, distortion is not None, tiled, light is not None)
+    shader = compile_shader(_info(bokeh is not None, *features))
     shader.bind()
     shader.uniform_sampler("sum_tx", total)
     if bokeh is not None:
         shader.uniform_sampler("bokeh_tx", bokeh)
     if tiled:
         shader.uniform_sampler("scales_tx", scales)
+    elif light is not None:
+        light.bind(shader)
     else:
         scale = tuple(1.0 / w for w in weight) if by_channel else 1.0 / weight
         shader.uniform_float("scale", scale)

@@ -14,6 +14,13 @@ LENS = Section("Real lens", "Camera Properties > Lens > Real Lens", (
             " limits the f-number. It never changes the focal length by itself", told="lens"),
     Setting("zoom_label", "", "Zoom Position", "Name of the position of a zoom lens; empty for"
             " its first one", told="zoom_position"),
+    Setting("exposure", "EVEN", "Exposure", "What becomes of the light that the lens takes away"
+            " towards the picture's corners: by its rims, by the angle of the rays, by its pupil."
+            " With depth of field only", told="lens_exposure", items=(
+            Item(0, "EVEN", "Even", "The picture keeps its brightness everywhere"),
+            Item(1, "LENS", "As the Lens", "Light is lost as in a photograph; the middle keeps"
+                 " its brightness"),
+    )),
     Setting("use_breathing", False, "Focus Breathing", "The nearer the focus, the larger the"
             " picture, as with most lenses: by the focal length of a thin lens, or by the focus"
             " group of a real one. With depth of field only", told="breathing"),

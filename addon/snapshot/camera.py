@@ -26,12 +26,15 @@ class LensSettings:
     f_number : float
         In force: what the camera asks for, but no wider than the lens opens.
     prescription : Prescription
+    exposure : {'EVEN', 'LENS'}
+        Whether the picture keeps its brightness, or loses the light that the lens takes away.
     """
 
     id: str
     label: str | None
     f_number: float
     prescription: Prescription
+    exposure: str = "EVEN"
 
     @property
     def shapes_bokeh(self):

@@ -4,7 +4,7 @@
 // that is splatted as bokeh is left out. EXCESS: highlight_buf, through_tx (share of the light that
 // passes what covers the world from the whole lens) and the inputs of highlights_append; light above the
 // threshold is listed.
-// CHROMATIC: as in surface_vert.
+// CHROMATIC, REAL_LENS: as in surface_vert.
 // Outputs: opaque scene-linear colour; with EXCESS lists of fragments: light above the threshold.
 // Source: methods 1: the ray from the lens' place through the pixel's point of the focus plane.
 #include "lib/surface/environment_lib.glsl"
@@ -17,8 +17,13 @@
 #endif
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
+#endif
+#ifdef REAL_LENS
+#include "lib/real_lens_lib.glsl"
+#endif
+#if defined(CHROMATIC) || defined(REAL_LENS)
 
-// Steps of the search for the place in the field that a wavelength moves to the pixel's place.
+// Steps of the search for the place in the field that the lens moves to the pixel's place.
 #define ITERATIONS 4
 #endif
 
@@ -46,12 +51,23 @@ void main()
       vec2 strengths = field_strengths(field_tx, place, chromatic_buf);
       float focus = chromatic_focus(dispersion.x, strengths.x, chromatic_buf);
       float scale = lateral_scale(dispersion.y, strengths.y, chromatic_buf);
+#ifdef REAL_LENS
+      vec2 shift = real_lens_move(moves_tx, place, 0.0, lens_slot, real_lens_buf);
+      place = (pixel - shift - lens_sample.xy * focus) / scale;
+#else
       place = (pixel - lens_sample.xy * focus) / scale;
+#endif
     }
     direction.xy = place;
   }
 #else
   direction.xy -= lens_sample.xy / view_buf.lens.x;
+#ifdef REAL_LENS
+  vec2 pixel = direction.xy;
+  for (int i = 0; i < ITERATIONS; i++) {
+    direction.xy = pixel - real_lens_move(moves_tx, direction.xy, 0.0, lens_slot, real_lens_buf);
+  }
+#endif
 #endif
   direction = mat3(view_buf.view_inverse) * direction;
   vec3 local = vec3(dot(environment_buf.rotation_x.xyz, direction),

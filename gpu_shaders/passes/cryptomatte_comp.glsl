@@ -4,11 +4,15 @@
 // Inputs: mattes_tx (ids by channel; 0 is nothing; SUBPIXELS times as large as the tables); kinds;
 // channels (channel of each kind's id); columns, rows (weights of sub-pixels). TILED: active_tx (1 for
 // the tiles of TILE pixels that the sample is drawn for, else 0).
+// LIGHT: light_tx, light_table (weights of the sample over the picture).
 // Outputs: tables_img, layers of two slots (id, count, id, count), SLOT_PAIRS layers a kind.
 // Source: Friedman and Jones, SIGGRAPH 2015; replacement after Metwally et al., Efficient
 // computation of frequent and top-k elements in data streams, ICDT 2005 (space saving).
 
 #include "lib/subpixel_lib.glsl"
+#ifdef LIGHT
+#include "lib/light_table_lib.glsl"
+#endif
 
 void count_id(ivec2 pixel, int first_layer, float id, float weight)
 {
@@ -48,9 +52,14 @@ void main()
     return;
   }
 #endif
+  float light = 1.0;
+#ifdef LIGHT
+  vec2 place = (vec2(pixel) + 0.5) / vec2(textureSize(mattes_tx, 0) / SUBPIXELS);
+  light = light_at(light_tx, place, light_table).x;
+#endif
   for (int y = 0; y < SUBPIXELS; y++) {
     for (int x = 0; x < SUBPIXELS; x++) {
-      float weight = subpixel_weight(ivec2(x, y), columns, rows);
+      float weight = light * subpixel_weight(ivec2(x, y), columns, rows);
       if (weight <= 0.0) {
         continue;
       }

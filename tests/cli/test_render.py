@@ -222,7 +222,7 @@ def test_options_are_in_force_and_told(aplanat, small_blend, tmp_path):
         *("--samples", "3", "--seed", "5", "--filter", "box", "--filter-size", "1.25"),
         *("--camera", "Second", "--fstop", "2", "--focus", "Far", "--frame", "9"),
         *("--method", "reference", "--no-bokeh", "--no-chromatic", "--stats", stats, "--json"),
-        *("--distortion", "-0.1", "--breathing"),
+        *("--distortion", "-0.1", "--breathing", "--lens-exposure", "lens"),
     )
     assert done.code == 0, done
     assert iio.imread(tmp_path / "a.png").shape == (10, 20, 3)
@@ -236,6 +236,8 @@ def test_options_are_in_force_and_told(aplanat, small_blend, tmp_path):
     assert settings["no_bokeh"] and settings["no_chromatic"]
     assert settings["chromatic"] is None
     assert settings["breathing"] > 1.0
+    # The camera has a thin lens.
+    assert settings["lens_exposure"] is None
     assert settings["distortion"] == {"source": "division", "terms": [pytest.approx(-0.1)]}
     assert told["frames"][0]["frame"] == 9
 

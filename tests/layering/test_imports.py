@@ -69,7 +69,9 @@ ROOMS = {
     "scene.geometry": ("snapshot", "scene.camera", "scene.shading"),
     "scene": ("settings", "snapshot", "scene.camera", "scene.geometry", "scene.shading"),
     # A frame: planned, drawn, shown.
-    "engine.planning": (*("layers", "optics", "sampling", "snapshot", "levels"),),
+    "engine.planning": (
+        *("layers", "optics", "sampling", "lens_bokeh.samples", "snapshot", "levels"),
+    ),
     "engine.drawing": (
         *("device", "sampling", "passes", "passes.surface"),
         *("levels", "levels.making"),

@@ -95,7 +95,9 @@ def test_an_even_world_is_as_bright_as_traced_from_the_sensor(name, f_number):
     places = np.sqrt((np.arange(count) + 0.5) / count)[:, None] * np.stack(
         [np.cos(turn), np.sin(turn)], axis=-1
     )
-    light = tables.mean_light(places * tables.aperture_radius).ravel()
+    positions, spacing = places * tables.aperture_radius, np.sqrt(np.pi / count)
+    light = tables.light(positions, spacing).mean(axis=0).ravel()
+    assert tables.axial_light(positions, spacing).mean() == pytest.approx(light.max(), rel=0.01)
     shares = np.array([0.0, 0.3, 0.6, 0.9])
     seen = shares[:, None] * half
     index, weights = tables.light_grid.taps(seen)

@@ -89,6 +89,7 @@ def settings_in_force(scene, sources, arguments=None):
         "aperture_rotation": dof.aperture_rotation,
         "aperture_ratio": dof.aperture_ratio,
         **_iris(data, opening),
+        "lens_exposure": lens.exposure.lower() if lens else None,
         "breathing": _breathing(depsgraph, camera, lens),
         "distortion": _distortion(scene, data, lens),
         "bokeh": _bokeh(scene, data, lens, opening),

@@ -103,16 +103,16 @@ class SceneDrawing:
         self._shared = SharedDrawings("MATTES" in target.defines)
         self._graded = GradedDrawings(content, buffers, graded)
 
-    def aim(self, plan, wavelengths=None, highlights=None, part=None):
+    def aim(self, plan, optics=None, highlights=None, part=None):
         """Prepare a frame or a round of it: levels, shared drawings, order of the instances.
 
         Parameters
         ----------
         plan : FramePlan
-        wavelengths : callable, optional
-            From a sample, or None for the reference wavelength, to its
-            `passes.surface.chromatic.ChromaticSample`; for a target of
-            `passes.surface.surface_target.in_wavelengths`.
+        optics : callable, optional
+            From a sample, or None for the lens' middle at the reference wavelength, to what is
+            bound for it; for a target of `passes.surface.surface_target.in_wavelengths` or
+            `through_lens`.
         highlights : GPUUniformBuf or None
             `HighlightParams`, for a target that splits light.
         part : tuple of 4 int, optional
@@ -120,7 +120,7 @@ class SceneDrawing:
         """
         self._plan = plan
         self._part = part
-        self._wavelengths = wavelengths or (lambda _sample: None)
+        self._optics = optics or (lambda _sample: None)
         self._highlights = highlights
         self.counts = DrawingCounts()
         self._seen = self._visible = culling.seen(self._spheres, plan)
@@ -256,11 +256,11 @@ class SceneDrawing:
                 listed += self._of_row(draws, row, level, index)
         return listed
 
-    def _draw(self, listed, view, lens_sample, index, wavelength):
+    def _draw(self, listed, view, lens_sample, index, optics):
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         state.opaque()
-        resources = {"highlights": self._highlights, "wavelength": wavelength}
+        resources = {"highlights": self._highlights, "optics": optics}
         surface.draw_sample(listed, view, self._table, lens_sample, index, **resources)
 
     def confine(self, part):
@@ -288,14 +288,14 @@ class SceneDrawing:
         plan, shared = self._plan, self._shared
         listed = self._list(self._draws, index) + self._of_single(self._by_level, index)
         with framebuffer.bind(), self.confined():
-            wavelength = self._wavelengths(index)
-            self._draw(listed, view, plan.lens_sample(index), index, wavelength)
+            optics = self._optics(index)
+            self._draw(listed, view, plan.lens_sample(index), index, optics)
 
         def draw_parent(sprite):
             drawn = self._of_row(self._by_level, sprite.row, sprite.level, index)
             parent = sprite.parent
-            wavelength = self._wavelengths(parent)
-            self._draw(drawn, view, plan.lens_sample(parent), parent, wavelength)
+            optics = self._optics(parent)
+            self._draw(drawn, view, plan.lens_sample(parent), parent, optics)
 
         before = shared.drawn + shared.copied
         shared.copy(index, framebuffer, targets, draw_parent)
@@ -310,7 +310,7 @@ class SceneDrawing:
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         with framebuffer.bind(), self.confined():
             lens_sample = self._plan.lens_sample(index)
-            resources = {"highlights": self._highlights, "wavelength": self._wavelengths(index)}
+            resources = {"highlights": self._highlights, "optics": self._optics(index)}
             surface.draw_glows(listed, view, self._table, lens_sample, **resources)
 
     @property

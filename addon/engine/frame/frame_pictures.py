@@ -16,6 +16,9 @@ from ...sampling.tile_control import TILE
 from ...snapshot.render_passes import cryptomatte_kinds
 from ..bokeh.marks import mark_targets, shows_marks
 
+# Weights that are the same for all tiles, and all over the picture.
+_NOWHERE = (None, None)
+
 
 class FramePictures:
     """Reads the pictures of a frame off its targets.
@@ -32,9 +35,10 @@ class FramePictures:
     targets : Targets
         With those of `target_specs`, and the sums of the samples.
     fullscreen : GPUBatch
+    lens : LensTables or None
     """
 
-    def __init__(self, plan, content, buffers, drawing, view, targets, fullscreen):
+    def __init__(self, plan, content, buffers, drawing, view, targets, fullscreen, lens=None):
         self._plan = plan
         self._content = content
         self._buffers = buffers
@@ -42,6 +46,7 @@ class FramePictures:
         self._view = view
         self._targets = targets
         self._fullscreen = fullscreen
+        self._lens = lens
         self._kinds = cryptomatte_kinds(plan.passes)
         self._nearest = None
 
@@ -49,7 +54,7 @@ class FramePictures:
     def target_specs(plan):
         """Return the render targets that pictures are made in."""
         specs = [TargetSpec("image", "RGBA32F", size=plan.size), *mark_targets(plan)]
-        if plan.distortion and plan.automatic:
+        if plan.distortion and (plan.automatic or plan.real_lens):
             specs.append(TargetSpec("mean", "RGBA32F"))
         if plan.distortion and cryptomatte_kinds(plan.passes):
             specs.append(TargetSpec("ranks", "RGBA32F"))
@@ -69,31 +74,32 @@ class FramePictures:
         """
         targets = self._targets
         whole = (targets["sum"], weights.by_channel)
-        tiles = weights.scales
+        tiles = (weights.scales, weights.light)
         bokeh = targets["bokeh"] if self._plan.bokeh else None
         if not shows_marks(self._plan):
-            if tiles is not None:
+            if tiles != (None, None):
                 targets.forget_framebuffers()
             self._resolve(*whole, origin, pixel_size, bokeh, tiles)
             return
         targets.forget_framebuffers()
         with targets.framebuffer("image").bind():
-            self._resolve(*whole, bokeh=bokeh, scales=tiles)
+            self._resolve(*whole, bokeh=bokeh, by_place=tiles)
         with targets.framebuffer("seen_marks").bind():
             self._resolve(targets["marks"], 1.0)
         textures = (targets["image"], targets["seen_marks"])
         marks.draw_picture(self._fullscreen, *textures, origin, pixel_size)
 
-    def _resolve(self, total, weight, origin=(0, 0), pixel_size=1, bokeh=None, scales=None):
+    def _resolve(self, total, weight, origin=(0, 0), pixel_size=1, bokeh=None, by_place=_NOWHERE):
         state.overwrite()
         distortion = self._plan.distortion
-        if scales is not None and distortion is not None:
+        scales, light = by_place
+        if by_place != _NOWHERE and distortion is not None:
             # Divided before resampling: only means can be interpolated between pixels.
             with self._targets.framebuffer("mean").bind():
-                resolve.resolve(self._fullscreen, total, weight, scales=scales)
-            total, weight, scales = self._targets["mean"], 1.0, None
+                resolve.resolve(self._fullscreen, total, weight, scales=scales, light=light)
+            total, weight, (scales, light) = self._targets["mean"], 1.0, _NOWHERE
         resolve.resolve(
-            self._fullscreen, total, weight, origin, pixel_size, bokeh, distortion, scales
+            self._fullscreen, total, weight, origin, pixel_size, bokeh, distortion, scales, light
         )
 
     def read_combined(self, weights):
@@ -113,7 +119,8 @@ class FramePictures:
 
     def read_defocus(self, weights):
         """Return the pass Defocus, the light of the lens samples, as `read_combined`."""
-        return self._read(self._targets["sum"], weights.by_channel, weights.scales)
+        by_place = (weights.scales, weights.light)
+        return self._read(self._targets["sum"], weights.by_channel, by_place)
 
     def read_bokeh(self):
         """Return the pass Bokeh, the splatted highlights, as `read_combined`."""
@@ -127,13 +134,14 @@ class FramePictures:
 
     def read_focus_matte(self, weights):
         """Return the Focus Matte so far, shape (height, width, 1)."""
-        focus = self._read(self._targets["focus_sum"], weights.mean, weights.mean_scales)
+        by_place = (weights.mean_scales, weights.mean_light)
+        focus = self._read(self._targets["focus_sum"], weights.mean, by_place)
         return np.ascontiguousarray(focus[..., :1])
 
-    def _read(self, total, weight, scales=None):
+    def _read(self, total, weight, by_place=_NOWHERE):
         framebuffer = self._targets.framebuffer("image")
         with framebuffer.bind():
-            self._resolve(total, weight, scales=scales)
+            self._resolve(total, weight, by_place=by_place)
         return readback.read_color(framebuffer, *self._plan.size)
 
     def read_sample_count(self, counts):
@@ -163,6 +171,7 @@ class FramePictures:
                 int(name[-2:]),
                 weights.mean,
                 weights.mean_scales,
+                weights.mean_light,
             )
         found = readback.read_color(framebuffer, plan.width, plan.height)
         return self._picked(found) if plan.distortion else found
@@ -189,7 +198,7 @@ class FramePictures:
             return {}
         plan = self._plan
         slots = data.targets(names)
-        draws = self._drawing.full_detail_draws(data.target(names))
+        draws = self._drawing.full_detail_draws(data.target(names, self._lens is not None))
         bindings = [("data_buf", data.data_params(
             plan.previous, plan.next, plan.width, plan.height, plan.alpha_threshold
         ))]  # fmt: skip
@@ -209,7 +218,8 @@ class FramePictures:
             with framebuffer.bind():
                 framebuffer.clear(depth=1.0)
                 state.opaque()
-                data.draw(draws, self._view, instances, tuple(bindings))
+                middle = self._lens and self._lens.sample(None)
+                data.draw(draws, self._view, instances, tuple(bindings), middle)
             self._drawing.counts.draw_calls += len(draws)
             pictures = {
                 name: readback.read_color(targets.framebuffer(name), plan.width, plan.height)

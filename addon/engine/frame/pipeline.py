@@ -11,7 +11,7 @@ from ...device import geometry, keeping, readback
 from ...device.targets import Targets
 from ...device.uniforms import uniform_buffer
 from ...passes import background
-from ...passes.surface import chromatic, surface_target
+from ...passes.surface import chromatic, real_lens, surface_target
 from ...snapshot.render_passes import cryptomatte_kinds
 from ..bokeh.stage import BokehStage, highlight_buffer
 from ..drawing.scene_drawing import DrawingCounts, SceneDrawing
@@ -21,6 +21,7 @@ from ..visibility.stage import SceneOccluders
 from . import sample_sums
 from .frame_bokeh import FrameBokeh
 from .frame_pictures import FramePictures
+from .lens_tables import LensTables
 from .readable_frame import ReadableFrame
 from .subsampling import SubsampleBlur
 from .target_specs import needs_mattes, target_specs
@@ -86,6 +87,9 @@ class FrameRenderer(ReadableFrame):
             self._highlights = highlight_buffer(plan.bokeh)
         if plan.chromatic:
             target = surface_target.in_wavelengths(target)
+        self._lens = LensTables(plan) if plan.real_lens else None
+        if plan.real_lens:
+            target = surface_target.through_lens(target)
         levels = self._buffers.levels_version
         if (snapshot.content, target, levels) != (self._content, self._target, self._levels):
             self._content, self._target, self._levels = snapshot.content, target, levels
@@ -93,7 +97,7 @@ class FrameRenderer(ReadableFrame):
             self._occluders = SceneOccluders(snapshot.content, self._buffers)
         self._field = chromatic_resources(plan.chromatic) if plan.chromatic else None
         wavelengths = self._wavelength if plan.chromatic else None
-        self._drawing.aim(plan, wavelengths, self._highlights)
+        self._drawing.aim(plan, self._optics, self._highlights)
         self._view = uniform_buffer(view_params(plan))
         self._pixels = uniform_buffer(view_params(replace(plan, subpixels=1)))
         world = snapshot.content.world
@@ -120,6 +124,7 @@ class FrameRenderer(ReadableFrame):
             self._view,
             self._targets,
             self._fullscreen,
+            self._lens,
         )
         self._restart_plain(plan, snapshot)
 
@@ -143,6 +148,11 @@ class FrameRenderer(ReadableFrame):
         plan = self.plan.chromatic
         tint = tuple(plan.weights[index].tolist())
         return chromatic.ChromaticSample(plan.dispersion(index), tint, self._field)
+
+    def _optics(self, index):
+        """Return what is bound for a sample; for None that of the lens' middle."""
+        lens = self._lens.sample(index) if self._lens else None
+        return real_lens.SampleOptics(self._wavelength(index), lens)
 
     def _stage(self, plan):
         buffers, occluders = self._buffers, self._occluders
@@ -172,7 +182,7 @@ class FrameRenderer(ReadableFrame):
     @property
     def report(self):
         """Warnings about settings of the camera that cannot be met; known after a sample."""
-        return self._bokeh.stage.report if self._bokeh.stage else ()
+        return self.plan.report + (self._bokeh.stage.report if self._bokeh.stage else ())
 
     @property
     def bokeh_drafted(self):
@@ -268,7 +278,9 @@ class FrameRenderer(ReadableFrame):
         if earlier := self._blur:
             self._blur = SubsampleBlur(self.plan, self._drawing.nearest, wavelengths)
             self._blur.limit(earlier)
-        self._drawing.aim(self.plan, wavelengths, self._highlights, self._part())
+        if self._lens:
+            self._lens.follow(self.plan)
+        self._drawing.aim(self.plan, self._optics, self._highlights, self._part())
         for spec in self._drawing.specs():
             if spec.name not in self._targets:
                 self._targets.add(spec)
@@ -325,6 +337,7 @@ class FrameRenderer(ReadableFrame):
             self.plan.lens_sample(index),
             self._highlights,
             self._wavelength(index),
+            self._lens and self._lens.sample(index),
         )
         self._drawing.counts.draw_calls += 1
 
@@ -340,7 +353,10 @@ class FrameRenderer(ReadableFrame):
             self._blur,
             self._cryptomattes,
             tiles and tiles.active,
+            self._lens and self._lens.sample(index).light,
         )
+        if self._lens:
+            self._lens.add(index)
 
     def _empty_focus(self):
         sharp = self.plan.sharp_radius

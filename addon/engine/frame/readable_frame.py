@@ -1,5 +1,7 @@
 """Reading a frame while it is drawn or when it is done: its passes and its progress."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...sampling.tile_control import TILE
@@ -11,7 +13,7 @@ class ReadableFrame:
     """The reading half of `pipeline.FrameRenderer`: pictures and progress.
 
     A subclass has ``plan``, ``samples_done`` and, of itself, ``_pictures``, ``_targets``,
-    ``_tiles``, ``_plain`` and ``_stopped``.
+    ``_tiles``, ``_lens``, ``_plain`` and ``_stopped``.
     """
 
     @property
@@ -44,7 +46,11 @@ class ReadableFrame:
     def _weights(self):
         if self._tiles:
             return self._tiles.weights(self.plan, self.samples_done)
-        return weights_of(self.plan, self.samples_done)
+        found = weights_of(self.plan, self.samples_done)
+        if self._lens and self.plan.real_lens.even:
+            light, mean = self._lens.sums
+            found = replace(found, light=light, mean_light=mean)
+        return found
 
     def _sample_counts(self):
         if self._tiles:

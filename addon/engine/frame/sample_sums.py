@@ -5,7 +5,7 @@ import numpy as np
 from ...passes import accumulate, cryptomatte
 
 
-def add(batch, targets, plan, index, wavelength, blur, cryptomattes, active):
+def add(batch, targets, plan, index, wavelength, blur, cryptomattes, active, light=None):
     """Add a lens sample to the sums.
 
     Parameters
@@ -23,6 +23,8 @@ def add(batch, targets, plan, index, wavelength, blur, cryptomattes, active):
         See `render_passes.cryptomatte_kinds`.
     active : GPUTexture or None
         Of the tiles that the sample is drawn for; see `passes.cryptomatte.count`.
+    light : passes.surface.real_lens.SampleLight or None
+        What the real lens lets through.
 
     Returns
     -------
@@ -35,7 +37,7 @@ def add(batch, targets, plan, index, wavelength, blur, cryptomattes, active):
             blur.add(batch, targets, index)
         else:
             tint = wavelength.tint if wavelength else None
-            accumulate.accumulate(batch, targets["sample"], weights, tint)
+            accumulate.accumulate(batch, targets["sample"], weights, tint, light)
     # Mattes have no subsamples: that of the sample's own place gets the weight of all.
     places = np.array([[1.0 + plan.subsample_counts[index]], [1.0]])
     if plan.chromatic:
@@ -43,9 +45,9 @@ def add(batch, targets, plan, index, wavelength, blur, cryptomattes, active):
         places[0] *= plan.chromatic.weights[index, 3]
     if "focus_sum" in targets:
         with targets.framebuffer("focus_sum").bind():
-            accumulate.accumulate_focus(batch, targets["mattes"], weights * places)
+            accumulate.accumulate_focus(batch, targets["mattes"], weights * places, light)
     if cryptomattes:
         cryptomatte.count(
-            targets["mattes"], targets["tables"], cryptomattes, weights * places, active
+            targets["mattes"], targets["tables"], cryptomattes, weights * places, active, light
         )
     return 1 + ("focus_sum" in targets)

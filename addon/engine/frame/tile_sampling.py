@@ -31,12 +31,16 @@ class FrameWeights:
         Mean over the channels.
     scales, mean_scales : GPUTexture or None
         One over the weights of each tile, where tiles have different numbers of samples.
+    light, mean_light : passes.surface.real_lens.SampleLight or None
+        The weights over the picture, where they differ by place.
     """
 
     by_channel: float | tuple[float, float, float, float]
     mean: float
     scales: object = None
     mean_scales: object = None
+    light: object = None
+    mean_light: object = None
 
 
 @dataclass(frozen=True)

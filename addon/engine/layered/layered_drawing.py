@@ -76,7 +76,7 @@ class LayeredDrawing:
             field = reference and reference.resources
             made = self._buffers.captured.prepare(plan, self._highlights, field)
         else:
-            resources = {"highlights": self._highlights, "wavelength": self._wavelengths(None)}
+            resources = {"highlights": self._highlights, "optics": self._wavelengths(None)}
             target = surface_target.of_layers(self._target)
             solid = self._drawing.full_detail_draws(target)
             made = draw_scene_layers(

@@ -9,6 +9,7 @@ from .chromatic import ChromaticPlan
 from .distortion import DistortionPlan
 from .frame_samples import SampleSource
 from .layered_plan import LayeredPlan
+from .lens_plan import RealLensPlan
 
 
 @dataclass(frozen=True)
@@ -102,6 +103,10 @@ class FramePlan:
         Seconds of drawing after which no further samples are drawn.
     layered : LayeredPlan or None
         How samples are rays through depth layers; None: each is a drawing of the scene.
+    real_lens : RealLensPlan or None
+        The lens that the samples see through; None: the thin lens.
+    report : tuple of str
+        Warnings about settings of the camera that cannot be met, one sentence each.
     """
 
     width: int
@@ -138,6 +143,8 @@ class FramePlan:
     first: int = 0
     time_limit: float | None = None
     layered: LayeredPlan | None = None
+    real_lens: RealLensPlan | None = None
+    report: tuple[str, ...] = ()
 
     @property
     def size(self):

@@ -13,6 +13,7 @@ from .distortion import plan_distortion
 from .frame_plan import AutomaticSampling, FramePlan
 from .frame_samples import SampleSource
 from .layered_plan import plan_layered
+from .lens_plan import plan_real_lens
 from .quality import LEAST_ERROR, settle
 from .stack_bokeh import plan_stack_bokeh
 
@@ -209,6 +210,9 @@ def _plan(snapshot, sampling, automatic=None):
     )
     scale = coc_scale(camera.projection, film, camera.lens)
     colors = drawn.colors
+    real_lens, report = None, ()
+    if lens is not None and camera.real_lens and sampling.method == "REFERENCE":
+        real_lens, report = plan_real_lens(camera, film, lens, drawn.lens_positions)
     return FramePlan(
         width=width,
         height=height,
@@ -236,6 +240,8 @@ def _plan(snapshot, sampling, automatic=None):
         automatic=automatic,
         time_limit=sampling.time_limit,
         layered=plan_layered(sampling, source, snapshot.stack, projection),
+        real_lens=real_lens,
+        report=report,
     )
 
 

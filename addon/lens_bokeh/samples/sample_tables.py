@@ -29,9 +29,6 @@ _GOLDEN_ANGLE = 2.399963229728653
 _SOFT = 0.5
 # Clearance of rims that never cut, at the places that the slope is found for.
 _CLEAR = 0.1
-# Least light of a place of the picture, over the middle's, that an even exposure raises to the
-# middle's.
-LEAST_LIGHT = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,22 +161,12 @@ class SampleTables:
             Over that of a ray through the middle of picture and iris; at least 0.
         """
         grid = self.light_grid
-        found = self._light_at(self.places(lens_positions), spacing)
+        found = self._light_at(self.places(lens_positions), spacing, slice(0, -1))
         return found.reshape(-1, grid.rows, grid.columns)
 
-    def mean_light(self, density):
-        """Mean light of places of the iris.
-
-        Parameters
-        ----------
-        density : ndarray of shape (N, 2)
-            Lens positions spread as those of the samples, in m.
-
-        Returns
-        -------
-        ndarray of shape (rows, columns)
-        """
-        return self.light(density, np.sqrt(np.pi / len(density))).mean(axis=0)
+    def axial_light(self, lens_positions, spacing=0.0):
+        """Light of lens samples on the optical axis, shape (N,); as `light`."""
+        return self._light_at(self.places(lens_positions), spacing, slice(-1, None))[:, 0]
 
     def displaced(self, eye, moves, lens_position):
         """Displace points as a shader does, for one sample: the numpy twin.
@@ -213,10 +200,10 @@ class SampleTables:
         moved[:, :2] += delta * depth[:, None]
         return moved
 
-    def _light_at(self, places, spacing):
+    def _light_at(self, places, spacing, nodes):
         terms = disc_terms(self.orders, places).reshape(len(places), -1)
-        light = np.maximum(terms @ self._light, 0.0)
-        for rim, slope in zip(self._rims, self._slopes, strict=True):
+        light = np.maximum(terms @ self._light[:, nodes], 0.0)
+        for rim, slope in zip(self._rims[..., nodes], self._slopes[..., nodes], strict=True):
             clear = terms @ rim
             if spacing > 0.0:
                 light *= np.clip(0.5 + clear / (_SOFT * spacing * slope), 0.0, 1.0)
@@ -247,12 +234,13 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0):
     largest = float(rays.largest_vergence)
     moves, chief = _moves(rays, wide_grid.nodes, aperture_radius, ratio)
     odd = rays.orders[:, 1] % 2 == 1
-    away, turn = _polar(grid.nodes)
+    # The nodes of the picture, and the axis.
+    away, turn = _polar(np.append(grid.nodes, [[0.0, 0.0]], axis=0))
     away = rays.field_shown(away)
     every = np.concatenate([rays.light[:, None], rays.rims], axis=1)
     every = rays.of_fields(every, odd, away)
     every = np.stack([_scalar(each, rays.orders, turn) for each in np.moveaxis(every, 1, 0)])
-    every = _where_they_land(every, rays, grid, aperture_radius)
+    every[..., :-1] = _where_they_land(every[..., :-1], rays, grid, aperture_radius)
     light, rims = every[0], every[1:]
     slopes = [_rim_slope(rim, rays.orders) for rim in rims]
     # Rims that cut nothing of this picture.

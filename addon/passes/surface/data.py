@@ -45,15 +45,15 @@ def targets(names):
     return (*_GEOMETRY, _DETAIL) if "Detail" in names else _GEOMETRY
 
 
-def target(names):
-    """Return the `SurfaceTarget` of the named passes."""
-    made = _STILL
+def target(names, through_lens=False):
+    """Return the `SurfaceTarget` of the named passes, seen by a pinhole or through a real lens."""
+    made = surface_target.through_lens(_STILL) if through_lens else _STILL
     if "Vector" in names:
         made = replace(
             made,
             varyings=(("VEC4", "previous_clip"), ("VEC4", "next_clip")),
-            samplers=(("FLOAT_2D", "previous_tx"), ("FLOAT_2D", "next_tx")),
-            defines=("HAS_VECTOR",),
+            samplers=(*made.samplers, ("FLOAT_2D", "previous_tx"), ("FLOAT_2D", "next_tx")),
+            defines=(*made.defines, "HAS_VECTOR"),
         )
     if "Detail" in names:
         made = replace(
@@ -108,7 +108,7 @@ def data_params(previous, following, width, height, alpha_threshold):
     )
 
 
-def draw(draws, view_buffer, instances, bindings):
+def draw(draws, view_buffer, instances, bindings, lens=None):
     """Draw the data passes into the bound frame buffer, over `targets` by slot.
 
     Parameters
@@ -119,5 +119,8 @@ def draw(draws, view_buffer, instances, bindings):
     instances : GPUTexture
     bindings : tuple of (str, GPUUniformBuf or GPUTexture)
         ``data_buf``, and with movement ``previous_tx`` and ``next_tx``.
+    lens : real_lens.LensSample or None
+        Of the middle of a real lens.
     """
-    surface.draw_sample(draws, view_buffer, instances, np.zeros(4).tolist(), 0, bindings)
+    middle = np.zeros(4).tolist()
+    surface.draw_sample(draws, view_buffer, instances, middle, 0, bindings, optics=lens)

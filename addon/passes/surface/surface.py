@@ -263,7 +263,7 @@ def _levels_of_groups(content, buffers):
             yield number, level, group, buffer
 
 
-def draw_glows(draws, view_buffer, instances, lens_sample, highlights=None, wavelength=None):
+def draw_glows(draws, view_buffer, instances, lens_sample, highlights=None, optics=None):
     """Add the light of glowing transparent surfaces to what the frame buffer shows behind them.
 
     Opacity is decided by a random number per sample; this light is added wherever no surface of
@@ -273,12 +273,12 @@ def draw_glows(draws, view_buffer, instances, lens_sample, highlights=None, wave
     ----------
     draws : list of Draw
         Of `build_glow_draws`; the same depth buffer as `draw_sample`'s must be bound.
-    view_buffer, instances, lens_sample, highlights, wavelength
+    view_buffer, instances, lens_sample, highlights, optics
         As for `draw_sample`.
     """
     if draws:
         state.glow()
-        resources = {"highlights": highlights, "wavelength": wavelength}
+        resources = {"highlights": highlights, "optics": optics}
         draw_sample(draws, view_buffer, instances, lens_sample, 0, **resources)
 
 
@@ -290,7 +290,7 @@ def draw_sample(
     sample_index,
     bindings=(),
     highlights=None,
-    wavelength=None,
+    optics=None,
 ):
     """Draw one lens sample into the bound frame buffer.
 
@@ -308,8 +308,8 @@ def draw_sample(
         Of the target's own uniform blocks, samplers, images, whole numbers and vectors.
     highlights : GPUUniformBuf or None
         `HighlightParams`, for a target that splits light.
-    wavelength : chromatic.ChromaticSample, optional
-        Of a target `in_wavelengths`.
+    optics : chromatic.ChromaticSample, real_lens.LensSample or real_lens.SampleOptics, optional
+        Of a target `in_wavelengths`, `through_lens`, or both.
     """
     current = None
     for draw in draws:
@@ -325,8 +325,8 @@ def draw_sample(
                 bind_resource(shader, name, resource)
             if shader.declares("highlight_buf"):
                 shader.uniform_block("highlight_buf", highlights)
-            if wavelength is not None:
-                wavelength.bind(shader)
+            if optics is not None:
+                optics.bind(shader)
         if draw.material_id is not None:
             shader.uniform_float("material_id", draw.material_id)
         if draw.constants is not None:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from . import chromatic
+from . import chromatic, real_lens
 
 
 @dataclass(frozen=True)
@@ -122,4 +122,16 @@ def in_wavelengths(target):
         uniforms=(*target.uniforms, *chromatic.UNIFORMS),
         samplers=(*target.samplers, *chromatic.SAMPLERS),
         push_constants=(*target.push_constants, *chromatic.PUSH_CONSTANTS),
+    )
+
+
+def through_lens(target):
+    """Return a target whose surfaces are drawn through a real lens."""
+    return replace(
+        target,
+        defines=(*target.defines, *(name for name, _ in real_lens.DEFINES)),
+        structs=target.structs + real_lens.REAL_LENS_PARAMS.source,
+        uniforms=(*target.uniforms, *real_lens.UNIFORMS),
+        samplers=(*target.samplers, *real_lens.SAMPLERS),
+        push_constants=(*target.push_constants, *real_lens.PUSH_CONSTANTS),
     )

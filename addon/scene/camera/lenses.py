@@ -65,4 +65,5 @@ def read_real_lens(camera, shelf):
         label = None
     configuration = prescription.configuration(label)
     f_number = max(camera.dof.aperture_fstop, configuration.f_number)
-    return LensSettings(found.id, configuration.label, f_number, prescription), problems
+    own = (found.id, configuration.label, f_number, prescription, wanted.exposure)
+    return LensSettings(*own), problems

@@ -83,6 +83,9 @@ class APLANAT_CAMERA_PT_lens(CameraPanel, bpy.types.Panel):
         letters = letters_across(context)
         if settings.lens:
             _draw_state(column, camera, letters)
+        exposure = column.column()
+        exposure.active = camera.dof.use_dof and bool(settings.lens)
+        exposure.prop(settings, "exposure")
         breathing = column.column()
         breathing.active = camera.dof.use_dof and camera.type == "PERSP"
         breathing.prop(settings, "use_breathing")

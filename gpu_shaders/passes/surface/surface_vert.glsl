@@ -3,6 +3,7 @@
 // lens, m; zw: sub-pixel jitter in clip units); instance_base.
 // CHROMATIC: chromatic_buf, field_tx (field table) and dispersion (x: relative change of the focal
 // length, y: lateral strength of the sample's wavelength).
+// REAL_LENS: real_lens_buf, moves_tx and lens_slot (the sample's place in the tables).
 // HAS_VECTOR: data_buf and the instance tables of the neighbouring frames, previous_tx and next_tx;
 // HAS_DEFORMATION: the mesh's positions there.
 // Outputs: world position and normal, instance row, the attributes that the surface reads; clip
@@ -12,6 +13,9 @@
 #include "lib/surface/instance_lib.glsl"
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
+#endif
+#ifdef REAL_LENS
+#include "lib/real_lens_lib.glsl"
 #endif
 
 void main()
@@ -24,6 +28,9 @@ void main()
       field_tx, (view_buf.view * position).xyz, lens_sample.xy, dispersion, chromatic_buf);
 #else
   vec3 eye = lens_displace((view_buf.view * position).xyz, lens_sample.xy, view_buf.lens.x);
+#endif
+#ifdef REAL_LENS
+  eye.xy += real_lens_shift(moves_tx, (view_buf.view * position).xyz, lens_slot, real_lens_buf);
 #endif
   gl_Position = view_buf.projection * vec4(eye, 1.0);
   gl_Position.xy += lens_sample.zw * gl_Position.w;

@@ -1,0 +1,168 @@
+"""A real lens in shaders: variants, shared resources, a lens sample's tables (methods 1).
+
+Passes that draw one lens sample have a variant for it, `declared`; the shader side is
+``lib/real_lens_lib.glsl``.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...device.textures import texture_2d
+from ...device.uniform_block import UniformStruct
+from ...device.uniforms import bind_resource, uniform_buffer
+
+REAL_LENS_PARAMS = UniformStruct("shared/real_lens_params.glsl", "RealLensParams")
+
+UNIFORMS = (("RealLensParams", "real_lens_buf"),)
+SAMPLERS = (("FLOAT_2D", "moves_tx"),)
+PUSH_CONSTANTS = (("INT", "lens_slot"),)
+DEFINES = (("REAL_LENS", "1"),)
+# Of passes that weigh samples, or divide by their weights, over the picture.
+LIGHT_SAMPLERS = (("FLOAT_2D", "light_tx"),)
+LIGHT_CONSTANTS = (("VEC4", "light_table"),)
+LIGHT_DEFINES = (("LIGHT", "1"),)
+
+
+@dataclass(frozen=True)
+class LensSample:
+    """A lens sample of a real lens.
+
+    Parameters
+    ----------
+    slot : int
+        Its place in the tables.
+    resources : tuple of (str, GPUUniformBuf or GPUTexture)
+        As `resources` gives them.
+    light : SampleLight or None
+        None: the light is not weighted.
+    """
+
+    slot: int
+    resources: tuple
+    light: "SampleLight | None" = None
+
+    def bind(self, shader):
+        """Set what `declared` has declared in a bound shader."""
+        for name, resource in self.resources:
+            bind_resource(shader, name, resource)
+        shader.uniform_int("lens_slot", self.slot)
+
+
+@dataclass(frozen=True)
+class SampleLight:
+    """The light that a lens sample gives the places of a picture.
+
+    Parameters
+    ----------
+    texture : GPUTexture
+        Tables of samples, one above the other, of nodes from edge to edge of the picture; linear
+        filtering.
+    table : tuple of 4 float
+        Columns and rows of a table, number of tables, and which is the sample's.
+    """
+
+    texture: object
+    table: tuple[float, float, float, float]
+
+    def bind(self, shader):
+        """Set ``light_tx`` and ``light_table`` in a bound shader."""
+        shader.uniform_sampler("light_tx", self.texture)
+        shader.uniform_float("light_table", self.table)
+
+
+@dataclass(frozen=True)
+class SampleOptics:
+    """Wavelength and lens of a sample, bound together.
+
+    Parameters
+    ----------
+    wavelength : chromatic.ChromaticSample or None
+    lens : LensSample or None
+    """
+
+    wavelength: object
+    lens: LensSample | None
+
+    def bind(self, shader):
+        """Set what the sample's target declares."""
+        for part in (self.wavelength, self.lens):
+            if part is not None:
+                part.bind(shader)
+
+
+def declared(info):
+    """Return the variant of a shader for a real lens.
+
+    Parameters
+    ----------
+    info : ShaderInfo
+
+    Returns
+    -------
+    ShaderInfo
+    """
+    return replace(
+        info,
+        typedefs=info.typedefs + REAL_LENS_PARAMS.source,
+        uniforms=(*info.uniforms, *UNIFORMS),
+        samplers=(*info.samplers, *SAMPLERS),
+        push_constants=(*info.push_constants, *PUSH_CONSTANTS),
+        defines=(*info.defines, *DEFINES),
+    )
+
+
+def resources(moves, low, high, focus_vergence, largest_vergence):
+    """Upload the displacements of lens samples.
+
+    Parameters
+    ----------
+    moves : ndarray of shape (N, rows, columns, 4, 2)
+        Coefficients of the powers of the vergence over the largest, as tangents.
+    low, high : ndarray of shape (2,)
+        Field of the first and the last node.
+    focus_vergence, largest_vergence : float
+        1/m.
+
+    Returns
+    -------
+    tuple of (str, GPUUniformBuf or GPUTexture)
+    """
+    count, rows, columns = moves.shape[:3]
+    halves = moves.reshape(count * rows, columns, 2, 4).transpose(0, 2, 1, 3)
+    texture = texture_2d(halves.reshape(count * rows, 2 * columns, 4))
+    texture.filter_mode(True)
+    texture.extend_mode("EXTEND")
+    block = REAL_LENS_PARAMS.pack(
+        grid=(*low, *(1.0 / (np.asarray(high) - low))),
+        table=(columns, rows, count, 0.0),
+        vergence=(
+            1.0 / largest_vergence,
+            focus_vergence,
+            1.0 / (largest_vergence - focus_vergence),
+            0.0,
+        ),
+    )
+    return (("real_lens_buf", uniform_buffer(block)), ("moves_tx", texture))
+
+
+def light_texture(tables):
+    """Upload tables of light.
+
+    Parameters
+    ----------
+    tables : ndarray of shape (N, rows, columns) or (N, rows, columns, 4)
+
+    Returns
+    -------
+    GPUTexture
+        Linear filtering, ending at its edges.
+    """
+    if tables.ndim == 3:
+        tables, kind = tables[..., None], "R32F"
+    else:
+        kind = "RGBA32F"
+    texture = texture_2d(tables.reshape(-1, *tables.shape[2:]), kind)
+    texture.filter_mode(True)
+    texture.extend_mode("EXTEND")
+    return texture

@@ -1,0 +1,113 @@
+"""Pictures through a real lens against Cycles with an OSL camera that traces the same lens."""
+
+import math
+
+import numpy as np
+import pytest
+
+from benchmarks.bokeh.lens import has_osl
+from benchmarks.referees.osl_lens import osl_lens, shader_source
+from tests.pictures import render_aplanat, render_cycles, save_side_by_side, ssim
+
+pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
+
+FOCUS = 2.0
+
+
+def use_lens(data, name, sensor_width, distortion="NONE", exposure="EVEN"):
+    """Give a camera a lens wide open, with its focal length; return it as the OSL camera has it."""
+    from addon.lens_io.lens_shelf import LensShelf
+
+    prescription = LensShelf([]).find(name).lens.prescription
+    f_number = prescription.configuration(None).f_number
+    lens = osl_lens(prescription, None, FOCUS, f_number)
+    data.dof.use_dof, data.dof.aperture_fstop, data.dof.focus_distance = True, f_number, FOCUS
+    data.lens = 2.0 * lens.pupil_radius * f_number
+    data.sensor_fit, data.sensor_width = "HORIZONTAL", sensor_width
+    data.aplanat.lens = name
+    data.aplanat.distortion, data.aplanat.exposure = distortion, exposure
+    data.aplanat.bokeh.use = False
+    return lens
+
+
+def world(scene, color):
+    import bpy
+
+    scene.world = bpy.data.worlds.new("world")
+    background = next(n for n in scene.world.node_tree.nodes if n.type == "BACKGROUND")
+    background.inputs["Color"].default_value = (*color, 1.0)
+
+
+def balls(scene):
+    """Balls of plain colours from near to far, all over the picture."""
+    import bpy
+
+    rng = np.random.default_rng(3)
+    for number in range(24):
+        depth = (0.8, 1.4, 2.0, 3.5, 8.0)[number % 5]
+        x, y = rng.uniform(-0.36, 0.36), rng.uniform(-0.24, 0.24)
+        bpy.ops.mesh.primitive_ico_sphere_add(
+            subdivisions=3, radius=0.04 * depth, location=(x * depth, y * depth, -depth)
+        )
+        material = bpy.data.materials.new("ball")
+        tree = material.node_tree
+        tree.nodes.clear()
+        glow = tree.nodes.new("ShaderNodeEmission")
+        glow.inputs["Color"].default_value = (*rng.uniform(0.1, 1.0, 3), 1.0)
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        tree.links.new(glow.outputs["Emission"], output.inputs["Surface"])
+        bpy.context.object.data.materials.append(material)
+
+
+def traced(scene, data, lens, samples, folder):
+    import _cycles
+
+    height = data.sensor_width * scene.render.resolution_y / scene.render.resolution_x
+    source = shader_source(lens, (data.sensor_width, height), data.lens)
+    (folder / "lens.osl").write_text(source)
+    assert _cycles.osl_compile(str(folder / "lens.osl"), str(folder / "lens.oso"))
+    data.type, data.custom_bytecode = "CUSTOM", (folder / "lens.oso").read_text()
+    data.custom_bytecode_hash = "0" * 32
+    picture = render_cycles(scene, samples)
+    data.type = "PERSP"
+    return picture
+
+
+@pytest.mark.skipif(not has_osl(), reason="this Blender's Cycles comes without OSL")
+def test_a_picture_is_that_of_the_traced_lens(empty_scene, camera, tmp_path):
+    lens = use_lens(camera, "double-gauss-50mm-f2", 36.0, "LENS", "LENS")
+    world(empty_scene, (0.05, 0.08, 0.15))
+    balls(empty_scene)
+    ours = render_aplanat(empty_scene, 128)
+    theirs = traced(empty_scene, camera, lens, 768, tmp_path)
+    camera.aplanat.lens = ""
+    thin = render_aplanat(empty_scene, 128)
+    save_side_by_side(tmp_path / "ours.png", ours, theirs)
+    # Noise of the other picture alone leaves 0.98; a thin lens is far off.
+    assert ssim(ours, theirs) > 0.96, tmp_path
+    assert ssim(thin, theirs) < 0.94
+
+
+def test_an_even_exposure_is_flat_and_that_of_the_lens_darkens_corners(empty_scene, camera):
+    use_lens(camera, "double-gauss-50mm-f2", 36.0)
+    world(empty_scene, (0.5, 0.5, 0.5))
+    even = render_aplanat(empty_scene, 32)
+    assert np.abs(even[..., :3] / 0.5 - 1.0).max() < 0.002
+    assert np.abs(even[..., 3] - 1.0).max() < 0.002
+    camera.aplanat.exposure = "LENS"
+    lost = render_aplanat(empty_scene, 32)
+    middle, corner = lost[30:34, 46:50].mean(), lost[:2, :2].mean()
+    assert middle == pytest.approx(0.5 * 0.75 + 0.25 * 1.0, abs=0.01)
+    tangent = math.hypot(18.0, 12.0) / camera.lens
+    # The rims take more than the angle of the rays does.
+    assert corner < middle / (1.0 + tangent**2) ** 2
+
+
+def test_a_lens_that_cannot_be_traced_leaves_the_picture_to_a_thin_one(empty_scene, camera):
+    world(empty_scene, (0.1, 0.1, 0.1))
+    balls(empty_scene)
+    use_lens(camera, "double-gauss-50mm-f2", 36.0)
+    camera.dof.focus_distance = 0.02
+    real = render_aplanat(empty_scene, 4)
+    camera.aplanat.lens = ""
+    assert np.array_equal(real, render_aplanat(empty_scene, 4))
