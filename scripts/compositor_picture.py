@@ -19,7 +19,7 @@ sys.path.insert(0, str(REPOSITORY))
 import bpy  # noqa: E402  (after the path is set)
 
 import addon  # noqa: E402
-from tests.compositor.conftest import Nodes  # noqa: E402
+from benchmarks.scenes.compositor_nodes import Nodes  # noqa: E402
 
 SIZE, LARGE = 160, (320, 160)
 

@@ -19,7 +19,7 @@ import imageio.v3 as iio
 REPO = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPO))
 
-from tests.blender.conftest import Blender, stop  # noqa: E402
+from benchmarks.tools.real_blender import Blender, stop  # noqa: E402
 
 SCREEN = (1280, 800)
 QUALITY = 88

@@ -6,16 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-
-def _emission(bpy, name, color):
-    material = bpy.data.materials.new(name)
-    tree = material.node_tree
-    tree.nodes.clear()
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    emission = tree.nodes.new("ShaderNodeEmission")
-    emission.inputs["Color"].default_value = (*color, 1.0)
-    tree.links.new(emission.outputs[0], output.inputs["Surface"])
-    return material
+from benchmarks.scenes.materials import emission
 
 
 def _mesh_object(bpy, scene, name, make, material, smooth=False):
@@ -49,7 +40,7 @@ def build_scene(scene, f_stop=0.15):
         scene,
         "Cube",
         lambda ops, m: ops.create_cube(m, size=1.2),
-        _emission(bpy, "red", (1.0, 0.1, 0.05)),
+        emission(bpy, "red", (1.0, 0.1, 0.05)),
     )
     cube.location = (-0.9, 0.0, 0.2)
     cube.rotation_euler = (0.3, 0.2, 0.6)
@@ -58,7 +49,7 @@ def build_scene(scene, f_stop=0.15):
         scene,
         "Ball",
         lambda ops, m: ops.create_uvsphere(m, u_segments=32, v_segments=16, radius=0.7),
-        _emission(bpy, "green", (0.1, 0.8, 0.2)),
+        emission(bpy, "green", (0.1, 0.8, 0.2)),
         smooth=True,
     )
     ball.location = (0.9, 1.5, 0.1)
@@ -69,7 +60,7 @@ def build_scene(scene, f_stop=0.15):
         scene,
         "Near",
         lambda ops, m: ops.create_cone(m, segments=12, radius1=0.25, radius2=0.0, depth=0.6),
-        _emission(bpy, "blue", (0.1, 0.2, 1.0)),
+        emission(bpy, "blue", (0.1, 0.2, 1.0)),
     )
     near.location = (0.35, -2.2, -0.1)
     data = bpy.data.cameras.new("Camera")

@@ -4,21 +4,9 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from benchmarks.scenes.materials import emission
 
-def emission(bpy, name, color, attribute=None):
-    """A material that glows in one colour, or in the colour of an attribute."""
-    material = bpy.data.materials.new(name)
-    tree = material.node_tree
-    tree.nodes.clear()
-    glow = tree.nodes.new("ShaderNodeEmission")
-    glow.inputs["Color"].default_value = (*color, 1.0)
-    if attribute is not None:
-        node = tree.nodes.new("ShaderNodeVertexColor")
-        node.layer_name = attribute
-        tree.links.new(node.outputs["Color"], glow.inputs["Color"])
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(glow.outputs["Emission"], output.inputs["Surface"])
-    return material
+__all__ = ["emission"]
 
 
 def mesh(bpy, name, vertices, faces):

@@ -7,6 +7,8 @@ import numpy as np
 
 from addon.cli.render.scene_setup import use_engine
 
+from ..scenes.materials import emission
+
 # Of the chart of many highlights: between so many metres, focus, and behind bars at a third of it.
 _NEAR, _FAR, FOCUS = 8.0, 16.0, 4.0
 _BARS = 8
@@ -107,12 +109,5 @@ def _mesh(scene, name, polygons, color):
     data = bpy.data.meshes.new(name)
     faces = np.arange(number * corners).reshape(number, corners)
     data.from_pydata(polygons.reshape(-1, 3).tolist(), [], faces.tolist())
-    material = bpy.data.materials.new(name)
-    tree = material.node_tree
-    tree.nodes.clear()
-    glow = tree.nodes.new("ShaderNodeEmission")
-    glow.inputs["Color"].default_value = (*color, 1.0)
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(glow.outputs["Emission"], output.inputs["Surface"])
-    data.materials.append(material)
+    data.materials.append(emission(bpy, name, color))
     scene.collection.objects.link(bpy.data.objects.new(name, data))

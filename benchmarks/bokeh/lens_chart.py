@@ -11,6 +11,7 @@ from addon.errors import InputError
 from addon.lens_io.lens_shelf import LensShelf
 
 from ..referees.osl_lens import osl_lens
+from ..scenes.materials import emission
 
 RESOLUTION = (1440, 960)
 # Of a disc at infinity, px; the nearest focus over the focal length.
@@ -125,13 +126,7 @@ def chart_scene(chart, depth, fields, iris):
     render.resolution_x, render.resolution_y = RESOLUTION
     render.resolution_percentage = 100
     scene.aplanat.pixel_filter, render.filter_size = "BOX", 1.0
-    material = bpy.data.materials.new("lamp")
-    tree = material.node_tree
-    tree.nodes.clear()
-    glow = tree.nodes.new("ShaderNodeEmission")
-    glow.inputs["Strength"].default_value = _LIGHT
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(glow.outputs["Emission"], output.inputs["Surface"])
+    material = emission(bpy, "lamp", strength=_LIGHT)
     lamps = []
     for field in fields:
         (right, up, forwards), radius = chart.lamp(depth, field)

@@ -8,6 +8,8 @@ import numpy as np
 
 from addon.engine.render_engine import ENGINE_ID
 
+from ..scenes.materials import emission
+
 FOCUS = 4.0
 # Of the field of points and the bars.
 DISTANCE = 5.0
@@ -108,15 +110,7 @@ def _quad(center, half, color, strength):
     x, y = half
     mesh = bpy.data.meshes.new("Quad")
     mesh.from_pydata([(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)], [], [(0, 1, 2, 3)])
-    material = bpy.data.materials.new("Glow")
-    tree = material.node_tree
-    tree.nodes.clear()
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    emission = tree.nodes.new("ShaderNodeEmission")
-    emission.inputs["Color"].default_value = (*color, 1.0)
-    emission.inputs["Strength"].default_value = strength
-    tree.links.new(emission.outputs[0], output.inputs["Surface"])
-    mesh.materials.append(material)
+    mesh.materials.append(emission(bpy, "Glow", color, strength))
     quad = bpy.data.objects.new("Quad", mesh)
     quad.location = center
     bpy.context.scene.collection.objects.link(quad)

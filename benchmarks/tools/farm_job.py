@@ -59,7 +59,7 @@ def build_shot(path, failing):
 
     sys.path.insert(0, str(REPOSITORY))
     import addon
-    from tests.cli.conftest import build_scene
+    from benchmarks.scenes.small_scene import build_scene
 
     addon.register()
     try:

@@ -83,7 +83,7 @@ def build_shot(path, frames):
 
     sys.path.insert(0, str(REPOSITORY))
     import addon
-    from tests.capture.conftest import build
+    from benchmarks.scenes.capture_scene import build
 
     addon.register()
     try:

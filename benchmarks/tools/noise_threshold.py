@@ -157,8 +157,8 @@ def opened(case, options):
         addon.register()
     kind, *rest = case.split(":")
     if kind == "zoo":
-        from tests.zoo.scenes.recipe import make_recipe
-        from tests.zoo.scenes.script import build
+        from benchmarks.zoo.scenes.recipe import make_recipe
+        from benchmarks.zoo.scenes.script import build
 
         build(make_recipe(bpy, *map(int, rest)))
     elif case.endswith(".blend"):

@@ -15,7 +15,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPOSITORY))
-from tests import frame_orders  # noqa: E402  (after the path is set)
+from benchmarks.scenes import frame_orders  # noqa: E402  (after the path is set)
 
 
 def main():
@@ -68,7 +68,7 @@ def compare(folder, arguments):
 def _built(path, lens):
     code = (
         f"import sys; sys.path.insert(0, {str(REPOSITORY)!r}); import bpy, addon; addon.register();"
-        f" from tests import frame_orders; frame_orders.build(bpy, {lens!r});"
+        f" from benchmarks.scenes import frame_orders; frame_orders.build(bpy, {lens!r});"
         f" bpy.ops.wm.save_as_mainfile(filepath={str(path)!r})"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)

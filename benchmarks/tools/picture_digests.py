@@ -65,10 +65,10 @@ def shared_digests(bpy, render):
 
 def random_digests(bpy, render, seed, count):
     """Yield name and digest of random scenes; None where Blender or a clock decides."""
-    from tests.zoo.blenders_part import digests_of_scenes
-    from tests.zoo.judge import Fault
-    from tests.zoo.scenes.recipe import make_recipe
-    from tests.zoo.scenes.script import build
+    from benchmarks.zoo.blenders_part import digests_of_scenes
+    from benchmarks.zoo.judge import Fault
+    from benchmarks.zoo.scenes.recipe import make_recipe
+    from benchmarks.zoo.scenes.script import build
 
     for number in range(count):
         recipe = json.loads(json.dumps(make_recipe(bpy, seed, number)))
@@ -92,7 +92,7 @@ def main(words=None):
     import bpy
 
     import addon
-    from tests.zoo.judge import render
+    from benchmarks.zoo.judge import render
 
     addon.register()
     found = {} if options.no_shared else dict(shared_digests(bpy, render))

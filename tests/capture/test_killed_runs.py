@@ -7,8 +7,8 @@ from contextlib import contextmanager
 import pytest
 
 from addon.cli.command import main
+from benchmarks.scenes.capture_scene import build
 from benchmarks.tools.killed_runs import killed_once, save_shot, start_and_kill
-from tests.capture.conftest import build
 
 FRAMES = 3
 FEW = ("--layers", "2", "--overscan", "0")

@@ -9,7 +9,7 @@ from addon.engine.refocus.camera_settings import camera_settings
 from addon.engine.refocus.refocusing import refocus
 from addon.engine.refocus.settings import f_stop_of
 from addon.engine.shared_resources import listen
-from tests.capture.conftest import add_plane
+from benchmarks.scenes.capture_scene import add_plane
 from tests.pictures import energy_ratio, save_side_by_side, ssim
 
 SIZE = (96, 54)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from addon.engine.shared_resources import listen
+from benchmarks.scenes.materials import emission
 from tests.pictures import srgb, ssim
 
 # Of the lamps: 2.5 pixels wide, so bright, in each channel.
@@ -124,14 +125,7 @@ def _quad(bpy, name, place, size, color, strength=1.0):
     mesh = bpy.data.meshes.new(name)
     corners = [(-half, 0, -half), (half, 0, -half), (half, 0, half), (-half, 0, half)]
     mesh.from_pydata(corners, [], [(0, 1, 2, 3)])
-    material = bpy.data.materials.new(name)
-    nodes = material.node_tree.nodes
-    nodes.clear()
-    glow, output = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeOutputMaterial")
-    glow.inputs["Color"].default_value = (*color, 1.0)
-    glow.inputs["Strength"].default_value = strength
-    material.node_tree.links.new(glow.outputs[0], output.inputs["Surface"])
-    mesh.materials.append(material)
+    mesh.materials.append(emission(bpy, name, color, strength))
     made = bpy.data.objects.new(name, mesh)
     made.location = place
     bpy.context.scene.collection.objects.link(made)

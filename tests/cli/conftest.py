@@ -5,42 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-SIZE = (48, 32)
-
-
-def build_scene(bpy):
-    """Make the current file a glowing, textured-looking plane behind a smaller one, in focus."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    scene = bpy.context.scene
-    for name, distance, size, color in (
-        ("Far", 8.0, 6.0, (0.1, 0.2, 0.6, 1.0)),
-        ("Near", 4.0, 1.0, (0.9, 0.4, 0.1, 1.0)),
-    ):
-        bpy.ops.mesh.primitive_plane_add(size=size, location=(0.0, 0.0, -distance))
-        plane = bpy.context.object
-        plane.name = name
-        material = bpy.data.materials.new(name)
-        nodes = material.node_tree.nodes
-        nodes.clear()
-        emission = nodes.new("ShaderNodeEmission")
-        emission.inputs["Color"].default_value = color
-        output = nodes.new("ShaderNodeOutputMaterial")
-        material.node_tree.links.new(emission.outputs[0], output.inputs[0])
-        plane.data.materials.append(material)
-    for name in ("Camera", "Second"):
-        camera = bpy.data.objects.new(name, bpy.data.cameras.new(name))
-        scene.collection.objects.link(camera)
-        camera.data.dof.focus_distance = 4.0
-        camera.data.dof.aperture_fstop = 0.5
-        camera.data.dof.use_dof = True
-    scene.camera = scene.objects["Camera"]
-    render = scene.render
-    render.resolution_x, render.resolution_y = SIZE
-    render.resolution_percentage = 100
-    scene.view_settings.view_transform = "Standard"
-    scene.aplanat.method = "REFERENCE"
-    scene.aplanat.render_samples = 4
-    return scene
+from benchmarks.scenes.small_scene import build_scene
 
 
 @pytest.fixture(scope="session")

@@ -7,6 +7,7 @@ own, rendered by Cycles with one sample.
 import numpy as np
 import pytest
 
+from benchmarks.scenes.small_scene import build_scene
 from tests.cli.animation_scenes import (
     add_compositor,
     add_file_output,
@@ -22,7 +23,6 @@ from tests.cli.animation_scenes import (
     read_exr,
     two_eyes,
 )
-from tests.cli.conftest import build_scene
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 

@@ -7,7 +7,7 @@ import pytest
 
 from addon.errors import InputError
 from addon.layers.layer_file import load_layers, load_words
-from tests.capture.conftest import build
+from benchmarks.scenes.capture_scene import build
 
 FEW = ("--layers", "2", "--overscan", "0")
 

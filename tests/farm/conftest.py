@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from tests.cli.conftest import build_scene
+from benchmarks.scenes.small_scene import build_scene
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 

@@ -272,10 +272,6 @@ def test_only_the_command_line_looks_up_to_the_roof():
     assert {module for module, _ in up - {("registration", "")}} <= {"cli.command"}
 
 
-def test_nothing_imports_what_measures():
-    assert not [i for i in IMPORTS if i.target.partition(".")[0] in {"benchmarks", "tests"}]
-
-
 def test_errors_imports_nothing():
     assert not [found for found in IMPORTS if found.module == "errors"]
 

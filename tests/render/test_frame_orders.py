@@ -10,7 +10,7 @@ import pytest
 
 from addon.engine.shared_resources import resources
 from addon.levels.level_store import LevelStore
-from tests import frame_orders
+from benchmarks.scenes import frame_orders
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 # Far enough apart that collapses of one pose would not be those of another.

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.cli.conftest import build_scene
+from benchmarks.scenes.small_scene import build_scene
 
 LINE = "scene 'Scene': motion blur is not drawn"
 

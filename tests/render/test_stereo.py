@@ -9,7 +9,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from tests.cli.conftest import build_scene
+from benchmarks.scenes.small_scene import build_scene
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.zoo.blenders_part import digest
+from benchmarks.zoo.blenders_part import digest
 
 
 def cube(bpy):

@@ -5,9 +5,9 @@ import pytest
 
 from addon.engine import final_render
 from addon.engine.frame.pipeline import FrameRenderer
-from tests.zoo import agreement
-from tests.zoo.judge import Fault, judge
-from tests.zoo.scenes.script import build
+from benchmarks.zoo import agreement
+from benchmarks.zoo.judge import Fault, judge
+from benchmarks.zoo.scenes.script import build
 
 PLAIN = {
     "scene": {"render.resolution_x": 8, "render.resolution_y": 6},

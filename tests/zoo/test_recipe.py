@@ -5,9 +5,9 @@ import random
 
 import pytest
 
-from tests.zoo.judge import LAYER_PASSES, OWN_PASSES
-from tests.zoo.scenes.random_settings import draw_settings
-from tests.zoo.scenes.recipe import make_recipe
+from benchmarks.zoo.judge import LAYER_PASSES, OWN_PASSES
+from benchmarks.zoo.scenes.random_settings import draw_settings
+from benchmarks.zoo.scenes.recipe import make_recipe
 
 
 def many(bpy, count=60):

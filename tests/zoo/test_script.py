@@ -5,10 +5,10 @@ import sys
 
 import numpy as np
 
+from benchmarks.zoo.judge import render
+from benchmarks.zoo.scenes.recipe import make_recipe
+from benchmarks.zoo.scenes.script import build, script
 from tests.conftest import REPOSITORY
-from tests.zoo.judge import render
-from tests.zoo.scenes.recipe import make_recipe
-from tests.zoo.scenes.script import build, script
 
 
 def summary(bpy):

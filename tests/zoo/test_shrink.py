@@ -2,8 +2,8 @@
 
 import json
 
-from tests.zoo.scenes.recipe import make_recipe
-from tests.zoo.shrink import reductions, shrink
+from benchmarks.zoo.scenes.recipe import make_recipe
+from benchmarks.zoo.shrink import reductions, shrink
 
 
 def holds(word):

@@ -2,9 +2,9 @@
 
 import pytest
 
-from tests.zoo.judge import judge
-from tests.zoo.scenes.recipe import make_recipe
-from tests.zoo.scenes.script import script
+from benchmarks.zoo.judge import judge
+from benchmarks.zoo.scenes.recipe import make_recipe
+from benchmarks.zoo.scenes.script import script
 
 SEED = 1
 COUNT = 40

@@ -10,23 +10,12 @@ import math
 import numpy as np
 import pytest
 
+from benchmarks.scenes.materials import emission
 from tests.pictures import energy_ratio, render_aplanat, render_cycles, ssim
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
 FOCUS = 5.0
-
-
-def emission_material(bpy, name, color, strength=1.0):
-    material = bpy.data.materials.new(name)
-    tree = material.node_tree
-    tree.nodes.clear()
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    emission = tree.nodes.new("ShaderNodeEmission")
-    emission.inputs["Color"].default_value = (*color, 1.0)
-    emission.inputs["Strength"].default_value = strength
-    tree.links.new(emission.outputs[0], output.inputs["Surface"])
-    return material
 
 
 def add_quad(bpy, name, center, size, color, strength=1.0):
@@ -36,7 +25,7 @@ def add_quad(bpy, name, center, size, color, strength=1.0):
     half = size / 2
     corners = [(-half, 0, -half), (half, 0, -half), (half, 0, half), (-half, 0, half)]
     mesh.from_pydata(corners, [], [(0, 1, 2, 3)])
-    mesh.materials.append(emission_material(bpy, name, color, strength))
+    mesh.materials.append(emission(bpy, name, color, strength))
     quad = bpy.data.objects.new(name, mesh)
     quad.location = (x, y, z)
     bpy.context.collection.objects.link(quad)

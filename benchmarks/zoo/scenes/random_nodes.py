@@ -73,6 +73,7 @@ class NodeDrawer:
         self._kinds = {}
 
     def __enter__(self):
+        """Make the tree."""
         self._tree = self._bpy.data.node_groups.new("trial", "ShaderNodeTree")
         for name in sorted(dir(self._bpy.types)):
             if not name.startswith("ShaderNode") or name in _LEFT_OUT or "Output" in name:
@@ -84,6 +85,7 @@ class NodeDrawer:
         return self
 
     def __exit__(self, *_exception):
+        """Remove the tree."""
         self._bpy.data.node_groups.remove(self._tree)
 
     def shader(self, depth=3, kinds=_SHADERS):

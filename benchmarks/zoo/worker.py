@@ -1,6 +1,6 @@
 """A process that judges scenes: one line of JSON in, one line of JSON out.
 
-    python -m tests.zoo.worker
+    python -m benchmarks.zoo.worker
 
 A request is ``{"seed": 1, "number": 7}`` (with ``"draw": true`` the scene is drawn and not
 judged) or ``{"recipe": {...}, "ask": ["disagrees"]}``; the answer holds the verdict's fields and,

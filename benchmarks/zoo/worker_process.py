@@ -82,7 +82,7 @@ class Worker:
         environment = dict(os.environ, LP_NUM_THREADS=threads, OPENBLAS_NUM_THREADS=threads)
         environment["PYTHONPATH"] = str(REPOSITORY)
         self._process = subprocess.Popen(
-            [sys.executable, "-X", "faulthandler", "-m", "tests.zoo.worker"],
+            [sys.executable, "-X", "faulthandler", "-m", "benchmarks.zoo.worker"],
             cwd=REPOSITORY,
             env=environment,
             stdin=subprocess.PIPE,

@@ -17,7 +17,7 @@ from .shrink import shrink
 from .worker_process import REPOSITORY, START_SECONDS, Worker
 
 # What decides how a scene comes out: with other sources, scenes are judged again.
-_SOURCES = ("addon", "gpu_shaders", "lens_profiles", "tests/zoo")
+_SOURCES = ("addon", "gpu_shaders", "lens_profiles", "benchmarks/zoo")
 
 
 class Results:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+REPOSITORY = Path(__file__).resolve().parents[2]
 SIZE = (96, 54)
 # Far above the number from which collapses are kept on disk.
 _SPHERE = (256, 128)
@@ -113,7 +113,7 @@ def _lamps(bpy, scene):
 
 
 def _painted(bpy, name, mesh):
-    """A lit surface of an image, with a glow of vertex colours."""
+    """Return a lit surface of an image, with a glow of vertex colours."""
     size = 32
     image = bpy.data.images.new(name, size, size)
     image.pixels = [

@@ -1,0 +1,1 @@
+"""Small scenes that tools and tests build, and their pictures."""

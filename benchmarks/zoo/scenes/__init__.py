@@ -1,0 +1,1 @@
+"""Random scenes as recipes, and as scripts that build them."""
