@@ -118,3 +118,50 @@ def coc_radius_px(depth, lens, focal_length_px):
     """
     focus = lens.focus_distance
     return focal_length_px * lens.aperture_radius * (depth - focus) / (depth * focus)
+
+
+def projected_areas(corners, focus_distance, extent, orthographic=False):
+    """Return the areas of triangles from the lens' middle, and their mean over the lens.
+
+    Seen from a place `v` on the lens, a point at depth `d` appears at ``p - v k``, with ``p`` where
+    the pinhole shows it and ``k = 1/d - 1/f`` (with a parallel projection ``1 - d/f``), `f` the
+    focus distance. The signed area of a triangle is therefore ``a + g . v``: it changes linearly
+    over the lens, and its mean over the lens is the area from the middle, unless the plane of the
+    triangle cuts the lens. Such a triangle is seen from the edge, and from both its sides.
+
+    Parameters
+    ----------
+    corners : ndarray of shape (..., 3, 3)
+        The three corners, in camera space, m; in front of the lens.
+    focus_distance : float
+        In m.
+    extent : sequence of 2 float
+        Half the width and height of the opening, an ellipse, m.
+    orthographic : bool
+        A parallel projection.
+
+    Returns
+    -------
+    middle, mean : ndarray of shape (...)
+        On a plane at unit distance, or across the projection, in m^2; front and back facing alike.
+    """
+    depth = -corners[..., 2:]
+    if orthographic:
+        place, moves = corners[..., :2], 1.0 - depth / focus_distance
+    else:
+        place, moves = corners[..., :2] / depth, 1.0 / depth - 1.0 / focus_distance
+    u, w = (place[..., i, :] - place[..., 0, :] for i in (1, 2))
+    alpha, beta = (moves[..., i, :] - moves[..., 0, :] for i in (1, 2))
+    middle = 0.5 * np.abs(u[..., 0] * w[..., 1] - u[..., 1] * w[..., 0])
+    turned = 0.5 * (beta * u - alpha * w)
+    # Largest change over the lens.
+    change = np.hypot(turned[..., 1] * extent[0], turned[..., 0] * extent[1])
+    cut = middle < change
+    share = np.where(cut, middle, 0.0) / np.maximum(change, 1e-300)
+    return middle, np.where(cut, change * _mean_distance(share), middle)
+
+
+def _mean_distance(c):
+    """Return the mean of ``|c + x|`` over a unit disk, for c from 0 to 1."""
+    root = np.sqrt(1.0 - c**2)
+    return 2.0 / np.pi * (c * np.arcsin(c) + root * (c**2 + 2.0) / 3.0)

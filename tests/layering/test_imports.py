@@ -83,8 +83,8 @@ ROOMS = {
         "engine.drawing",
     ),
     "engine.bokeh": (
-        *("device", "optics", "lens_bokeh.openings", "lens_bokeh.look", "lens_bokeh.tables"),
-        *("lens_io",),
+        *("device", "optics", "sampling", "lens_bokeh.openings", "lens_bokeh.look"),
+        *("lens_bokeh.tables", "lens_io"),
         *("passes", "passes.surface", "passes.bokeh"),
         *("engine.layered", "engine.visibility"),
     ),

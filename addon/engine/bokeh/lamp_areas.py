@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..planning.projected_area import projected_areas
+from ...sampling.thin_lens import projected_areas
 
 # A lamp thinner than this, in texels, may be missed altogether: then those that are found stand for
 # those that are missed, and are not scaled.
@@ -24,7 +24,7 @@ _LONGEST = 1024.0
 # many lamps that the errors of their counts cancel in the sum.
 _MOST_TRIANGLES = 1 << 21
 # Most that the light of an instance grows by what the rest of the lens sees. Where surfaces as a
-# whole need more they are not splatted (see `engine.planning.projected_area`); one of many may.
+# whole need more they are not splatted (see `engine.planning.seen_from_edge`); one of many may.
 _MOST_GROWTH = 2.0
 # Triangles that are measured at once, to bound memory.
 _AT_ONCE = 1 << 16

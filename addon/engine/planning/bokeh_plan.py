@@ -28,7 +28,7 @@ from .bokeh_search import (
     subpixels_of_lamps,
     subpixels_of_triangles,
 )
-from .projected_area import seen_from_edge
+from .seen_from_edge import seen_from_edge
 
 # Depth that represents infinity, in focus distances: the circle of confusion differs by 1e-6.
 INFINITY = 1e6

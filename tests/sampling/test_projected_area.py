@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from addon.engine.planning.plan import plan_frame
-from addon.engine.planning.projected_area import projected_areas
 from addon.sampling.iris import Iris
-from addon.sampling.thin_lens import ThinLens
+from addon.sampling.thin_lens import ThinLens, projected_areas
 from addon.snapshot.camera import BokehSettings
 from tests.gpu.conftest import triangles_snapshot
 
