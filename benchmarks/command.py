@@ -1,5 +1,6 @@
 """`aplanat bench`: which bench its words ask for."""
 
+from addon import register
 from addon.cli import command
 
 from .arguments import parse
@@ -18,7 +19,7 @@ def main(words, program="aplanat"):
 
 def run_process():
     """Run the bench of `sys.argv` as this process, and end it."""
-    command.run_process(parse, runner)
+    command.run_process(register, parse, runner)
 
 
 def runner(arguments, prepare):

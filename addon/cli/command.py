@@ -57,13 +57,20 @@ def main(words, program="aplanat", parse=words_of.parse, runner_of=None):
     return _run(command, words, program, lambda: None, lambda console: console.close())
 
 
-def run_process(parse=words_of.parse, runner_of=None):
-    """Run the command of `sys.argv` as this process, and end it; arguments as of `main`.
+def run_process(register, parse=words_of.parse, runner_of=None):
+    """Run the command of `sys.argv` as this process, and end it.
 
     Stdout and stderr stay redirected to the end: what Blender prints while it exits is dropped.
+
+    Parameters
+    ----------
+    register : callable
+        Registers Aplanat; only called by commands that need Blender.
+    parse, runner_of : callable
+        See `main`.
     """
     command = _Command(parse, runner_of or _runner)
-    sys.exit(_run(command, sys.argv[1:], "aplanat", _register, lambda console: None))
+    sys.exit(_run(command, sys.argv[1:], "aplanat", register, lambda console: None))
 
 
 def run_in_blender(words):
@@ -92,12 +99,6 @@ def _run(command, words, program, prepare, finish):
         return _carry_out(command, arguments, console, prepare)
     finally:
         finish(console)
-
-
-def _register():
-    from .. import register
-
-    register()
 
 
 def _carry_out(command, arguments, console, prepare):
