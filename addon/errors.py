@@ -77,7 +77,7 @@ class StrictError(InputError):
         counted = "a warning" if count == 1 else f"{count} warnings, the first of them"
         super().__init__(
             f"--strict: nothing is written because of {counted}: {self.warnings[0]}; mend it, or"
-            " render without --strict"
+            " leave out --strict"
         )
 
 

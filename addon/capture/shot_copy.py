@@ -235,6 +235,7 @@ class ShotCopy:
             "Freestyle": render.use_freestyle,
             "stereoscopy": render.use_multiview,
             "the render region": render.use_border,
+            "motion blur": render.use_motion_blur,
         }
         for what, is_used in left_out.items():
             if is_used:

@@ -51,9 +51,7 @@ def wire_render(scene, view_layer):
     if given["Defocus"] is None or not given["Defocus"].enabled:
         given = {"Defocus": picture, "Bokeh": None}
     for name, socket in given.items():
-        if socket is not None and not _comes_from(mix.inputs[name], source):
-            tree.links.new(socket, mix.inputs[name])
-            changed = True
+        changed |= _feed(tree, mix.inputs[name], socket, source)
     return changed | _end_in(tree, mix.outputs["Image"], source), _untold(tree, mix)
 
 
@@ -162,8 +160,19 @@ def _take_over(tree, picture, mix):
             tree.links.new(mix.outputs["Image"], link.to_socket)
 
 
-def _comes_from(socket, source):
-    return any(link.from_node == source for link in socket.links)
+def _feed(tree, target, socket, source):
+    """Link a socket of a node to one of a Mix; None: nothing of that node. Whether it was not yet.
+
+    With another engine another socket is due: the whole picture, or the part without highlights.
+    """
+    links = [link for link in target.links if link.from_node == source]
+    if [link.from_socket for link in links] == ([socket] if socket else []):
+        return False
+    for link in links:
+        tree.links.remove(link)
+    if socket is not None:
+        tree.links.new(socket, target)
+    return True
 
 
 def _end_in(tree, socket, source):

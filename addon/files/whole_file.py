@@ -8,6 +8,7 @@ permissions that the user's umask leaves, as if it had been opened for writing.
 
 import contextlib
 import os
+import re
 import secrets
 import shutil
 import signal
@@ -118,6 +119,23 @@ def _open(destination):
         with contextlib.suppress(IsADirectoryError, NotImplementedError, OSError):
             return _NamelessFile(destination)
     return _NamedFile(destination)
+
+
+def reason_of(error):
+    """Return why a library could not write a `whole_file`, without the hidden name of the file.
+
+    Parameters
+    ----------
+    error : Exception
+
+    Returns
+    -------
+    str
+        Without a dot at the end.
+    """
+    words = " ".join(str(error).split())
+    words = re.sub(r"""(to (image )?file )?["']?/proc/self/fd/\d+["']?[.:]?""", "", words)
+    return " ".join(words.split()).rstrip(" .") or type(error).__name__
 
 
 def _shortened(name):

@@ -108,8 +108,10 @@ def _is_coordinate(channel, part):
 def _colors_of(part, stem, red):
     letters = ("red", "green", "blue", "alpha") if len(red) > 1 else ("r", "g", "b", "a")
     by_letter = {_split(name)[1].lower(): name for name in part.channels if _split(name)[0] == stem}
-    # In lower case they are Cryptomatte's.
-    if red == "r" or not all(letter in by_letter for letter in letters[:3]):
+    if not all(letter in by_letter for letter in letters[:3]):
+        return None
+    # In lower case and with a number before them they are Cryptomatte's.
+    if red == "r" and re.search(r"crypto|\d\d$", stem.lower()):
         return None
     return tuple(by_letter[letter] for letter in letters if letter in by_letter)
 

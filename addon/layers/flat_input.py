@@ -4,7 +4,7 @@ What a file does not tell is guessed, and every guess is a line of the stack's r
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -93,6 +93,7 @@ def load_flat(path, options=None):
     color = color.astype(np.float32)
     _mend_colors(color, report)
     depth = window.placed(depth_part, depth_name, np.inf).astype(np.float64)
+    _check_covered(window, (color_part, names[0]), (depth_part, depth_name), report)
     depth = _in_metres(path, depth, color[..., 3], depth_name, options, report)
     camera = flat_camera(color_part.header, window, depth, options, report)
     if options.ray and not camera.orthographic:
@@ -156,6 +157,22 @@ class _Window:
         return pixels
 
 
+def _check_covered(window, color, depth, report):
+    """Report a depth that ends before the colours do; both as a part and its channel."""
+    colored, known = (
+        window.placed(replace(part, channels={"": np.ones(part.channels[name].shape)}), "", 0.0)
+        for part, name in (color, depth)
+    )
+    missing = int(((colored > 0.0) & (known == 0.0)).sum())
+    if missing:
+        part, name = depth
+        rows, columns = part.channels[name].shape
+        report.append(
+            f"channel '{name}' has {columns} x {rows} pixels and leaves {missing} of the picture's"
+            f" {int(colored.sum())} without a depth: taken for background"
+        )
+
+
 def _corners(window):
     return tuple(tuple(int(value) for value in corner) for corner in window)
 
@@ -180,7 +197,12 @@ def _in_metres(path, depth, coverage, name, options, report):
             f"'{path}': channel '{name}' has no depth that is a finite number; name another one"
             " with --depth-channel"
         )
-    if options.depth_range is None and (values[known] <= 0.0).mean() > 0.9:
+    if options.depth_range is None and not values[known].any():
+        raise InputError(
+            f"'{path}': channel '{name}' has depth 0 everywhere; name another one with"
+            " --depth-channel"
+        )
+    if options.depth_range is None and (values[known] < 0.0).mean() > 0.9:
         values = -values
         report.append("depths are negative: taken for positions before the camera, turned round")
         values[~known] = np.inf

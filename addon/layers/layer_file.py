@@ -16,7 +16,7 @@ from dataclasses import asdict, fields
 import numpy as np
 
 from ..errors import InputError, UnfinishedFileError
-from ..files.whole_file import whole_file
+from ..files.whole_file import reason_of, whole_file
 from .exr_file import read_exr
 from .layer_stack import DepthLayer, LayerCamera, LayerStack
 
@@ -79,7 +79,7 @@ def save_layers(path, stack, *, words=None, half=False):
             OpenEXR.File(parts).write(place)
         except RuntimeError as error:
             raise UnfinishedFileError(
-                f"cannot write '{path}': {' '.join(str(error).split())}; is the disk full?"
+                f"cannot write '{path}': {reason_of(error)}; is the disk full?"
             ) from error
 
 
@@ -173,6 +173,7 @@ def check_stack(stack, name):
     """
     if not stack.layers:
         raise InputError(f"{name} has no layers; capture again")
+    _check_camera(stack.camera, name)
     size = stack.width + 2 * stack.overscan[0], stack.height + 2 * stack.overscan[1]
     for number, layer in enumerate(stack.layers):
         for what, pixels in (
@@ -186,6 +187,21 @@ def check_stack(stack, name):
                     f" pixels, and picture and overscan {size[0]} x {size[1]}; capture again"
                 )
         _check_values(name, number, layer, number == len(stack.layers) - 1)
+
+
+def _check_camera(camera, name):
+    projection = np.array(camera.projection, np.float64)
+    usable = projection.shape == (4, 4) and np.isfinite(projection).all()
+    if not usable or np.linalg.matrix_rank(projection) < 4:
+        raise InputError(f"{name}: the camera's projection makes no picture; capture again")
+    for what, value in (
+        ("f-number", camera.f_stop),
+        ("focus distance", camera.focus_distance),
+        ("focal length", camera.focal_length_mm),
+        ("ratio of the aperture", camera.aperture_ratio),
+    ):
+        if not 0.0 < value < math.inf:
+            raise InputError(f"{name}: the camera's {what} is {value:g}; capture again")
 
 
 def is_world(layer):

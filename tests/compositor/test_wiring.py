@@ -100,6 +100,24 @@ def test_with_another_engine_the_whole_picture_is_the_base(scene):
     assert not mix.inputs["Bokeh"].is_linked
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "defocus", "bokeh"),
+    [
+        ("CYCLES", "APLANAT", ["Defocus"], ["Bokeh"]),
+        ("APLANAT", "CYCLES", ["Image"], []),
+    ],
+)
+def test_another_engine_is_wired_anew(scene, before, after, defocus, bokeh):
+    scene.render.engine = before
+    wire_render(scene, scene.view_layers[0])
+    scene.render.engine = after
+    assert wire_render(scene, scene.view_layers[0]) == (True, [])
+    mix = node_of(scene, "GROUP")
+    assert [link.from_socket.name for link in mix.inputs["Defocus"].links] == defocus
+    assert [link.from_socket.name for link in mix.inputs["Bokeh"].links] == bokeh
+    assert wire_render(scene, scene.view_layers[0]) == (False, [])
+
+
 def test_a_picture_takes_the_place_of_the_render(scene, noise, tmp_path):
     header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
     pixels = {"RGBA": np.ascontiguousarray(noise[::-1])}

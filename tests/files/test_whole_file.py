@@ -12,7 +12,7 @@ import pytest
 
 from addon.errors import OutputError, UnfinishedFileError
 from addon.files import whole_file as module
-from addon.files.whole_file import check_writable, whole_file
+from addon.files.whole_file import check_writable, reason_of, whole_file
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
@@ -163,3 +163,18 @@ with module.removed_on_signals(), module.whole_file({str(tmp_path / "a.exr")!r})
             break
         time.sleep(0.02)
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("told", "reason"),
+    [
+        (
+            'Failed to write pixel data to image file "/proc/self/fd/13". No space left on device.',
+            "Failed to write pixel data No space left on device",
+        ),
+        ("No space left", "No space left"),
+        ("", "RuntimeError"),
+    ],
+)
+def test_reasons_do_not_name_the_hidden_file(told, reason):
+    assert reason_of(RuntimeError(told)) == reason

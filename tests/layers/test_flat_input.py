@@ -172,12 +172,37 @@ def test_overscan_and_smaller_data_windows(tmp_path):
     assert np.isinf(stack.layers[0].depth[0]).all() and not stack.layers[0].color[9].any()
 
 
+def test_a_depth_that_ends_before_the_colours_is_told(tmp_path):
+    told = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
+    told["displayWindow"] = np.array([0, 0], np.int32), np.array(DEPTH.shape[::-1], np.int32) - 1
+    window = np.array([0, 0], np.int32), np.array([3, 2], np.int32)
+    parts = [
+        OpenEXR.Part(dict(told), {n: p[::-1].copy() for n, p in colors().items()}, "colors"),
+        OpenEXR.Part(told | {"dataWindow": window}, {"Z": DEPTH[:3, :4].copy()}, "depth"),
+    ]
+    OpenEXR.File(parts).write(str(tmp_path / "a.exr"))
+    (line,) = [line for line in load_flat(tmp_path / "a.exr").report if "4 x 3 pixels" in line]
+    assert f"{DEPTH.size - 12} of the picture's {DEPTH.size} " in line
+
+
+def test_colours_in_lower_case_are_found_and_ids_are_not(tmp_path):
+    small = {f"beauty.{letter}": COLOR[..., i] for i, letter in enumerate("rgba")}
+    stack = load_flat(write(tmp_path / "a.exr", small | {"z": DEPTH}))
+    assert np.array_equal(stack.layers[0].color, COLOR)
+    ids = {f"CryptoObject00.{letter}": DEPTH for letter in "rgba"}
+    stack = load_flat(write(tmp_path / "a.exr", ids | colors() | {"Z": DEPTH}))
+    assert np.array_equal(stack.layers[0].color, COLOR)
+    with pytest.raises(InputError, match="no colours"):
+        load_flat(write(tmp_path / "a.exr", ids | {"Z": DEPTH}))
+
+
 def test_files_without_colours_or_depth_are_refused_in_one_line(tmp_path):
     for channels, told in (
         ({"Z": DEPTH}, "no colours"),
         (colors(), "--depth-channel"),
         (colors() | {f"P.{c}": DEPTH for c in "XYZ"}, "--depth-channel"),
         (colors() | {"Z": DEPTH * np.nan}, "no depth that is a finite number"),
+        (colors() | {"Z": DEPTH * 0}, "depth 0 everywhere"),
     ):
         path = write(tmp_path / "a.exr", channels)
         with pytest.raises(InputError, match=told) as caught:

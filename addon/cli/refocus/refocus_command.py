@@ -15,6 +15,7 @@ from ...files.version import version
 from ...files.whole_file import check_writable, removed_on_signals
 from ...layers.captured_files import captured_files, check_apart, load_captured
 from ...layers.flat_input import FlatOptions
+from ...layers.layer_file import is_layer_file
 from ..render.render_command import Warnings
 from ..render.statistics import peak_memory
 from ..words.frame_values import telling_frame
@@ -88,7 +89,13 @@ def _refocus_frame(frame, file, arguments, console, warnings, lens, session):
         frame = stack.frame
     # What is refused is one line, without the warnings.
     settings, problems = lens.settings(stack, frame)
-    warnings.add([*stack.report, *problems])
+    if is_layer_file(file):
+        # What the capture could not know was told by it, and cannot be mended here.
+        for line in stack.report:
+            console.say(f"note: {line}")
+        warnings.add(problems)
+    else:
+        warnings.add([*stack.report, *problems])
     seen = lens_of(stack, settings)
     refocusing = Refocusing(stack, settings, session.look_textures)
     try:
@@ -132,4 +139,6 @@ def _flat(arguments):
         depth_scale=arguments.depth_scale,
         focal_length_mm=arguments.focal_length,
         sensor_width_mm=arguments.sensor_width,
+        f_stop=arguments.fstop,
+        focus_distance=arguments.focus,
     )

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...errors import UnfinishedFileError
 from ...files.version import version
-from ...files.whole_file import whole_file
+from ...files.whole_file import reason_of, whole_file
 from ...files.whole_picture import is_whole_picture
 
 
@@ -61,7 +61,7 @@ def save_exr(path, picture, stack):
             OpenEXR.File(header, {"RGBA": pixels}).write(place)
         except RuntimeError as error:
             raise UnfinishedFileError(
-                f"cannot write '{path}': {' '.join(str(error).split())}; is the disk full?"
+                f"cannot write '{path}': {reason_of(error)}; is the disk full?"
             ) from error
 
 

@@ -213,6 +213,9 @@ def evaluated_camera(depsgraph, camera):
     return camera
 
 
+_KINDS = {"PANO": "panoramic"}
+
+
 def check_kind(camera):
     """Refuse a camera that is neither perspective nor orthographic.
 
@@ -223,8 +226,8 @@ def check_kind(camera):
     kind = camera.data.type
     if kind not in {"PERSP", "ORTHO"}:
         raise CameraError(
-            f"camera '{camera.name}' is {kind.lower()}; Aplanat renders perspective and"
-            " orthographic cameras (Camera > Lens > Type)"
+            f"camera '{camera.name}' is {_KINDS.get(kind, kind.lower())}; Aplanat renders"
+            " perspective and orthographic cameras (Camera > Lens > Type)"
         )
 
 

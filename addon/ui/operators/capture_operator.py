@@ -55,7 +55,9 @@ class APLANAT_OT_capture_layers(StepwiseOperator, bpy.types.Operator):
         unsaved = bpy.data.is_dirty or not bpy.data.filepath
         source = uuid.uuid4().hex if unsaved else source_digest(bpy.data.filepath)
         check_writable(frame_path(pattern, frames[0]))
-        self._done_line = f"Captured into {pattern}"
+        self._done_line = (
+            f"Captured into {pattern if self.animation else frame_path(pattern, frames[0])}"
+        )
         self._steps = capture_shot(scene, frames, settings, pattern, source, self._note)
 
     def _do_now(self, step):
@@ -72,8 +74,12 @@ class APLANAT_OT_capture_layers(StepwiseOperator, bpy.types.Operator):
         bpy.app.handlers.render_cancel.append(self._on_cancel)
 
     def _pass_on(self, event):
-        # Esc also ends the render itself; all else waits until the scene is itself again.
-        return {"PASS_THROUGH"} if event.type == "ESC" else {"RUNNING_MODAL"}
+        # Esc and the X of the status bar, below all editors, also end the render itself; all else
+        # waits until the scene is itself again.
+        below = min((area.y for area in bpy.context.screen.areas), default=0)
+        if event.type == "ESC" or event.mouse_y < below:
+            return {"PASS_THROUGH"}
+        return {"RUNNING_MODAL"}
 
     def _waits(self):
         return bpy.app.is_job_running("RENDER") or (self._started and not self._ended)

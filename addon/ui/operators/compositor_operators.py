@@ -257,7 +257,7 @@ class APLANAT_OT_wire_compositor(bpy.types.Operator):
                 return {"CANCELLED"}
         for note in notes:
             self.report({"WARNING"}, note)
-        if not changed:
+        if not changed and not notes:
             self.report({"INFO"}, "The compositing nodes are set up already")
         return {"FINISHED"}
 

@@ -118,7 +118,6 @@ class APLANAT_OT_refocus_open(bpy.types.Operator):
         own.path = str(pattern)
         if self.relative_path and bpy.data.filepath:
             own.path = bpy.path.relpath(str(pattern))
-        own.focus_from = own.fstop_from = "OWN"
         own.focus_distance = stack.camera.focus_distance
         own.fstop = stack.camera.f_stop
         own.image = live_refocus.make_image(own.image, stack.width, stack.height)

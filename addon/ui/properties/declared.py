@@ -63,6 +63,9 @@ def _property(setting, others):
     words |= {name: number for name, number in numbers.items() if number is not None}
     if setting.subtype:
         words["subtype"] = setting.subtype
+        if setting.subtype == "FILE_PATH":
+            # Else Blender shows a path that starts with // in red.
+            words["options"] = {"PATH_SUPPORTS_BLEND_RELATIVE"}
         if setting.subtype.startswith("TIME"):
             words["unit"] = setting.subtype
     return _KINDS[type(setting.default)](**words)
