@@ -161,7 +161,7 @@ def _add_render(commands):
     )
     add_distortion(parser)
     add(
-        "--lens-exposure",
+        "--exposure",
         choices=("even", "lens"),
         help="brightness of the corners with a real lens",
     )

@@ -222,7 +222,7 @@ def test_options_are_in_force_and_told(aplanat, small_blend, tmp_path):
         *("--samples", "3", "--seed", "5", "--filter", "box", "--filter-size", "1.25"),
         *("--camera", "Second", "--fstop", "2", "--focus", "Far", "--frame", "9"),
         *("--method", "reference", "--no-bokeh", "--no-chromatic", "--stats", stats, "--json"),
-        *("--distortion", "-0.1", "--breathing", "--lens-exposure", "lens"),
+        *("--distortion", "-0.1", "--breathing", "--exposure", "lens"),
     )
     assert done.code == 0, done
     assert iio.imread(tmp_path / "a.png").shape == (10, 20, 3)

@@ -97,9 +97,9 @@ def apply_frame(scene, frame, arguments, lens_id=None):
     check_camera(scene)
     if lens_id is not None:
         use_lens(scene.camera, lens_id, arguments.lens)
-    if arguments.lens_exposure:
+    if arguments.exposure:
         _stop_animation(scene.camera.data, "aplanat.exposure")
-        scene.camera.data.aplanat.exposure = arguments.lens_exposure.upper()
+        scene.camera.data.aplanat.exposure = arguments.exposure.upper()
     if arguments.breathing:
         _stop_animation(scene.camera.data, "aplanat.use_breathing")
         scene.camera.data.aplanat.use_breathing = True
