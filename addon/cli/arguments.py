@@ -9,6 +9,8 @@ from pathlib import Path
 
 from ..errors import InputError
 from ..files.version import version
+from ..settings.scene_part_settings import LENS
+from ..settings.setting import settings_of
 from .capture.capture_arguments import add_capture, check_capture
 from .lens.lens_arguments import add_lens, check_lens
 from .refocus.refocus_arguments import add_refocus, check_refocus
@@ -150,7 +152,6 @@ def _add_render(commands):
     )
     add("--camera", metavar="NAME", help="camera object to render from")
     add("--resolution", metavar="WxH", type=RESOLUTION, help="in pixels, at 100 %%")
-    add("--method", choices=("reference", "adaptive", "layered"), help="default: the scene's")
     add_sampling(parser)
     add("--no-bokeh", action="store_true", help="without separate highlights")
     add("--no-chromatic", action="store_true", help="without chromatic aberration")
@@ -162,7 +163,7 @@ def _add_render(commands):
     add_distortion(parser)
     add(
         "--exposure",
-        choices=("even", "lens"),
+        choices=settings_of(LENS)["exposure"].words,
         help="brightness of the corners with a real lens",
     )
     add("--breathing", action="store_true", help="focus breathing, if the camera has it not yet")

@@ -1,5 +1,6 @@
 """Settings of a camera's chromatic aberration: strengths, glass, field maps, equalizer."""
 
+from ..sampling.chromatic import SPECTRAL_RANGE_NM, WIDEST_RANGE_NM
 from ..sampling.field_maps import ATOMS
 from .setting import Item, Section, Setting
 
@@ -48,12 +49,14 @@ STRENGTH = Section("Strength and glass", _PLACE, (
     Setting("glass", "N-BK7", "Glass", "Glass of the catalog. Flint (F2, N-SF11) parts the"
             " colors two to three times as much as crown (N-BK7)",
             told="chromatic.focal_ratio", kept=True),
-    Setting("wavelength_min", 380.0, "Wavelengths", "Shortest wavelength that is drawn, in nm",
-            limits=(360.0, 830.0), soft=(380.0, 780.0), step=100, precision=0,
+    Setting("wavelength_min", SPECTRAL_RANGE_NM[0], "Wavelengths", "Shortest wavelength that is"
+            " drawn, in nm",
+            limits=WIDEST_RANGE_NM, soft=SPECTRAL_RANGE_NM, step=100, precision=0,
             told="chromatic.wavelengths_nm", kept=True),
-    Setting("wavelength_max", 780.0, "To", "Longest wavelength that is drawn, in nm; the focus"
-            " distance is meant for it", limits=(360.0, 830.0), soft=(380.0, 780.0), step=100,
-            precision=0, told="chromatic.wavelengths_nm", kept=True),
+    Setting("wavelength_max", SPECTRAL_RANGE_NM[1], "To", "Longest wavelength that is drawn, in"
+            " nm; the focus distance is meant for it", limits=WIDEST_RANGE_NM,
+            soft=SPECTRAL_RANGE_NM, step=100, precision=0,
+            told="chromatic.wavelengths_nm", kept=True),
 ))
 
 MAPS = Section("Field maps", f"{_PLACE} > Axial Field Map, Lateral Field Map", tuple(

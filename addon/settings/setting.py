@@ -9,6 +9,9 @@ setting is drawn is decided by the panels; a test holds them to draw every one.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+# The largest whole number of a Blender property.
+MOST_WHOLE = 2**31 - 1
+
 
 @dataclass(frozen=True)
 class Item:
@@ -78,6 +81,20 @@ class Setting:
     field: str = ""
     told: str = ""
     kept: bool = False
+
+    @property
+    def words(self):
+        """The choices as the command line and statistics call them, a tuple of str."""
+        return tuple(told(item.identifier) for item in self.items)
+
+    def identifier(self, word):
+        """Return the identifier of the choice that `words` calls so.
+
+        Raises
+        ------
+        KeyError
+        """
+        return dict(zip(self.words, (item.identifier for item in self.items), strict=True))[word]
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,9 @@ class Film:
 class Sampling:
     """Sampling settings: method, numbers of samples, noise threshold, levels of detail.
 
+    The defaults are those of a plain exact frame, for values that are made by hand. A scene's
+    settings have their own in `settings.scene_settings`, and say every field (`scene.settings`).
+
     Parameters
     ----------
     method : {'REFERENCE', 'ADAPTIVE', 'LAYERED'}

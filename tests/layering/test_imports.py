@@ -73,7 +73,7 @@ ROOMS = {
         *("layers", "optics", "sampling", "lens_bokeh.samples", "snapshot", "levels"),
     ),
     "engine.drawing": (
-        *("device", "sampling", "passes", "passes.surface"),
+        *("device", "sampling", "passes", "passes.surface", "passes.visibility"),
         *("levels", "levels.making"),
     ),
     # The scene through depth layers, in place of a drawing for each lens sample.
@@ -99,6 +99,7 @@ ROOMS = {
             "layers",
             "device",
             "sampling",
+            "settings",
             "snapshot",
             "lens_bokeh.openings",
             "scene.camera",
@@ -144,11 +145,11 @@ ROOMS = {
         *("cli.words", "cli.render"),
     ),
     "cli.refocus": (
-        *("files", "device", "layers", "scene.camera", "engine", "engine.refocus"),
+        *("files", "device", "layers", "scene.camera", "settings", "engine", "engine.refocus"),
         *("cli.words", "cli.render"),
     ),
     "cli": (
-        *("files", "cli.words", "cli.render", "cli.lens"),
+        *("files", "settings", "cli.words", "cli.render", "cli.lens"),
         *("cli.capture", "cli.refocus"),
     ),
 }

@@ -4,12 +4,16 @@ import argparse
 from pathlib import Path
 
 from ...errors import InputError
+from ...settings.refocus_settings import REFOCUS
+from ...settings.scene_settings import SCENE
+from ...settings.setting import MOST_WHOLE, settings_of
 from ..render.camera_arguments import add_distortion
 from ..words.frame_values import FRAMES_HELP, check_frames, frame_range
 from ..words.option_values import file_with_ending, positive_number, whole_number
 from ..words.parser import add_farm_options, add_output_options
 
-_MOST_SAMPLES = 65536
+_SAMPLES = settings_of(REFOCUS)["samples"]
+_SEED = settings_of(*SCENE)["seed"]
 _MOST_BLADES = 32
 
 
@@ -59,11 +63,17 @@ def add_refocus(commands):
     add(
         "--samples",
         metavar="N",
-        type=whole_number(1, _MOST_SAMPLES),
-        default=128,
-        help="lens samples (default 128)",
+        type=whole_number(*_SAMPLES.limits),
+        default=_SAMPLES.default,
+        help="lens samples (default %(default)s)",
     )
-    add("--seed", metavar="N", type=whole_number(0, 2**31 - 1), default=0)
+    add(
+        "--seed",
+        metavar="N",
+        type=whole_number(_SEED.limits[0], MOST_WHOLE),
+        default=_SEED.default,
+        help="pattern of samples",
+    )
     flat = parser.add_argument_group(
         "pictures with a depth pass",
         "Any EXR picture with a depth channel is taken as one layer; what is not given is guessed"

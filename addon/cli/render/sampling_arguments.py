@@ -2,11 +2,10 @@
 
 from ...errors import InputError
 from ...settings.scene_settings import SCENE
-from ...settings.setting import settings_of
+from ...settings.setting import MOST_WHOLE, settings_of
 from ..words.option_values import number_between, positive_number, whole_number
 
-# Bounds of Blender's own properties.
-MAX_SEED = 2**31 - 1
+# Bound of Blender's own property.
 MAX_FILTER_PX = 500.0
 
 _SETTINGS = settings_of(*SCENE)
@@ -48,6 +47,7 @@ def add_sampling(parser):
     parser : argparse.ArgumentParser
     """
     add = parser.add_argument
+    add("--method", choices=_SETTINGS["method"].words, help="default: the scene's")
     samples = whole_number(*bounds("samples"))
     add(
         "--target-error",
@@ -101,7 +101,7 @@ def add_sampling(parser):
     )
     add(
         "--layer-source",
-        choices=("slices", "peeling"),
+        choices=_SETTINGS["layer_source"].words,
         help="layered method: a layer is a slice of depth, or what lies behind the layer before",
     )
     add(
@@ -110,8 +110,13 @@ def add_sampling(parser):
         const=True,
         help="layered method: reflections depend on the place on the lens that they are seen from",
     )
-    add("--seed", metavar="N", type=whole_number(0, MAX_SEED), help="pattern of samples")
-    add("--filter", choices=("box", "blackman-harris"), help="pixel filter")
+    add(
+        "--seed",
+        metavar="N",
+        type=whole_number(bounds("seed")[0], MOST_WHOLE),
+        help="pattern of samples",
+    )
+    add("--filter", choices=_SETTINGS["pixel_filter"].words, help="pixel filter")
     add(
         "--filter-size",
         metavar="PX",
@@ -179,7 +184,7 @@ def apply_sampling(settings, render, arguments):
     arguments : argparse.Namespace
     """
     if arguments.method:
-        settings.method = arguments.method.upper()
+        settings.method = _SETTINGS["method"].identifier(arguments.method)
     if _given(arguments, _FIXED):
         settings.use_target_error = False
     if _given(arguments, _AUTOMATIC):
@@ -196,8 +201,8 @@ def apply_sampling(settings, render, arguments):
         settings.use_sharing = arguments.sharing_cells > 0
         settings.sharing_cells = max(arguments.sharing_cells, 1)
     if arguments.layer_source:
-        settings.layer_source = arguments.layer_source.upper()
+        settings.layer_source = _SETTINGS["layer_source"].identifier(arguments.layer_source)
     if arguments.filter:
-        settings.pixel_filter = arguments.filter.upper().replace("-", "_")
+        settings.pixel_filter = _SETTINGS["pixel_filter"].identifier(arguments.filter)
     if arguments.filter_size:
         render.filter_size = arguments.filter_size

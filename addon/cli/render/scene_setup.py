@@ -14,7 +14,7 @@ from ...engine.shared_resources import shelf
 from ...errors import CameraError, FocusError, InputError
 from ...lens_io.library import Library
 from ...scene.camera.lenses import user_folder
-from ...settings.scene_part_settings import DISTORTION
+from ...settings.scene_part_settings import DISTORTION, LENS
 from ...settings.setting import settings_of
 from .sampling_arguments import apply_sampling
 
@@ -99,7 +99,8 @@ def apply_frame(scene, frame, arguments, lens_id=None):
         use_lens(scene.camera, lens_id, arguments.lens)
     if arguments.exposure:
         _stop_animation(scene.camera.data, "aplanat.exposure")
-        scene.camera.data.aplanat.exposure = arguments.exposure.upper()
+        exposure = settings_of(LENS)["exposure"].identifier(arguments.exposure)
+        scene.camera.data.aplanat.exposure = exposure
     if arguments.breathing:
         _stop_animation(scene.camera.data, "aplanat.use_breathing")
         scene.camera.data.aplanat.use_breathing = True

@@ -14,15 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...device.textures import texture_2d
+from ...passes.visibility.cones import CLUSTER, CLUSTERS_PER_ROW, PART_TEXELS
+from ...passes.visibility.prefix_sums import COLUMNS
 
-# Triangles of a cluster; boxes below a box. Must agree with passes/visibility/cones.py.
-CLUSTER = 8
+# Boxes below a box.
 BRANCHES = 8
-# Clusters in a row of the texture of triangles; texels in a row of the tables.
-CLUSTERS_PER_ROW = 128
-COLUMNS = 1024
-# Texels for each part in the table of parts.
-PART_TEXELS = 2
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,14 @@ from ..planning.field_table import picture_radius
 from .settings import RefocusSettings
 
 
-def camera_settings(stack, depsgraph, camera, sources=None, samples=128, seed=0):
+def camera_settings(
+    stack,
+    depsgraph,
+    camera,
+    sources=None,
+    samples=RefocusSettings.samples,
+    seed=RefocusSettings.seed,
+):
     """Read everything that a captured picture takes of a camera.
 
     Depth of field counts as switched on. Place, framing and focal length are the capture's.

@@ -6,6 +6,8 @@ from ...lens_bokeh.openings.shapes import stopped_down
 from ...sampling.chromatic import ChromaticAberration
 from ...sampling.iris import Iris
 from ...sampling.thin_lens import ThinLens, aperture_radius
+from ...settings.refocus_settings import REFOCUS
+from ...settings.setting import settings_of
 from ...snapshot.camera import BokehSettings, LensSettings
 
 
@@ -43,7 +45,7 @@ class RefocusSettings:
     bokeh: BokehSettings | None = None
     chromatic: ChromaticAberration | None = None
     distortion: tuple[float, ...] = ()
-    samples: int = 128
+    samples: int = settings_of(REFOCUS)["samples"].default
     seed: int = 0
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...passes.bokeh import highlights
 from ...passes.visibility import culling
-from ..drawing.occluders import CLUSTER
+from ...passes.visibility.cones import CLUSTER
 
 # Cost in steps of a ray (7 to 8 ns each on software OpenGL): of a triangle in a mask, a triangle in
 # a layer, and a texel of a layer.

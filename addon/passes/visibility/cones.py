@@ -17,8 +17,10 @@ from ...device.shaders import ShaderInfo, compile_shader, dispatch
 from .culling import COUNT_GROUPS, COUNT_PAIRS, VISIBILITY_PARAMS
 from .prefix_sums import COLUMNS
 
-# Must agree with engine/drawing/occluders.py.
-CLUSTER_CORNERS = 24
+# Triangles of a cluster, and their corners.
+CLUSTER = 8
+CLUSTER_CORNERS = 3 * CLUSTER
+# Clusters in a row of the texture of triangles; texels for each part in the table of parts.
 CLUSTERS_PER_ROW = 128
 PART_TEXELS = 2
 

@@ -10,11 +10,12 @@ from threading import Lock
 
 import numpy as np
 
+from ...sampling.chromatic import SPECTRAL_RANGE_NM
 from ...sampling.field_maps import CURVE_POINTS
 
 EQUALIZER = "Equalizer"
 # Wavelengths, nm, at the ends of the equalizer's curve, whatever range the settings use.
-EQUALIZER_RANGE_NM = (380.0, 780.0)
+EQUALIZER_RANGE_NM = SPECTRAL_RANGE_NM
 # Two atoms for each of the two field maps.
 MAP_CURVES = {
     ("axial", 0): "Axial First",
