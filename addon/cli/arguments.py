@@ -61,8 +61,8 @@ def parse(words, program="aplanat"):
     """
     if words and words[0] == "bench":
         raise InputError(
-            f"{program} bench measures in a checkout of the sources; an installed Aplanat has none:"
-            " get the sources (see README.md) and call scripts/aplanat bench there"
+            f"{program} bench has its scenes and references in a checkout of the sources, from"
+            " which this extension was built; call scripts/aplanat bench there"
         )
     words = further_words(words, "--options")
     arguments = _parser(program).parse_args(joined_negatives(words, _MAY_BE_NEGATIVE))

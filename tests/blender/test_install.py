@@ -1,5 +1,7 @@
 """The built zip in a real Blender: valid, installs, registers, goes and comes back."""
 
+import posixpath
+import re
 import zipfile
 
 
@@ -9,7 +11,26 @@ def test_zip_has_no_development_files(extension_zip):
     assert "__init__.py" in names
     for name in names:
         assert not name.startswith(("tests/", "scripts/", "benchmarks/", "requirements"))
+        assert not name.startswith(("farm/", "findings/"))
         assert not name.endswith(".pyc")
+
+
+def test_links_of_the_pages_in_the_zip_lead_somewhere(extension_zip):
+    with zipfile.ZipFile(extension_zip) as file:
+        names = set(file.namelist())
+        pages = {name: file.read(name).decode() for name in names if name.endswith(".md")}
+    assert "docs/settings.md" in pages
+    # README says of these that only a checkout has them.
+    text, _, sources = pages["README.md"].partition("In a checkout of the sources")
+    assert links("README.md", sources) >= {"docs/architecture.md", "docs/design-notes.md"}
+    for page, body in (pages | {"README.md": text}).items():
+        assert links(page, body) <= names, page
+
+
+def links(page, text):
+    """Return the files that a page links to, from the root of the zip."""
+    found = re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text)
+    return {posixpath.normpath(posixpath.join(posixpath.dirname(page), link)) for link in found}
 
 
 def test_zip_brings_wheels_for_both_pythons(extension_zip):
