@@ -64,7 +64,7 @@ class UnfinishedFileError(OutputError):
 
 
 class StrictError(InputError):
-    """There are warnings, and whoever renders takes them for errors.
+    """Raised by --strict when a render has warnings.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ _CHUNK = 1 << 22
 
 
 def source_digest(path):
-    """Return a word that is another one when a scene's file or one that it links has changed.
+    """Return a hash of a .blend file and of the libraries that it links.
 
     Parameters
     ----------

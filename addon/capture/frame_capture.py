@@ -101,7 +101,7 @@ class FrameCapture:
         self._shot.__exit__(*error)
 
     def steps(self):
-        """Ask for renders, one `Step` after the other.
+        """Yield the renders that are needed, as `Step`.
 
         Returns
         -------
@@ -195,7 +195,7 @@ class FrameCapture:
 
 
 def _finite(pixels):
-    """Return pixels without what is no number, as engines leave it of division by zero."""
+    """Replace NaN by 0 and infinities by the largest float, as engines divide by zero."""
     largest = np.finfo(np.float32).max
     return np.nan_to_num(pixels, copy=True, nan=0.0, posinf=largest, neginf=-largest)
 

@@ -22,7 +22,7 @@ class KeptValues:
         return self
 
     def __exit__(self, *_):
-        """Give back those that are others now."""
+        """Restore the values that changed."""
         changed = False
         for block, path, index, value in self._values:
             with contextlib.suppress(ValueError, TypeError, IndexError, ReferenceError):

@@ -1,4 +1,4 @@
-"""What layers of a scene cannot show as a lens would, told in lines for the capture's report."""
+"""Warnings about the parts of a scene that its layers cannot show as a lens would."""
 
 import os
 
@@ -9,7 +9,7 @@ _OUTPUTS = {"OUTPUT_MATERIAL", "OUTPUT_WORLD"}
 
 
 def limits_of(scene, layer):
-    """Return what a lens would see and layers of the scene do not have.
+    """Return warnings about the parts of a scene that its layers cannot show as a lens would.
 
     Parameters
     ----------

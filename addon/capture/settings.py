@@ -1,4 +1,4 @@
-"""What a capture is asked for; values without Blender."""
+"""Settings of a capture; values without Blender."""
 
 import hashlib
 import json
@@ -37,13 +37,13 @@ class CaptureSettings:
     resolution: tuple[int, int] | None = None
 
     def digest(self, frame, source, software):
-        """Return a word that is another one as soon as anything else is asked for.
+        """Return a hash of these settings, the frame, and versions of source and software.
 
         Parameters
         ----------
         frame : int
         source, software : str
-            What the scene is, and what renders it.
+            `capture_files.source_digest` of the scene, and `shot_capture.software`.
 
         Returns
         -------

@@ -12,12 +12,12 @@ from .frame_capture import FrameCapture
 
 
 def software():
-    """Return what captures, with versions."""
+    """Return the names and versions of the software that captures."""
     return f"Aplanat {version()}, Blender {bpy.app.version_string}"
 
 
 def capture_shot(scene, frames, settings, pattern, source, told):
-    """Ask for the renders of a shot, one `Step` after the other, and write its files.
+    """Yield the renders of a shot that are needed, as `Step`, and write its files.
 
     Closing the generator ends the capture and leaves the scene as it was.
 

@@ -82,7 +82,7 @@ class ShotCopy:
         return self
 
     def __exit__(self, *_):
-        """Remove the copy, and give the scene what renders have changed of it."""
+        """Remove the copy, and restore what renders have changed of the scene."""
         for collection, block in reversed(self._blocks):
             try:
                 collection.remove(block)
@@ -112,7 +112,7 @@ class ShotCopy:
         self._freeze_camera(camera)
 
     def aim(self, slice_):
-        """Have the copy render what lies in a slice, before nothing.
+        """Set the clip planes to a slice, and the film transparent.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class ShotCopy:
         self._before_nothing()
 
     def aim_at_world(self):
-        """Have the copy render the world behind everything."""
+        """Set the clip planes so that only the world is seen."""
         data = self.scene.camera.data
         # A sliver before the far plane, beyond which nothing is seen in any picture.
         data.clip_start, data.clip_end = self.clip[1] * (1.0 - 1e-4), self.clip[1]
@@ -132,7 +132,7 @@ class ShotCopy:
         self._denoise(False)
 
     def measure_depths(self, measures):
-        """Have the copy render small and fast, for the depths only, or as it should.
+        """Switch between a small render of one sample, for depths, and the full render.
 
         Parameters
         ----------

@@ -188,7 +188,7 @@ def _end_in(tree, socket, source):
 
 
 def _untold(tree, node):
-    """Return a note if nothing of a node comes to the picture."""
+    """Return a warning if a node is not connected to the Group Output."""
     waiting, seen = [node], set()
     while waiting:
         one = waiting.pop()

@@ -19,7 +19,7 @@ def attribute_identifier(key):
 
 
 def attribute_type(components):
-    """Return the GLSL type, in upper case, of an attribute with so many components."""
+    """Return the GLSL type, in upper case, of an attribute with a number of components."""
     return _GLSL_TYPES[components]
 
 

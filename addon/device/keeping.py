@@ -16,7 +16,7 @@ _owner = None
 
 
 def own():
-    """Make this thread the one that draws, and that frees what is not needed any more."""
+    """Make this thread the one that draws and that frees textures."""
     global _owner
     _owner = threading.get_ident()
 
@@ -39,7 +39,7 @@ def keep(thing):
 
 
 def let_go():
-    """Free what nothing else refers to; does nothing in a thread other than the drawing one."""
+    """Free textures that nothing else refers to; only the drawing thread does."""
     if threading.get_ident() != _owner:
         return
     # Frame buffers hold textures: repeat until nothing more goes.

@@ -1,4 +1,4 @@
-"""Placeholders: empty files that tell other processes that a file of this name is being made.
+"""Placeholders: empty files that show other processes that a file of this name is being made.
 
 Blender calls them placeholders: a frame of an animation that several machines render is taken by
 the first that makes its file, and the others go on to the next.

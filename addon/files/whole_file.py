@@ -87,7 +87,7 @@ def _begin(destination):
 
 
 def _kind(place):
-    """Return the kind of what exists at a path, if it is no file that may be replaced."""
+    """Return the kind of file at a path in words, if it may not be replaced."""
     try:
         mode = os.lstat(place).st_mode
     except (FileNotFoundError, NotADirectoryError):

@@ -1,4 +1,4 @@
-"""What a picture lacks where it is transparent, taken from around."""
+"""Transparent pixels filled with the colours of their neighbours."""
 
 import numpy as np
 

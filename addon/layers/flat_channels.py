@@ -135,7 +135,7 @@ def _own_name(part):
 
 
 def _full(channel, part):
-    """Return a channel's name with the layer that only the part's name tells."""
+    """Return a channel's name, with the part's name in front if it lacks that."""
     return channel if "." in channel or not part.name else f"{part.name}.{channel}"
 
 

@@ -25,7 +25,7 @@ _OPAQUE = 0.999
 
 @dataclass(frozen=True)
 class FlatOptions:
-    """What somebody knows about a picture with a depth pass; None is guessed.
+    """The user's options for a picture with a depth pass; None is guessed.
 
     Parameters
     ----------

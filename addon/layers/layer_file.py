@@ -308,7 +308,7 @@ def _channels(layer):
 
 
 def channel_names(name, count):
-    """Return what the channels of a pass are called in EXR files.
+    """Return the names of the channels of a pass in EXR files.
 
     Parameters
     ----------

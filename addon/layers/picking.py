@@ -7,7 +7,7 @@ _REACH = 1
 
 
 def depth_at(stack, x, y):
-    """Return the depth of what is seen at a place: of the foremost layer that covers it.
+    """Return the depth at a place of the picture: of the foremost layer that covers it.
 
     Layers in front may cover a part of the pixel only (hair, edges): the layer counts behind which
     less than half of what is seen lies. Its depth is the median of the pixels around that it

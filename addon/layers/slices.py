@@ -145,7 +145,7 @@ def filled_depth(depth, coverage, otherwise):
 
 
 def mending(coverage_before, coverage):
-    """Return by what a layer is multiplied where a surface goes through its near cut in a pixel.
+    """Return the factor that keeps a surface that crosses a cut from counting as transparent twice.
 
     Where the overlap is narrower than a pixel, the surface covers parts of the pixel in both
     layers, and laid over each other they would let through what is behind: half of a half. There

@@ -41,7 +41,7 @@ class Coating:
     cemented: bool = False
 
     def __post_init__(self):
-        """Refuse what is not a layer."""
+        """Refuse values that are not finite and positive."""
         for name in ("index", "wavelength_nm"):
             value = getattr(self, name)
             if not (np.isfinite(value) and value > 0.0):

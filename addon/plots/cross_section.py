@@ -169,7 +169,7 @@ def _front(configuration):
 
 
 def _extent(configuration):
-    """Return the larger of the lens' length and diameter: what drawn lengths are measured by."""
+    """Return the larger of the lens' length and diameter, the unit of drawn lengths."""
     widest = max(surface.semi_diameter for surface in configuration.surfaces)
     return max(configuration.vertices[-1], 2.0 * widest)
 

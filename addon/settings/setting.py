@@ -154,7 +154,7 @@ def fields_of(group, *sections):
 
 
 def told_by(value, *sections):
-    """Return what statistics tell of a snapshot's value, by key: choices as words in lower case.
+    """Return the statistics of a snapshot's value, by key: choices as words in lower case.
 
     Parameters
     ----------

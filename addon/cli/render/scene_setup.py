@@ -242,7 +242,7 @@ def use_lens(camera, lens_id, word):
 
 
 def use_blades(data, count):
-    """Give a camera's iris so many blades.
+    """Set the number of blades of a camera's iris.
 
     Parameters
     ----------

@@ -81,7 +81,7 @@ class LampAreas:
         return found
 
     def growths(self, count):
-        """Return what the light of each instance is multiplied by, shape (count,); 1 if unknown."""
+        """Return the factor of the light of each instance, shape (count,); 1 if unknown."""
         found = np.ones(count)
         found[self.rows] = self.growth
         return found

@@ -153,7 +153,7 @@ class HighlightSearch:
         return searches
 
     def _draws(self, search):
-        """Return the draws of all other surfaces, the searched, what hides and what dims them.
+        """Return lists of draws: opaque surfaces not searched, searched, opaque, transparent.
 
         Of the world only what covers it.
         """
@@ -250,7 +250,7 @@ class HighlightSearch:
         return 1.0 / (1.0 / self._plan.bokeh.world_depth + moves)
 
     def _through(self, covers, params, raster):
-        """Return how much of the world's light passes what covers it, by texel."""
+        """Return the transmittance of the surfaces in front of the world, by texel."""
         raster.clear("through", (1.0,) * 4)
         if covers:
             nearest = self._world_covered_from()
@@ -262,7 +262,7 @@ class HighlightSearch:
         return raster["through"]
 
     def _draw_before(self, search, tile, params, draws, lens, lists, raster):
-        """Draw what hides highlights of a tile right behind it, and add what dims them."""
+        """Draw the occluders before the highlights of a tile, and list transparent surfaces."""
         hiders, veils = draws
         size = (tile[2] * search.subpixels, tile[3] * search.subpixels)
         framebuffer = raster.framebuffer(depth="scene")

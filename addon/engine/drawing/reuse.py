@@ -140,7 +140,7 @@ def _families(cell_of, sizes):
 
 
 def _parent(moves, wanted):
-    """Return the sample whose place among those of its family is nearest to what is wanted.
+    """Return the sample nearest, by rank, to the wanted position in its cell.
 
     Its place among them, not in the cell: of a cell that they do not fill evenly, such as one under
     the slope of a pixel filter, the parents must be as unevenly spread.

@@ -186,7 +186,7 @@ class FrameRenderer(ReadableFrame):
 
     @property
     def bokeh_drafted(self):
-        """Whether what is shown is a draft of the bokeh, or none yet."""
+        """Whether the bokeh that is shown is a draft, or not made yet."""
         return self._bokeh.drafted
 
     def _prepare_targets(self):

@@ -55,7 +55,7 @@ def layer_raster(plan, nearest, farthest):
 
 
 def plan_reach(plan, nearest, farthest):
-    """Return how far the lens moves anything between two depths across and up, in pixels."""
+    """Return the largest parallax over the lens between two depths, across and up, in pixels."""
     moved = np.zeros(2)
     sweeps = [plan.sweep]
     if plan.chromatic:
@@ -68,7 +68,7 @@ def plan_reach(plan, nearest, farthest):
 
 
 def window_depth(plan, depth):
-    """Return what the depth buffer of a frame holds for a depth in m."""
+    """Return the value of a frame's depth buffer for a depth in m."""
     clip = plan.projection @ np.array([0.0, 0.0, -depth, 1.0])
     return float(clip[2] / clip[3]) * 0.5 + 0.5
 

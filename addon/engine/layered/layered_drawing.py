@@ -189,7 +189,7 @@ class LayeredDrawing:
         return -0.5 * self._plan.jitter[index] * np.array([self._plan.width, self._plan.height])
 
     def _draw_by_chance(self, index, framebuffer, view):
-        """Draw what is transparent by chance, in front of what the sample sees."""
+        """Draw surfaces with stochastic transparency over what the sample sees."""
         if not self._by_chance:
             return
         with framebuffer.bind(), self._drawing.confined():
@@ -215,7 +215,7 @@ class LayeredDrawing:
 
 
 def _folded(places, across=MOST_ACROSS):
-    """Return sets of places as texels, in so many columns at most: devices have an end there."""
+    """Pack sample positions into rows of at most `across` texels, the longest that devices have."""
     sets, samples = places.shape[:2]
     across = min(samples, across)
     blocks = -(-samples // across)

@@ -109,7 +109,7 @@ def find_highlights(stack, depths, threshold):
 
 
 def _before_world(stack, depths, at_infinity):
-    """Return what lies right before the world in each pixel, as `Entries.front`."""
+    """Return depth and transmittance in front of the world in each pixel, as `Entries.front`."""
     last = np.zeros(depths.shape[1:], np.float32)
     through = np.ones_like(last)
     for layer, values, is_world in zip(stack.layers, depths, at_infinity, strict=True):

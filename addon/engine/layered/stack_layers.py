@@ -149,7 +149,7 @@ class StackLayers:
         return self._depths
 
     def _forget_highlights(self):
-        """Give the layers back what the samples of earlier frames did not see."""
+        """Restore the light of highlights that was taken out of the layers."""
         found, self._highlights, self._threshold = self._highlights, None, None
         if found is None or self._made is None:
             return

@@ -87,7 +87,7 @@ def plan_layered(sampling, source, stack=None, projection=None):
 
 
 def _origin(stack, projection):
-    """Return where the lower left corner of what is drawn lies in the layers, px."""
+    """Return the lower left corner of the drawn picture in the layers, px."""
     captured = np.array(stack.camera.projection)
     corner = field_of_clip(np.array([-1.0, -1.0]), projection)
     # A field's place is affine in that of the clip space.

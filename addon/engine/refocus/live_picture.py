@@ -60,7 +60,7 @@ class LivePicture:
         return tuple(self._refocusing.report) if self._refocusing else ()
 
     def change(self, settings):
-        """Begin the picture anew with the next piece, if its settings are others.
+        """Restart the picture with the next piece if the settings differ.
 
         Parameters
         ----------
@@ -71,11 +71,11 @@ class LivePicture:
             self.show_again()
 
     def show_again(self):
-        """Hand out the picture again: who had it last has lost it."""
+        """Return the picture again at the next `refine`, though it has not changed."""
         self._shown, self._finished = 0, False
 
     def refine(self):
-        """Draw a piece.
+        """Draw some lens samples more.
 
         Returns
         -------
@@ -141,7 +141,7 @@ class LivePicture:
             return self._refocusing.read()
 
     def release(self):
-        """Give back what the device holds; the next piece begins anew."""
+        """Release everything on the device; the next piece begins anew."""
         self.show_again()
         if self._refocusing:
             self._refocusing.release()

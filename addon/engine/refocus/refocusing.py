@@ -162,7 +162,7 @@ class Refocusing:
         return self._renderer.highlights
 
     def advance(self, samples):
-        """Draw up to so many lens samples more, and wait for them.
+        """Draw up to a number of lens samples more, and wait for them.
 
         The first one also finds and draws the bokeh.
 

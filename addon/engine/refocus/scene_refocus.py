@@ -90,7 +90,7 @@ def as_sequence(path):
 
 
 def flat_options(scene):
-    """Return what a scene tells of a picture with a depth pass.
+    """Return a scene's options for a picture with a depth pass.
 
     Parameters
     ----------

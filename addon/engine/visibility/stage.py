@@ -156,7 +156,7 @@ class _Search:
         self._raster = None
 
     def release(self):
-        """Release what the result does not need."""
+        """Release the intermediate lists."""
         for targets in self._own:
             targets.release()
 

@@ -11,7 +11,7 @@ from .blades import BladedIris
 
 
 def iris_of(opening, rotation=0.0, ratio=1.0):
-    """Return what lens samples take of an opening.
+    """Return an opening as the `Iris` of lens samples.
 
     Parameters
     ----------

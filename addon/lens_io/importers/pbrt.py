@@ -20,7 +20,7 @@ _HEADER_WORDS = {"radius", "axpos", "n", "aperture", "thickness", "sep", "sd", "
 
 
 def looks_like(lines):
-    """Tell whether the first line that is no comment has three to five numbers, or one before such.
+    """Whether the first line that is no comment has three to five numbers, or one before such.
 
     Parameters
     ----------

@@ -173,7 +173,7 @@ def fields_of(lens, field, object_distance):
 
 
 def rims(stands, draft):
-    """Return clear radii for all surfaces; those that the file tells stay.
+    """Return clear radii for all surfaces; those that the file has stay.
 
     Parameters
     ----------

@@ -184,7 +184,7 @@ def _check_pupil(position, findings):
 
 
 def _check_rays(position, openings, findings):
-    """Check the axial rays at full opening; tell whether light of the checked field was seen."""
+    """Check the axial rays at full opening; return whether light of the checked field was seen."""
     configuration = position.configuration
     half_field = configuration.half_field_deg
     rays = [

@@ -112,7 +112,7 @@ def _read_document(values, findings):
 
 
 def _checked_positions(document, surfaces, lens, zoom):
-    """Yield what can be traced: each zoom position that is known, or the lens without zoom."""
+    """Yield what can be traced: the known zoom positions, or the lens itself without zoom."""
     if "zoom" not in document:
         nominal = (lens[name] for name in ("focal_length", "f_number", "half_field_deg"))
         yield CheckedPosition(Configuration(surfaces, *nominal))

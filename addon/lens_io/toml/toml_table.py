@@ -77,7 +77,7 @@ class Range:
     below: bool = False
 
     def __contains__(self, value):
-        """Tell whether a number is allowed."""
+        """Whether a number is allowed."""
         if value < self.low or (self.above and value == self.low):
             return False
         return not (value > self.high or (self.below and value == self.high))
@@ -111,7 +111,7 @@ class Table:
             self.check_keys(keys)
 
     def __contains__(self, key):
-        """Tell whether the table has a key."""
+        """Whether the table has a key."""
         return key in self.values
 
     def at(self, key):
@@ -134,7 +134,7 @@ class Table:
         return f"; did you mean {show(near)}?" if near else ""
 
     def require(self, key):
-        """Note a missing key (E06); tell whether it is there."""
+        """Return whether a key is there; a missing one is an error (E06)."""
         if key not in self.values:
             self.add("E06", key, f"the required key {show(key)} is missing")
         return key in self.values
@@ -281,7 +281,7 @@ def show(value):
 
 
 def nearest(text, known):
-    """Return the known text most like another one, or None if none is close."""
+    """Return the known text nearest to a given one, or None if none is close."""
     from difflib import get_close_matches
 
     if len(text) > 2 * SHOWN_LENGTH:

@@ -136,7 +136,7 @@ class Beam:
         return flat * (self.distance / np.maximum(ahead, 1.0e-6 * self.distance))[:, None]
 
     def density(self, coordinates):
-        """Return what a cell of the plane carries per mm^2.
+        """Return the light in each cell of the plane, per mm^2.
 
         Parameters
         ----------

@@ -96,7 +96,7 @@ def append(entries, first, number, split, view, lists):
 
 
 def leave_base(entries, number, colors, split, view, field=None):
-    """Write into layers what the lens samples keep of the light of their highlights.
+    """Replace the highlights in layers by the light that the lens samples keep of them.
 
     Parameters
     ----------

@@ -137,7 +137,7 @@ def list_veils(draws, view_buffer, instances, lens, lists, split):
 
 
 def hide_highlights(draws, view_buffer, instances, lens, lists):
-    """Take the light of what opaque surfaces behind the nearest one hide from the whole lens.
+    """Remove listed fragments that opaque surfaces hide from the whole lens.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def hide_highlights(draws, view_buffer, instances, lens, lists):
 
 
 def cover_world(draws, view_buffer, instances, nearest):
-    """Multiply the bound colour by what passes surfaces as good as infinitely far.
+    """Multiply the bound colour by the transmittance of surfaces as good as infinitely far.
 
     Parameters
     ----------

@@ -87,7 +87,7 @@ def declared(info, push_constants=()):
 
 
 def resources(*, table, radius, parallel, focus, raster, extremes, typical):
-    """Upload what all samples of a frame share: field table and `ChromaticParams`.
+    """Upload the field table and `ChromaticParams`, which all samples of a frame share.
 
     Parameters
     ----------

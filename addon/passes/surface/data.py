@@ -65,7 +65,7 @@ def target(names, through_lens=False):
 
 
 def empty_values(empty_coc):
-    """Return what each target holds where there is no surface.
+    """Return the value of each target where there is no surface.
 
     Parameters
     ----------

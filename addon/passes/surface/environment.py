@@ -47,7 +47,7 @@ _PREFILTER = ShaderInfo(
 
 
 def world_pixels(pixels, world):
-    """Return what a world shows of an image, without its colour factor.
+    """Return the pixels of a world's image as they are shown, without its colour factor.
 
     Parameters
     ----------

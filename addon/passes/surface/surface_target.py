@@ -100,7 +100,7 @@ def whole(target):
 
 
 def of_layers(target):
-    """Return a target of what lies behind a depth, shaded as it is seen from elsewhere on the lens.
+    """Return the target of a peeled layer, shaded as seen from another place on the lens.
 
     It reads ``front_tx``, depths that surfaces must lie behind, and ``eye``, a place on the lens in
     m, or the focus distance's share of it as `lens_sample` has with a parallel projection.

@@ -48,7 +48,7 @@ def read_bokeh(camera, real_lens, corner, opening):
 
 
 def describe_bokeh(camera, real_lens, corner, irises):
-    """Return what `read_bokeh` does, also where it is switched off.
+    """Read bokeh as `read_bokeh`, even if it is switched off.
 
     `irises` is the `IrisReader` that reads a picture of an iris; `read_opening` tells what is wrong
     with one.

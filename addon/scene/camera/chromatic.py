@@ -46,7 +46,7 @@ def read_chromatic(camera, real_lens, focus=None):
 
 
 def describe_chromatic(camera, real_lens, focus=None):
-    """Return what `read_chromatic` does, also where it is switched off."""
+    """Read chromatic aberration as `read_chromatic`, even if it is switched off."""
     settings = camera.aplanat.chromatic
     dispersion, problems = _read_dispersion(settings, real_lens)
     maps = []

@@ -108,7 +108,7 @@ def split_all(corner_vertices):
 
 
 def _unique_rows(corner_vertices, bits, rows):
-    """Return the corners that stand for equal ones, and for each of `rows` the number of its own.
+    """Deduplicate corners: return the unique ones, and the index of each of `rows` among them.
 
     Rows are sorted by a hash and neighbours compared in full, so equal hashes of different rows
     can cost a vertex too many but never a wrong value.

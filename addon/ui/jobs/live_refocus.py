@@ -112,7 +112,7 @@ class LiveRefocus:
             self._picture.show_again()
 
     def work(self, scene, depsgraph):
-        """Do what there is to do for a moment.
+        """Work for a moment: read files, draw samples.
 
         Parameters
         ----------
@@ -341,7 +341,7 @@ def _close(uid):
 
 
 def _note_drawing():
-    """Begin what an Image editor shows; it calls this whenever it draws."""
+    """Begin the picture that an Image editor shows; it calls this whenever it draws."""
     context = bpy.context
     image = context.scene.aplanat.refocus.image
     if image is None or context.space_data.image != image or context.scene.session_uid in _held:
@@ -364,7 +364,7 @@ def _after_undo(*_):
 
 
 def register():
-    """Follow what Image editors show."""
+    """Follow the Image editors."""
     global _draw_handle
     _draw_handle = bpy.types.SpaceImageEditor.draw_handler_add(
         _note_drawing, (), "WINDOW", "POST_PIXEL"

@@ -181,7 +181,7 @@ class APLANAT_OT_reload_lenses(bpy.types.Operator):
     bl_options = {"REGISTER"}
 
     def execute(self, _context):
-        """Read what is new or changed."""
+        """Read new and changed lens files."""
         found = shelf().reload()
         background.resume()
         refresh_cameras({*found.added, *found.removed, *found.changed})

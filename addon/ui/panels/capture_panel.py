@@ -21,7 +21,7 @@ class APLANAT_RENDER_PT_layers(bpy.types.Panel):
         return context.engine in cls.COMPAT_ENGINES
 
     def draw(self, context):
-        """Draw the settings and what uses them."""
+        """Draw the settings and the button that captures."""
         layout, settings = self.layout, context.scene.aplanat.capture
         layout.use_property_split = True
         layout.use_property_decorate = False

@@ -27,7 +27,7 @@ class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, SwitchHeader, PresetsHeader, 
     presets = "chromatic"
 
     def draw(self, context):
-        """Draw the settings, and what is not as they ask for."""
+        """Draw the settings, and warnings about those that cannot be met."""
         settings, column = self.begin(context)
         column.row().prop(settings, "mode", expand=True)
         strengths = column.column(align=True)

@@ -36,7 +36,7 @@ class SwitchHeader:
     switch = "use"
 
     def owner(self, context):
-        """Return what has the setting: the scene, unless the panel is of something else."""
+        """Return the data-block that has the settings: the scene, unless a panel says otherwise."""
         return context.scene.aplanat
 
     def draw_header(self, context):

@@ -23,7 +23,7 @@ class APLANAT_RENDER_PT_level_of_detail(SwitchHeader, EnginePanel, bpy.types.Pan
         return super().poll(context) and context.scene.aplanat.method == "ADAPTIVE"
 
     def draw(self, context):
-        """Draw the settings, and what the levels take."""
+        """Draw the settings, and the memory of the levels."""
         settings = context.scene.aplanat
         column = self.column()
         column.active = settings.use_levels

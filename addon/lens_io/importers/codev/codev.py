@@ -327,7 +327,7 @@ class _Reader:
         return [self._number_at(command, i) for i in range(1, min(len(command.words), 100))]
 
     def finish(self):
-        """Check what only the whole file tells, and return the draft."""
+        """Check the values that depend on the whole file, and return the draft."""
         draft = self.draft
         if self.object_line is None or self.image_line is None or not draft.surfaces:
             draft.refusals.add("I07", None, "the file needs SO, at least one S, and SI")

@@ -12,7 +12,7 @@ _MOST_SURFACES = 1000
 
 @dataclass
 class DraftSurface:
-    """One surface as the file tells it.
+    """One surface as the file describes it.
 
     Parameters
     ----------

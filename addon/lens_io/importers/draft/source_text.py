@@ -208,15 +208,15 @@ class Refusals:
             self._more += 1
 
     def __bool__(self):
-        """Tell whether there is any."""
+        """Whether there is any."""
         return bool(self._findings)
 
     def has(self, code):
-        """Tell whether a code is among them."""
+        """Whether a code is among them."""
         return any(finding.code == code for finding in self._findings)
 
     def findings(self):
-        """Return what was found.
+        """Return the findings.
 
         Returns
         -------

@@ -138,7 +138,7 @@ def primary_wavelength(header):
 
 
 def opening(header, wavelength, override=None):
-    """Return the aperture of a file, or None if it tells none.
+    """Return the aperture of a file, or None if it has none.
 
     Parameters
     ----------
