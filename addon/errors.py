@@ -51,10 +51,6 @@ class GlassNotFoundError(InputError, LookupError):
     """A glass name that the catalogue does not have."""
 
 
-class SnapshotError(InputError):
-    """Scene data that cannot be rendered, such as coordinates that are not finite."""
-
-
 class OutputError(InputError):
     """A picture that cannot be written where it was asked for."""
 

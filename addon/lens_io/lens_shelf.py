@@ -104,19 +104,6 @@ class LensShelf:
                 known = self._read[lens_id] = _read(lens_id, path)
             return known
 
-    def peek(self, lens_id):
-        """Return a lens if its file was read already, else None.
-
-        Parameters
-        ----------
-        lens_id : str
-
-        Returns
-        -------
-        ShelvedLens or None
-        """
-        return self._read.get(lens_id)
-
     def near_ids(self, lens_id):
         """Return up to three ids of the library that look like one that it does not have.
 

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from .bundle import DIRECTION, POSITION, Bundle
+from .bundle import DIRECTION, POSITION
 
 # Largest coordinate of a hit, mm: farther away a ray misses the surface, and squares never
 # overflow.
@@ -63,30 +63,6 @@ def normal(surface, x, y):
     x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
     with np.errstate(all="ignore"):
         return np.stack(_normal(surface, _coefficients(surface), x, y), axis=-1)
-
-
-def intersect(surface, points, directions):
-    """Intersections of rays with a surface whose vertex is the origin.
-
-    Parameters
-    ----------
-    surface : Surface
-    points, directions : ndarray of shape (N, 3)
-        mm from the vertex; unit vectors.
-
-    Returns
-    -------
-    hits : ndarray of shape (N, 3)
-        mm; for a ray that misses, its point nearest to the vertex.
-    met : ndarray of bool, shape (N,)
-    """
-    bundle = Bundle(np.asarray(points, dtype=float), np.asarray(directions, dtype=float))
-    with np.errstate(all="ignore"):
-        missed = Shape(surface).meet(bundle)
-        far = ~(bundle.radius_squared() <= FAR * FAR)
-    missed = far if missed is None else missed | far
-    hits = np.stack([bundle.x, bundle.y, bundle.z], axis=-1)
-    return within_reach(hits), ~missed
 
 
 def within_reach(points):

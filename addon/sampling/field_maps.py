@@ -247,27 +247,6 @@ def field_corner(projection, orthographic=False):
     return float(_tilt(points[:, :3] / points[:, 3:], orthographic).max())
 
 
-def field_coordinates(points, corner, orthographic=False):
-    """Return where points lie in the field.
-
-    Parameters
-    ----------
-    points : ndarray of shape (..., 3)
-        In camera space, which looks along -z; in m.
-    corner : float
-        As `field_corner` returns it.
-    orthographic : bool
-
-    Returns
-    -------
-    t, theta : ndarray of shape (...)
-        t is at most 1; theta in radians from -pi to pi, 0 on the axis.
-    """
-    points = np.asarray(points, np.float64)
-    t = np.minimum(_tilt(points, orthographic) / corner, 1.0)
-    return t, np.arctan2(points[..., 1], points[..., 0])
-
-
 def _tilt(points, orthographic):
     away = np.hypot(points[..., 0], points[..., 1])
     return away if orthographic else np.arctan2(away, -points[..., 2])

@@ -18,27 +18,6 @@ FURTHER_PLACES = 1 << 17
 _FIRST_LOOK = 2
 
 
-def round_ends(samples, unit=1):
-    """Return the ends of the rounds that a number of samples takes.
-
-    Parameters
-    ----------
-    samples : int
-        At least 1; the last round may be longer.
-    unit : int
-        Samples that share a place on the lens.
-
-    Returns
-    -------
-    list of int
-        Rising; the last is at least `samples`, and the second round is always whole.
-    """
-    ends = [FIRST_INTERVAL * unit, _FIRST_LOOK * FIRST_INTERVAL * unit]
-    while ends[-1] < samples:
-        ends.append(2 * ends[-1])
-    return ends
-
-
 def first_look(unit=1):
     """Return after how many samples the error can be estimated for the first time."""
     return _FIRST_LOOK * FIRST_INTERVAL * unit

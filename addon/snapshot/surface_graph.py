@@ -77,15 +77,6 @@ class SurfaceGraph:
     luminance: tuple[float, float, float] = REC709_LUMINANCE
 
 
-def emission_graph(color, strength=1.0):
-    """Return the graph of one Emission node with constant inputs."""
-    node = ShaderNode(
-        "emission",
-        (("Color", Constant(tuple(color))), ("Strength", Constant((float(strength),)))),
-    )
-    return SurfaceGraph((node,), Link(0, "Emission"))
-
-
 # Closures whose light depends on the normal.
 LIT_KINDS = frozenset({"diffuse", "glossy", "principled"})
 

@@ -21,7 +21,7 @@ from addon.snapshot.content import (
 )
 from addon.snapshot.film import Film, Sampling
 from addon.snapshot.scene import SceneSnapshot
-from addon.snapshot.surface_graph import emission_graph
+from tests.surface_graphs import emission_graph
 
 WORLD_COLOR = (0.125, 0.25, 0.5)
 

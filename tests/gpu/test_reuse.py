@@ -15,7 +15,7 @@ from addon.snapshot.content import (
     next_uid,
 )
 from addon.snapshot.film import Sampling
-from addon.snapshot.surface_graph import emission_graph
+from tests.surface_graphs import emission_graph
 
 from .conftest import make_renderer, triangles_snapshot
 

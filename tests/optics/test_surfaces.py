@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from addon.optics.surfaces import intersect, normal, sag
+from addon.optics.bundle import Bundle
+from addon.optics.surfaces import FAR, Shape, normal, sag, within_reach
 from tests.optics.lenses import rays, surface
 
 SHAPES = {
@@ -24,6 +25,20 @@ SHAPES = {
 }
 # Rounding of positions of tens of mm, and of Newton's last step.
 ROUNDING_MM = 1.0e-12
+
+
+def intersect(surface, points, directions):
+    """Intersections of rays with a surface whose vertex is the origin.
+
+    Returns the points, shape (N, 3) in mm, and which rays met the surface.
+    """
+    bundle = Bundle(np.asarray(points, dtype=float), np.asarray(directions, dtype=float))
+    with np.errstate(all="ignore"):
+        missed = Shape(surface).meet(bundle)
+        far = ~(bundle.radius_squared() <= FAR * FAR)
+    missed = far if missed is None else missed | far
+    hits = np.stack([bundle.x, bundle.y, bundle.z], axis=-1)
+    return within_reach(hits), ~missed
 
 
 @pytest.fixture(params=SHAPES)

@@ -10,9 +10,9 @@ from addon.sampling.field_maps import (
     FIELD_PRESETS,
     LIMIT,
     FieldMap,
-    field_coordinates,
     field_corner,
 )
+from benchmarks.reference.chromatic import field_coordinates
 
 T = np.linspace(0.02, 0.98, 49)
 THETA = np.linspace(-np.pi, np.pi, 49)

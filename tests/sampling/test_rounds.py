@@ -4,15 +4,9 @@ import numpy as np
 import pytest
 
 from addon.sampling.iris import Iris
-from addon.sampling.rounds import FURTHER_PLACES, first_look, looks, round_ends
+from addon.sampling.rounds import FURTHER_PLACES, first_look, looks
 from addon.sampling.sequence import lens_samples
 from addon.sampling.subsamples import subsample_offsets
-
-
-def test_rounds_double():
-    assert round_ends(1) == [8, 16]
-    assert round_ends(17) == [8, 16, 32]
-    assert round_ends(100, unit=3) == [24, 48, 96, 192]
 
 
 @pytest.mark.parametrize("most", [16, 100, 256, 1000])

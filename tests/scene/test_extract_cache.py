@@ -267,10 +267,10 @@ def test_instances_of_geometry_nodes_follow_their_object(kept, bpy):
 
 
 def test_an_extraction_that_failed_does_not_poison_the_next(kept, bpy, monkeypatch):
-    from addon.errors import SnapshotError
+    from addon.errors import InputError
 
     def fail(*_):
-        raise SnapshotError("no")
+        raise InputError("no")
 
     data = bpy.data.meshes["cube"]
     scenes.set_coordinate(data, 0, 0.2)
@@ -278,6 +278,6 @@ def test_an_extraction_that_failed_does_not_poison_the_next(kept, bpy, monkeypat
     with monkeypatch.context() as broken:
         broken.setattr("addon.scene.extract.read_mesh", fail)
         for _ in range(2):
-            with pytest.raises(SnapshotError):
+            with pytest.raises(InputError):
                 kept.extractor.extract_content(bpy.context.evaluated_depsgraph_get())
     kept.look()

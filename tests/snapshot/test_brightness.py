@@ -17,7 +17,8 @@ from addon.snapshot.content import (
     World,
     next_uid,
 )
-from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph, emission_graph
+from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
+from tests.surface_graphs import emission_graph
 
 IMAGE = 77
 

@@ -55,7 +55,7 @@ class BokehLook:
     Parameters
     ----------
     variants : tuple of str
-        Of `passes.bokeh.splat.VARIANTS`.
+        ``"PROFILE"``, ``"RIMS"`` and ``"TILES"``; see `passes.bokeh.splat`.
     textures : tuple of (str, GPUTexture)
         By their names in the shader.
     blocks : tuple of GPUUniformBuf

@@ -96,32 +96,6 @@ class ChromaticPlan:
         """Where equation (4.5) is clamped, 1/m."""
         return self.inverse_focus / FARTHEST_FOCUS
 
-    def typical_coc(self, eye, coc_scale):
-        """Return the circles of confusion that represent all wavelengths.
-
-        The share of light that is splatted depends on them, so that it is the same at every
-        wavelength.
-
-        Parameters
-        ----------
-        eye : ndarray of shape (..., 3)
-        coc_scale : float
-            See `FramePlan`.
-
-        Returns
-        -------
-        ndarray of shape (...)
-            Radius in px: the root of about their mean square.
-        """
-        axial = self.strengths(eye)[..., 0]
-        depth = -eye[..., 2]
-        squares = 0.0
-        for error in self.typical_errors:
-            focus = self.inverse_focus_at(error, axial)
-            coc = depth * focus - 1.0 if self.parallel else focus - 1.0 / depth
-            squares = squares + 0.5 * (coc_scale * coc) ** 2
-        return np.sqrt(squares)
-
     def strengths(self, eye):
         """Return axial and lateral map at points of camera space.
 

@@ -39,7 +39,7 @@ _GROUPS = shader_source.load("passes/bokeh/clusters_groups_comp.glsl")
 _STEPS = shader_source.load("passes/bokeh/clusters_comp.glsl")
 
 _TABLE = ("R32UI", "UINT_2D")
-_READ, _WRITE, _BOTH = ("READ",), ("WRITE",), ("READ", "WRITE")
+_WRITE, _BOTH = ("WRITE",), ("READ", "WRITE")
 _SOURCES = (("FLOAT_2D", "a_tx"), ("FLOAT_2D", "b_tx"))
 
 

@@ -18,7 +18,6 @@ SPLAT_PARAMS = UniformStruct("shared/splat_params.glsl", "SplatParams")
 
 _TEXTURES = ("sources_a_tx", "sources_b_tx", "tiles_tx", "masks_tx")
 _RAYS = ("layers_tx", "opacity_tx", "states_tx")
-VARIANTS = ("PROFILE", "RIMS", "TILES")
 MOST_RIMS = 4
 # Textures and varyings of the variants.
 _LOOK_TEXTURES = {

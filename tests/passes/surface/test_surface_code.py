@@ -7,7 +7,8 @@ from addon.passes.surface import surface_code
 from addon.passes.surface.environment import ggx_table
 from addon.passes.surface.light_table import light_texels
 from addon.snapshot.content import Light
-from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph, emission_graph
+from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
+from tests.surface_graphs import emission_graph
 
 
 def shaders(*kinds_and_color):
