@@ -1,6 +1,6 @@
 """A noise threshold from the command line: what the statistics tell of it, and that it is kept."""
 
-from .conftest import SIZE
+from benchmarks.scenes.small_scene import SIZE
 
 
 def test_statistics_tell_the_error_and_the_samples(aplanat, small_blend, tmp_path):
