@@ -232,6 +232,9 @@ def _appearance(appearance, iris):
     """Return an appearance with the opening of the lens samples where it has none of its own."""
     if appearance.iris == BladedIris():
         appearance = replace(appearance, iris=opening_of(iris))
+    if getattr(appearance.iris, "is_round", False):
+        # However many blades are out of sight: a real lens' own rim is all there is.
+        appearance = replace(appearance, iris=BladedIris())
     # Textures hold the opening without the anamorphic ratio, which the shader applies.
     return replace(appearance, anamorphic_ratio=1.0)
 
