@@ -1,13 +1,22 @@
 """A captured picture seen through the lens: against rays through flat cards, and the refusals."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from addon.engine.layered import layered_drawing
 from addon.engine.refocus.refocusing import Refocusing, refocus
-from addon.engine.refocus.settings import RefocusSettings, lens_of
+from addon.engine.refocus.settings import RefocusSettings, bokeh_of, lens_of
 from addon.errors import FocusError
 from addon.layers.layer_stack import DepthLayer, LayerCamera, LayerStack
+from addon.lens_bokeh.look.appearance import Appearance
+from addon.lens_bokeh.openings.blades import BladedIris
+from addon.lens_bokeh.openings.pictures import PictureIris
+from addon.lens_bokeh.openings.shapes import iris_of
+from addon.snapshot.camera import BokehSettings
+from tests.lens_bokeh.openings.shapes import heart
+from tests.splat_pictures import library_lens
 
 WIDTH, HEIGHT, OVERSCAN = 48, 32, 8
 FOCUS = 4.0
@@ -129,3 +138,31 @@ def test_more_samples_than_a_texture_is_wide_follow_in_further_rows(stack, monke
     # Devices have 8192 columns and more: a table of so many samples takes too long here.
     monkeypatch.setattr(layered_drawing._folded, "__defaults__", (4,))
     assert refocus(stack, settings).tobytes() == expected.tobytes()
+
+
+def test_blades_follow_the_f_number_that_is_asked_for(stack):
+    wide = library_lens("double-gauss-50mm-f2")
+    opening = BladedIris(5, 0.2, 0.3, wide.closing)
+    bokeh = BokehSettings(appearance=Appearance(iris=opening))
+    settings = RefocusSettings(iris=iris_of(opening), real_lens=wide, bokeh=bokeh)
+    for f_stop, is_round in ((1.0, True), (4.0, False)):
+        asked = replace(settings, f_stop=f_stop)
+        lens, look = lens_of(stack, asked), bokeh_of(stack, asked).appearance
+        assert lens.iris.opening.is_round is is_round
+        assert look.iris == lens.iris.opening
+    # A thin lens has no widest f-number.
+    thin = lens_of(stack, replace(settings, real_lens=None))
+    assert thin.iris.opening == BladedIris(5, 0.2, 0.3)
+
+
+def test_the_picture_is_blurred_by_the_iris_image(aplanat_bpy, stack):
+    from addon.device.context import ensure_context
+    from addon.sampling.sequence import lens_samples
+
+    ensure_context()
+    iris = iris_of(PictureIris(heart()))
+    settings = RefocusSettings(iris=iris, samples=64)
+    lens = lens_of(stack, settings)
+    picture = refocus(stack, settings)
+    expected = traced(stack, lens, lens_samples(0, 1024, iris, 5) * lens.aperture_radius)
+    assert np.abs(picture - expected).mean() < 0.02
