@@ -203,7 +203,7 @@ def choose_levels(seen, triangles, plan, bias=0.0):
     """
     front = (seen.nearest > 0.0) | plan.orthographic
     depths = (np.where(front, depth, 1.0) for depth in (seen.nearest, seen.farthest))
-    smallest = _smallest(*coc_ends(*depths, plan, seen.inverse_focus))
+    smallest = _smallest(*coc_ends(*depths, plan, seen.inverse_focus), plan)
     level = _level(smallest, seen, triangles, plan) - bias
     return np.where(front, np.maximum(level, 0.0), 0.0)
 
@@ -267,7 +267,7 @@ def blurred_area(depth, world, plan, bias):
     front = (depth > 0.0) | plan.orthographic
     ahead = np.where(front, depth, 1.0)
     focus = plan.chromatic.overall().inverse_focus[:, None] if plan.chromatic else None
-    circle = np.pi * _smallest(*coc_ends(ahead, ahead, plan, focus)) ** 2 * _narrowing(plan)
+    circle = np.pi * _smallest(*coc_ends(ahead, ahead, plan, focus), plan) ** 2 * _narrowing(plan)
     scale = plan.projection[1, 1] * plan.height / 2.0
     pixels = np.full(len(depth), scale) if plan.orthographic else scale / ahead
     # Mean over all directions of the scaling and foreshortening of an area.
@@ -276,8 +276,10 @@ def blurred_area(depth, world, plan, bias):
     return np.where(front, area * 2.0**-bias, 0.0)
 
 
-def _smallest(near, far):
-    return np.where(near * far <= 0.0, 0.0, np.minimum(np.abs(near), np.abs(far)))
+def _smallest(near, far, plan):
+    smallest = np.where(near * far <= 0.0, 0.0, np.minimum(np.abs(near), np.abs(far)))
+    # A real lens may blur less than a thin one: its focus is elsewhere off the axis.
+    return np.maximum(smallest - plan.blur_doubt, 0.0)
 
 
 def _narrowing(plan):

@@ -18,6 +18,7 @@ from ..sampling.pixel_filter import MOST_SUBPIXELS
 from ..sampling.tile_control import TILE
 from .accumulate import padded
 from .surface import real_lens
+from .tile_scales import KINDS, defines
 
 # Channel of the second target of `surface_target.COLOR_AND_MATTES` that holds the id.
 CHANNELS = {"CryptoObject": 0, "CryptoMaterial": 1}
@@ -77,7 +78,7 @@ def _count_info(pairs, subpixels, tiled, lit=False):
 @variants(
     allowed=lambda pairs, tiled, lit: not (tiled and lit),
     pairs=_PAIRS,
-    tiled=(False, True),
+    tiled=KINDS,
     lit=(False, True),
 )
 def _rank_info(pairs, tiled, lit=False):
@@ -89,7 +90,7 @@ def _rank_info(pairs, tiled, lit=False):
         outputs=(("VEC4", "out_color"),),
         samplers=(
             ("FLOAT_2D_ARRAY", "tables_tx"),
-            *(("FLOAT_2D", "scales_tx"),) * tiled,
+            *(("FLOAT_2D", "scales_tx"),) * bool(tiled),
             *real_lens.LIGHT_SAMPLERS * lit,
         ),
         push_constants=(
@@ -100,7 +101,7 @@ def _rank_info(pairs, tiled, lit=False):
         ),
         defines=(
             ("SLOT_PAIRS", str(pairs)),
-            *_TILED * tiled,
+            *defines(tiled),
             *real_lens.LIGHT_DEFINES * lit,
         ),
     )
@@ -157,19 +158,19 @@ def draw_ranks(fullscreen, tables, kinds, kind, index, weight, scales=None, ligh
         0 holds ranks 0 and 1, 1 holds 2 and 3, ...
     weight : float
         Summed weight of the samples.
-    scales : GPUTexture or None
-        Used instead of `weight`: one over the summed weight of each tile.
+    scales : tile_scales.TileScales or None
+        Used instead of `weight`.
     light : real_lens.SampleLight or None
         Used instead: sums of the weights over the picture.
     """
     pairs = slot_pairs(kinds)
-    shader = compile_shader(_rank_info(pairs, scales is not None, light is not None))
+    shader = compile_shader(_rank_info(pairs, scales and scales.corners, light is not None))
     shader.bind()
     shader.uniform_sampler("tables_tx", tables)
     shader.uniform_int("first_layer", list(kinds).index(kind) * pairs)
     shader.uniform_int("rank", 2 * index)
     if scales is not None:
-        shader.uniform_sampler("scales_tx", scales)
+        shader.uniform_sampler("scales_tx", scales.texture)
     elif light is not None:
         light.bind(shader)
     else:

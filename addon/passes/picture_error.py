@@ -10,9 +10,10 @@ from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
 from ..device.targets import TargetSpec
 from ..sampling.tile_control import TILE
+from .tile_scales import KINDS, defines
 
 STRIDE, RADIUS = 4, 5
-_DEFINES = (("TILE", str(TILE)), ("STRIDE", str(STRIDE)), ("RADIUS", str(RADIUS)))
+_DEFINES = (("STRIDE", str(STRIDE)), ("RADIUS", str(RADIUS)))
 
 
 _SAMPLERS = {
@@ -24,11 +25,12 @@ _CONSTANTS = {"windows": (("FLOAT", "rest"),), "tiles": (("IVEC2", "count"),)}
 
 
 @variants(
-    lambda name, with_bokeh: name == "display" or not with_bokeh,
+    lambda name, with_bokeh, corners: name == "display" or not (with_bokeh or corners > 1),
     name=("display", "windows", "tiles"),
     with_bokeh=(False, True),
+    corners=KINDS[1:],
 )
-def _info(name, with_bokeh=False):
+def _info(name, with_bokeh=False, corners=1):
     samplers = _SAMPLERS[name] + ("bokeh_tx",) * with_bokeh
     return ShaderInfo(
         name=f"aplanat_picture_{name}",
@@ -38,7 +40,7 @@ def _info(name, with_bokeh=False):
         outputs=(("VEC4", "out_color"),),
         samplers=tuple(("FLOAT_2D", sampler) for sampler in samplers),
         push_constants=_CONSTANTS.get(name, ()),
-        defines=(*_DEFINES, *(("BOKEH", "1"),) * with_bokeh),
+        defines=(*_DEFINES, *defines(corners), *(("BOKEH", "1"),) * with_bokeh),
     )
 
 
@@ -73,16 +75,16 @@ def display(fullscreen, total, scales, bokeh=None):
     fullscreen : GPUBatch
     total : GPUTexture
         Sum of the samples.
-    scales : GPUTexture
-        One over their summed weights, by channel; a texel a tile.
+    scales : tile_scales.TileScales
+        Of their weights.
     bokeh : GPUTexture or None
         Added to the mean.
     """
     state.overwrite()
-    shader = compile_shader(_info("display", bokeh is not None))
+    shader = compile_shader(_info("display", bokeh is not None, scales.corners))
     shader.bind()
     shader.uniform_sampler("sum_tx", total)
-    shader.uniform_sampler("scales_tx", scales)
+    shader.uniform_sampler("scales_tx", scales.texture)
     if bokeh is not None:
         shader.uniform_sampler("bokeh_tx", bokeh)
     shader.draw(fullscreen)

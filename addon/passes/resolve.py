@@ -5,8 +5,8 @@ import numpy as np
 from ..device import shader_source
 from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
-from ..sampling.tile_control import TILE
 from .surface import real_lens
+from .tile_scales import KINDS, defines
 
 
 @variants(
@@ -16,7 +16,7 @@ from .surface import real_lens
     with_bokeh=(False, True),
     by_channel=(False, True),
     distorted=(False, True),
-    tiled=(False, True),
+    tiled=KINDS,
     lit=(False, True),
 )
 def _info(with_bokeh, by_channel, distorted, tiled, lit=False):
@@ -29,7 +29,7 @@ def _info(with_bokeh, by_channel, distorted, tiled, lit=False):
         samplers=(
             ("FLOAT_2D", "sum_tx"),
             *(("FLOAT_2D", "bokeh_tx"),) * with_bokeh,
-            *(("FLOAT_2D", "scales_tx"),) * tiled,
+            *(("FLOAT_2D", "scales_tx"),) * bool(tiled),
             *real_lens.LIGHT_SAMPLERS * lit,
         ),
         push_constants=(
@@ -49,7 +49,7 @@ def _info(with_bokeh, by_channel, distorted, tiled, lit=False):
         defines=(
             *(("BOKEH", "1"),) * with_bokeh,
             *(("DISTORTED", "1"),) * distorted,
-            *(("TILED", "1"), ("TILE", str(TILE))) * tiled,
+            *defines(tiled),
             *real_lens.LIGHT_DEFINES * lit,
         ),
     )
@@ -83,14 +83,13 @@ def resolve(
         Added to the mean.
     distortion : DistortionPlan or None
         Where the picture's pixels lie in the textures; None: they are those of the textures.
-    scales : GPUTexture or None
-        Instead of the weight: one over that of each channel, a texel a tile of
-        `sampling.tile_control.TILE` px. Not with distortion.
+    scales : TileScales or None
+        Instead of the weight. Not with distortion.
     light : real_lens.SampleLight or None
         Instead of the weight: sums of the weights over the picture. Not with distortion.
     """
     by_channel = isinstance(weight, tuple)
-    tiled = scales is not None
+    tiled = scales and scales.corners
     by_channel = by_channel and light is None
     features = (by_channel, distortion is not None, tiled, light is not None)
     shader = compile_shader(_info(bokeh is not None, *features))
@@ -99,7 +98,7 @@ def resolve(
     if bokeh is not None:
         shader.uniform_sampler("bokeh_tx", bokeh)
     if tiled:
-        shader.uniform_sampler("scales_tx", scales)
+        shader.uniform_sampler("scales_tx", scales.texture)
     elif light is not None:
         light.bind(shader)
     else:

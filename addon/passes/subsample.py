@@ -2,7 +2,7 @@
 
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
-from .surface import chromatic
+from .surface import chromatic, real_lens
 
 _SAMPLERS = (
     ("FLOAT_2D", "sample_tx"),
@@ -33,6 +33,10 @@ _INFO = ShaderInfo(
     ),
 )
 _IN_WAVELENGTHS = chromatic.declared(_INFO, (("VEC4", "gain"), ("VEC4", "tint")))
+_THROUGH_LENS, _THROUGH_LENS_IN_WAVELENGTHS = (
+    real_lens.declared(info, (("FLOAT_2D", "turns_tx"), *real_lens.LIGHT_SAMPLERS))
+    for info in (_INFO, _IN_WAVELENGTHS)
+)
 
 
 def blur(
@@ -51,6 +55,7 @@ def blur(
     count,
     gain=None,
     wavelength=None,
+    lens=None,
 ):
     """Blur a lens sample and add it to the bound frame buffer.
 
@@ -81,9 +86,15 @@ def blur(
         With chromatic aberration: change of `sweep` by the inverse of the focus distance.
     wavelength : passes.surface.chromatic.ChromaticSample, optional
         The sample's; its subsamples have the same.
+    lens : passes.surface.real_lens.LensSample, optional
+        The sample's, with ``turns``.
     """
     state.additive()
-    shader = compile_shader(_INFO if wavelength is None else _IN_WAVELENGTHS)
+    if lens is None:
+        info = _INFO if wavelength is None else _IN_WAVELENGTHS
+    else:
+        info = _THROUGH_LENS if wavelength is None else _THROUGH_LENS_IN_WAVELENGTHS
+    shader = compile_shader(info)
     shader.bind()
     for (_, name), texture in zip(_SAMPLERS, textures, strict=True):
         shader.uniform_sampler(name, texture)
@@ -97,6 +108,10 @@ def blur(
     shader.uniform_int("levels", levels)
     shader.uniform_int("sample_index", index)
     shader.uniform_int("count", count)
+    if lens is not None:
+        lens.bind(shader)
+        shader.uniform_sampler("turns_tx", lens.turns)
+        shader.uniform_sampler("light_tx", lens.light.texture)
     if wavelength is not None:
         wavelength.bind(shader)
         shader.uniform_float("gain", tuple(gain))

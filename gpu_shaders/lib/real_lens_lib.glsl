@@ -4,14 +4,20 @@
 #ifndef REAL_LENS_LIB_GLSL
 #define REAL_LENS_LIB_GLSL
 
-// Displacement of a point, as tangents. `place` in the field, `vergence` 1 / depth, 1/m; `slot`: place
-// of the lens sample in the tables. Points outside of the nodes move as those on their edge.
-vec2 real_lens_move(sampler2D moves_tx, vec2 place, float vergence, int slot, RealLensParams params)
+// Place of a field in the tables of a sample's left half, 0 to 1.
+vec2 real_lens_node(vec2 place, int slot, RealLensParams params)
 {
   vec2 size = params.table.xy;
   vec2 node = clamp((place - params.grid.xy) * params.grid.zw, 0.0, 1.0) * (size - 1.0);
   node.y += float(slot) * size.y;
-  vec2 at = (node + 0.5) / vec2(2.0 * size.x, params.table.z * size.y);
+  return (node + 0.5) / vec2(2.0 * size.x, params.table.z * size.y);
+}
+
+// Displacement of a point, as tangents. `place` in the field, `vergence` 1 / depth, 1/m; `slot`: place
+// of the lens sample in the tables. Points outside of the nodes move as those on their edge.
+vec2 real_lens_move(sampler2D moves_tx, vec2 place, float vergence, int slot, RealLensParams params)
+{
+  vec2 at = real_lens_node(place, slot, params);
   vec4 low = textureLod(moves_tx, at, 0.0);
   vec4 high = textureLod(moves_tx, at + vec2(0.5, 0.0), 0.0);
   float v = min(vergence * params.vergence.x, 1.0);

@@ -1,10 +1,13 @@
 // Two ranks of a Cryptomatte: the ids of a pixel by falling coverage, the earlier slot first where
 // two are equal.
 // Inputs: tables_tx (see cryptomatte_comp); first_layer of the kind; rank of the first of the two;
-// scale (1 / samples; TILED: scales_tx, that of each tile of TILE pixels; LIGHT: 1 / light_tx, sums of weights over
+// scale (1 / samples; TILED: scales_tx, see tile_scale_lib; LIGHT: 1 / light_tx, sums of weights over
 // the picture, with light_table).
 // Outputs: id and coverage of a rank, and of the next; zeros where there is none.
 // Source: Friedman and Jones, SIGGRAPH 2015.
+#ifdef TILED
+#include "lib/tile_scale_lib.glsl"
+#endif
 #ifdef LIGHT
 #include "lib/light_table_lib.glsl"
 #endif
@@ -13,7 +16,7 @@ void main()
 {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
 #ifdef TILED
-  float scale = texelFetch(scales_tx, pixel / TILE, 0).x;
+  float scale = tile_scale(scales_tx, pixel).x;
 #endif
 #ifdef LIGHT
   vec2 place = gl_FragCoord.xy / vec2(textureSize(tables_tx, 0).xy);

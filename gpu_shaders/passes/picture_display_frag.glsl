@@ -1,12 +1,13 @@
 // The picture as it is displayed: sRGB-encoded and clipped, so that errors count as they are seen.
-// Inputs: sum_tx, scales_tx (1 / summed weight of each channel, a texel a tile of TILE px); with BOKEH
+// Inputs: sum_tx, scales_tx (1 / summed weight of each channel, see tile_scale_lib); with BOKEH
 // also bokeh_tx, which is added.
 // Outputs: encoded colour and alpha, 0 to 1. Source: IEC 61966-2-1.
+#include "lib/tile_scale_lib.glsl"
 
 void main()
 {
   ivec2 texel = ivec2(gl_FragCoord.xy);
-  vec4 color = texelFetch(sum_tx, texel, 0) * texelFetch(scales_tx, texel / TILE, 0);
+  vec4 color = texelFetch(sum_tx, texel, 0) * tile_scale(scales_tx, texel);
 #ifdef BOKEH
   color += texelFetch(bokeh_tx, texel, 0);
 #endif

@@ -1,13 +1,16 @@
 // The picture: the sum of the samples over their weight, placed at an offset in the target,
 // each pixel as a square of pixel_size.
 // Inputs: sum_tx; with BOKEH also bokeh_tx, which is added; scale (1 / summed weight, or that of each
-// channel; TILED: scales_tx, those of each tile of TILE pixels;
+// channel; TILED: scales_tx, see tile_scale_lib;
 // LIGHT: 1 / light_tx, sums of weights over the picture, with light_table); origin (lower left corner in the target, px); pixel_size. DISTORTED: the textures are of a
 // raster without distortion, sampled where the picture's pixels lie in it; to_field, from_field,
 // terms, model (see distortion_lib).
 // Outputs: premultiplied scene-linear colour. Source: methods 1, 13.
 #ifdef DISTORTED
 #include "lib/distortion_lib.glsl"
+#endif
+#ifdef TILED
+#include "lib/tile_scale_lib.glsl"
 #endif
 #ifdef LIGHT
 #include "lib/light_table_lib.glsl"
@@ -24,7 +27,7 @@ void main()
 #endif
 #else
 #ifdef TILED
-  vec4 scale = texelFetch(scales_tx, texel / TILE, 0);
+  vec4 scale = tile_scale(scales_tx, texel);
 #endif
 #ifdef LIGHT
   vec2 place = (vec2(texel) + 0.5) / vec2(textureSize(sum_tx, 0));

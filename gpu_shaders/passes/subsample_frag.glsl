@@ -8,6 +8,9 @@
 // the sample has of it, texels); weight.
 // CHROMATIC: as in surface_vert, and gain (of the sweep, by 1 / focus distance), tint (weights of the
 // channels).
+// REAL_LENS: as in surface_vert; turns_tx (how the lens' displacements change with the place on it:
+// columns of a matrix in texels a metre, in the left half, and per unit of the depth buffer, in the right),
+// light_tx (what the lens lets through at the places of the picture).
 // Outputs: the weighted sum of the sample and its subsamples.
 // Source: methods 6 (JKL13 section 6, algorithm 3).
 #include "lib/extremes_lib.glsl"
@@ -20,6 +23,46 @@ vec4 focused_sweep;
 #else
 #define focused_sweep sweep
 #endif
+
+#ifdef REAL_LENS
+#include "lib/light_table_lib.glsl"
+#include "lib/real_lens_lib.glsl"
+
+// What the lens adds to the sweep at the pixel's place in the field.
+mat2 own_turn, own_turn_by_depth;
+#endif
+
+// Movement for a place on the lens at a distance of `move`, texels.
+vec2 moved_px(vec2 move, float depth)
+{
+  vec2 moved = sweep_px(move, focused_sweep, depth);
+#ifdef REAL_LENS
+  moved += own_turn * move + own_turn_by_depth * move * depth;
+#endif
+  return moved;
+}
+
+// Largest movement along x and y for all places as near as `spread` along either axis, texels.
+vec2 reach_px(vec2 spread, float depth)
+{
+#ifdef REAL_LENS
+  vec2 diagonal = focused_sweep.xy + focused_sweep.zw * depth;
+  mat2 whole = own_turn + own_turn_by_depth * depth + mat2(diagonal.x, 0.0, 0.0, diagonal.y);
+  return abs(whole[0]) * spread.x + abs(whole[1]) * spread.y;
+#else
+  return abs(sweep_px(spread, focused_sweep, depth));
+#endif
+}
+
+// Change of the movement with the depth buffer's value, texels.
+vec2 parted_px(vec2 move)
+{
+#ifdef REAL_LENS
+  return abs(move * focused_sweep.zw + own_turn_by_depth * move);
+#else
+  return abs(move * focused_sweep.zw);
+#endif
+}
 
 // Neighbouring texels are one surface if their movements for the ray differ by no more, in texels.
 #define SURFACE_STRETCH 1.0
@@ -40,10 +83,14 @@ vec4 focused_sweep;
 vec4 cell_color(ivec2 texel, ivec2 size)
 {
   float depth = texelFetch(depth_tx, texel, 0).x;
-  vec2 span = abs(sweep_px(vec2(cell), focused_sweep, depth));
+  vec2 span = reach_px(vec2(cell), depth);
   float width = WIDTH_OF_CELL * min(span.x, span.y);
   int level = min(int(floor(log2(max(width, 1.0)) + 0.5)), top);
+#ifdef REAL_LENS
+  vec2 by_depth = abs(vec2(own_turn_by_depth[0].x, own_turn_by_depth[1].y) + focused_sweep.zw);
+#else
   vec2 by_depth = abs(focused_sweep.zw);
+#endif
   float alike = MOVES_ALIKE / max(cell * max(by_depth.x, by_depth.y), 1e-30);
   for (; level > 0; level--) {
     ivec2 last = ((size + (1 << level) - 1) >> level) - 1;
@@ -97,8 +144,8 @@ vec2 square_depths(ivec2 square, int level)
 ivec2 seen_texel(ivec2 pixel, ivec2 size, vec2 move, vec2 in_reach)
 {
   vec2 center = vec2(pixel) + 0.5 - jitter;
-  vec2 start = center - sweep_px(move, focused_sweep, in_reach.x);
-  vec2 along = center - sweep_px(move, focused_sweep, in_reach.y) - start;
+  vec2 start = center - moved_px(move, in_reach.x);
+  vec2 along = center - moved_px(move, in_reach.y) - start;
   vec2 part = vec2(0.0, 1.0);
   // Outside, the picture's outermost texels are repeated: a path beyond an edge runs along it.
   for (int axis = 0; axis < 2; axis++) {
@@ -160,7 +207,7 @@ ivec2 seen_texel(ivec2 pixel, ivec2 size, vec2 move, vec2 in_reach)
     else if (level == 0 && (was_ahead || !begun)) {
       // The ray has crossed a slope between two texels, passed the edge of a nearer surface, or comes
       // from beyond the picture's edge.
-      vec2 parted = abs(move * focused_sweep.zw);
+      vec2 parted = parted_px(move);
       float gap = texelFetch(depth_tx, ahead, 0).x - seen.x;
       if (!begun || gap * max(parted.x, parted.y) <= SURFACE_STRETCH) {
         return ahead;
@@ -187,8 +234,7 @@ vec2 depths_in_reach(ivec2 pixel, ivec2 size, out int reach)
 {
   vec2 found = depths;
   for (int i = 0; i <= APPROACHES; i++) {
-    vec2 moved = max(abs(sweep_px(spread, focused_sweep, found.x)),
-                     abs(sweep_px(spread, focused_sweep, found.y)));
+    vec2 moved = max(reach_px(spread, found.x), reach_px(spread, found.y));
     // Up to the edge of its square, the pixel's own texel is seen.
     moved += abs(jitter) + 0.5;
     reach = int(min(max(moved.x, moved.y), float(max(size.x, size.y))));
@@ -214,6 +260,14 @@ void main()
   float axial = field_strengths(field_tx, place, chromatic_buf).x;
   focused_sweep = sweep + gain * chromatic_focus(dispersion.x, axial, chromatic_buf);
 #endif
+#ifdef REAL_LENS
+  vec2 shown = gl_FragCoord.xy * real_lens_buf.raster.xy + real_lens_buf.raster.zw;
+  vec2 node = real_lens_node(shown, lens_slot, real_lens_buf);
+  vec4 turn = textureLod(turns_tx, node, 0.0);
+  vec4 by_depth = textureLod(turns_tx, node + vec2(0.5, 0.0), 0.0);
+  own_turn = mat2(turn.xy, turn.zw);
+  own_turn_by_depth = mat2(by_depth.xy, by_depth.zw);
+#endif
   int reach;
   vec2 in_reach = depths_in_reach(pixel, size, reach);
   vec4 total;
@@ -229,6 +283,10 @@ void main()
   }
 #ifdef CHROMATIC
   total *= tint;
+#endif
+#ifdef REAL_LENS
+  vec4 table = vec4(real_lens_buf.light.xy, real_lens_buf.table.z, float(lens_slot));
+  total *= light_at(light_tx, gl_FragCoord.xy / vec2(size), table).x;
 #endif
   out_color = total * weight;
 }

@@ -16,7 +16,7 @@ from .test_imports import ADDON, MODULES
 MEMOS = {
     "files.version": ("version",),
     "device.shader_source": ("_join", "_places", "_read", "load"),
-    "engine.planning.lens_plan": ("_rays",),
+    "engine.planning.lens_plan": ("_plan", "_rays"),
     "engine.bokeh.look": (
         *("_beams", "_lens_rows", "_light_on_radii", "_opening"),
         *("_profile", "_rims", "_tiles", "_tiles_left"),

@@ -64,6 +64,8 @@ class BokehLook:
         Field table and `ChromaticParams`; empty without chromatic aberration.
     report : tuple of str
         Warnings: settings of the camera that cannot be met, one sentence each.
+    lens : passes.surface.real_lens.LensSample or None
+        The middle of the real lens that the samples see through, with its falloff.
     """
 
     variants: tuple[str, ...]
@@ -71,6 +73,7 @@ class BokehLook:
     blocks: tuple
     field: tuple = ()
     report: tuple[str, ...] = ()
+    lens: object = None
 
 
 def describe_look(plan):
@@ -138,7 +141,7 @@ def describe_look(plan):
     return variants, arrays, params
 
 
-def make_look(plan, textures, field=None):
+def make_look(plan, textures, field=None, lens=None):
     """Upload the textures and parameters of a frame's splats.
 
     Where the real lens cannot be traced, the discs are those of a thin lens.
@@ -151,6 +154,8 @@ def make_look(plan, textures, field=None):
         Has those of earlier frames, which may do for this one.
     field : tuple of (str, GPUUniformBuf or GPUTexture) or None
         `passes.surface.chromatic.resources`, with chromatic aberration.
+    lens : passes.surface.real_lens.LensSample or None
+        As of `BokehLook`.
 
     Returns
     -------
@@ -169,7 +174,7 @@ def make_look(plan, textures, field=None):
         )
     uploaded = tuple((name, textures.texture(array, _texture)) for name, array in arrays.items())
     blocks = tuple(uniform_buffer(SPLAT_PARAMS.pack(**params, **band)) for band in _bands(plan))
-    return BokehLook(variants, uploaded, blocks, tuple(field or ()), report)
+    return BokehLook(variants, uploaded, blocks, tuple(field or ()), report, lens)
 
 
 def _bands(plan):

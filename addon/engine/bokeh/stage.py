@@ -92,6 +92,8 @@ class BokehStage:
         See `highlight_buffer`.
     field : tuple of (str, GPUUniformBuf or GPUTexture) or None
         `passes.surface.chromatic.resources`, with chromatic aberration.
+    lens : passes.surface.real_lens.LensSample or None
+        As of `BokehLook`.
 
     Attributes
     ----------
@@ -102,13 +104,14 @@ class BokehStage:
         Numbers of sources by fate, by the names of `passes.bokeh.marks.FATES`.
     """
 
-    def __init__(self, plan, drawing, buffers, occluders, highlights_buffer, field=None):
+    def __init__(self, plan, drawing, buffers, occluders, highlights_buffer, field=None, lens=None):
         self._plan = plan
         self._drawing = drawing
         self._buffers = buffers
         self._occluders = occluders
         self._highlights = highlights_buffer
         self._field = field
+        self._lens = lens
         self.counts = HighlightCounts()
         self.fates = {}
         self.report = ()
@@ -202,7 +205,7 @@ class BokehStage:
         bokeh = with_sharp(self._plan.bokeh)
         plan = replace(self._plan, bokeh=bokeh)
         parts = (self._drawing, self._buffers, self._occluders)
-        return BokehStage(plan, *parts, highlight_buffer(bokeh), self._field)
+        return BokehStage(plan, *parts, highlight_buffer(bokeh), self._field, self._lens)
 
     def _merge(self, sources, count, held):
         """Merge similar highlights as the settings ask for; return the list and its length."""
@@ -259,7 +262,7 @@ class BokehStage:
         rays = None
         if visibility.counts.method == "SPLAT":
             rays = (visibility.layers, visibility.opacity, visibility.states, visibility.parameters)
-        look = make_look(self._plan, self._buffers.look_textures, self._field)
+        look = make_look(self._plan, self._buffers.look_textures, self._field, self._lens)
         self.report = (*look.report, *self._told_of_merging())
         with target.bind():
             splat.splat(

@@ -65,6 +65,8 @@ def seen(spheres, plan, part=None):
         shear = np.abs(1.0 - depths[:, None] * ranges.inverse_focus).max(axis=(0, 1))
         growth = np.abs(ranges.scale - 1.0).max(axis=0)
         growth = growth * (np.linalg.norm(eye[:, :2], axis=1) + spheres.radii)
+    if plan.real_lens is not None:
+        growth = growth + plan.real_lens.growth(spheres.radii - eye[:, 2])
     jitter = np.abs(plan.jitter).max(axis=0, initial=0.0)
     visible = np.ones(len(eye), bool)
     x, y, across, up = part or (0, 0, plan.width, plan.height)

@@ -5,11 +5,14 @@ from collections import OrderedDict
 import numpy as np
 
 from ...passes.surface import real_lens
+from ...sampling.tile_control import TILE
 
 # Samples whose tables are uploaded together, and how many such parts are kept: 15 MB.
 _TOGETHER, _KEPT = 64, 4
 # Share of the brightest place's light that counts as none.
-_LEAST = 1e-6
+_LEAST = 1e-5
+# Steps between corners of a tile over those between nodes of the light.
+_PARTS = 4
 
 
 class LensTables:
@@ -26,7 +29,10 @@ class LensTables:
         self._sums = np.zeros((plan.real_lens.grid.rows, plan.real_lens.grid.columns, 4))
         self._textures = None
         self.follow(plan)
-        self._middle = real_lens.LensSample(0, self._upload(np.zeros((1, 2))))
+        grid = self._lens.grid
+        falloff = real_lens.light_texture(self._lens.falloff[None])
+        light = real_lens.SampleLight(falloff, (float(grid.columns), float(grid.rows), 1.0, 0.0))
+        self._middle = real_lens.LensSample(0, self._upload(np.zeros((1, 2))), light)
 
     def follow(self, plan):
         """Go on with a plan that has more samples."""
@@ -34,13 +40,16 @@ class LensTables:
         self._parts.clear()
 
     def sample(self, index):
-        """Return the `LensSample` of a sample; that of the lens' middle for None."""
+        """Return the `LensSample` of a sample.
+
+        For None that of the lens' middle, whose light is that of the picture over an even one.
+        """
         if index is None:
             return self._middle
-        moves, light, tables = self._part(index // _TOGETHER)
+        moves, light, tables, turns = self._part(index // _TOGETHER)
         grid, slot = self._lens.grid, index % _TOGETHER
         table = (float(grid.columns), float(grid.rows), float(len(tables)), float(slot))
-        return real_lens.LensSample(slot, moves, real_lens.SampleLight(light, table))
+        return real_lens.LensSample(slot, moves, real_lens.SampleLight(light, table), turns)
 
     def add(self, index):
         """Note that a sample was added to the picture."""
@@ -51,21 +60,59 @@ class LensTables:
 
     @property
     def sums(self):
-        """The summed weights of the samples so far, as two `SampleLight`: by channel, and alpha."""
+        """Weights to divide the sums so far by, as two `SampleLight`: by channel, and alpha."""
         if self._textures is None:
-            # The first samples may have no light at some place.
-            sums = np.maximum(self._sums, _LEAST * max(float(self._sums.max()), 1e-30))
+            sums = self._divisors()
             mean = np.repeat(sums[..., 3:], 4, axis=-1)
             self._textures = [real_lens.light_texture(each[None]) for each in (sums, mean)]
         grid = self._lens.grid
         table = (float(grid.columns), float(grid.rows), 1.0, 0.0)
         return tuple(real_lens.SampleLight(texture, table) for texture in self._textures)
 
+    @property
+    def corners(self):
+        """Corners along each side of a tile between which the light is nearly linear."""
+        grid = self._lens.grid
+        pitch = min(self._plan.width / (grid.columns - 1), self._plan.height / (grid.rows - 1))
+        steps = 2 ** int(np.ceil(np.log2(max(_PARTS * TILE / pitch, 1.0))))
+        return 1 + min(steps, TILE)
+
+    def corner_sums(self, shape):
+        """Weights to divide the sums so far by, at corners of tiles.
+
+        Parameters
+        ----------
+        shape : tuple of 2 int
+            Rows and columns of tiles.
+
+        Returns
+        -------
+        ndarray of shape (*shape, corners, corners, 4)
+            Upwards, to the right; by channel.
+        """
+        grid, count = self._lens.grid, self.corners
+        size = np.array([self._plan.width, self._plan.height])
+        steps = TILE * np.arange(count) / (count - 1)
+        y, x = ((TILE * np.arange(n)[:, None] + steps).ravel() for n in shape)
+        places = np.stack(np.meshgrid(x, y), axis=-1) / size
+        index, weights = grid.taps(grid.low + places * (grid.high - grid.low))
+        found = np.einsum("yxt,yxtc->yxc", weights, self._divisors().reshape(-1, 4)[index])
+        rows, columns = shape
+        return found.reshape(rows, count, columns, count, 4).swapaxes(1, 2)
+
+    def _divisors(self):
+        # What the lens takes away is left out of the divisor; the first samples may have no light
+        # at some place.
+        sums = self._sums / np.maximum(self._lens.falloff, _LEAST)[..., None]
+        return np.maximum(sums, _LEAST * max(float(self._sums.max()), 1e-30))
+
     def _part(self, number):
         if number not in self._parts:
             places = self._plan.lens_positions[number * _TOGETHER : (number + 1) * _TOGETHER]
             light = self._lens.light(places)
-            self._parts[number] = (self._upload(places), real_lens.light_texture(light), light)
+            turns = self._turns(places) if self._plan.blurs else None
+            texture = real_lens.light_texture(light)
+            self._parts[number] = (self._upload(places), texture, light, turns)
             while len(self._parts) > _KEPT:
                 self._parts.popitem(last=False)
         self._parts.move_to_end(number)
@@ -73,11 +120,8 @@ class LensTables:
 
     def _upload(self, places):
         tables = self._lens.tables
-        grid = tables.moves_grid
-        return real_lens.resources(
-            tables.moves(places),
-            grid.low,
-            grid.high,
-            tables.focus_vergence,
-            tables.largest_vergence,
-        )
+        size = self._plan.width, self._plan.height
+        return real_lens.resources(tables.moves(places), tables, size)
+
+    def _turns(self, places):
+        return real_lens.turns_texture(self._plan.turns(places))

@@ -77,7 +77,9 @@ class FrameRenderer(ReadableFrame):
         self.samples_done = 0
         self._stopped = False
         self._earlier_rounds = DrawingCounts()
-        self._tiles = TileSampling(plan, self._fullscreen, leader) if plan.automatic else None
+        self._lens = LensTables(plan) if plan.real_lens else None
+        tiles = (plan, self._fullscreen, leader, self._lens)
+        self._tiles = TileSampling(*tiles) if plan.automatic else None
         self._cryptomattes = cryptomatte_kinds(plan.passes)
         self._mattes = needs_mattes(plan)
         target = surface_target.COLOR_AND_MATTES if self._mattes else surface_target.COLOR
@@ -87,7 +89,6 @@ class FrameRenderer(ReadableFrame):
             self._highlights = highlight_buffer(plan.bokeh)
         if plan.chromatic:
             target = surface_target.in_wavelengths(target)
-        self._lens = LensTables(plan) if plan.real_lens else None
         if plan.real_lens:
             target = surface_target.through_lens(target)
         levels = self._buffers.levels_version
@@ -111,7 +112,7 @@ class FrameRenderer(ReadableFrame):
             self._layers = LayeredDrawing(plan, self._drawing, self._buffers, target, *resources)
         self._blur = None
         if plan.blurs:
-            self._blur = SubsampleBlur(plan, self._drawing.nearest, wavelengths)
+            self._blur = SubsampleBlur(plan, self._drawing.nearest, wavelengths, self._lens)
         # Whether a draft is shown depends on time: the noise threshold must not depend on it.
         self._measures_bokeh = bool(plan.bokeh) and not drafts
         self._bokeh.restart(plan, self._stage, drafts)
@@ -155,8 +156,8 @@ class FrameRenderer(ReadableFrame):
         return real_lens.SampleOptics(self._wavelength(index), lens)
 
     def _stage(self, plan):
-        buffers, occluders = self._buffers, self._occluders
-        return BokehStage(plan, self._drawing, buffers, occluders, self._highlights, self._field)
+        scene = (self._drawing, self._buffers, self._occluders, self._highlights)
+        return BokehStage(plan, *scene, self._field, self._lens and self._lens.sample(None))
 
     @property
     def layered(self):
@@ -275,11 +276,11 @@ class FrameRenderer(ReadableFrame):
         self._earlier_rounds += self._drawing.counts
         self.plan = self.plan.extended()
         wavelengths = self._wavelength if self.plan.chromatic else None
-        if earlier := self._blur:
-            self._blur = SubsampleBlur(self.plan, self._drawing.nearest, wavelengths)
-            self._blur.limit(earlier)
         if self._lens:
             self._lens.follow(self.plan)
+        if earlier := self._blur:
+            self._blur = SubsampleBlur(self.plan, self._drawing.nearest, wavelengths, self._lens)
+            self._blur.limit(earlier)
         self._drawing.aim(self.plan, self._optics, self._highlights, self._part())
         for spec in self._drawing.specs():
             if spec.name not in self._targets:

@@ -45,9 +45,10 @@ class ReadableFrame:
     @property
     def _weights(self):
         if self._tiles:
-            return self._tiles.weights(self.plan, self.samples_done)
-        found = weights_of(self.plan, self.samples_done)
-        if self._lens and self.plan.real_lens.even:
+            found = self._tiles.weights(self.plan, self.samples_done)
+        else:
+            found = weights_of(self.plan, self.samples_done)
+        if self._lens and found.scales is None:
             light, mean = self._lens.sums
             found = replace(found, light=light, mean_light=mean)
         return found

@@ -18,6 +18,8 @@ _MOST_LEVELS = 6
 # Largest jitter that subsamples follow, in texels: below half of one, so that a surface in focus is
 # not moved, whatever the width of the pixel filter.
 _MOST_JITTER = 0.499
+# Lens samples whose movements through a real lens bound those of all, and what is added to be sure.
+_TYPICAL, _SURE = 64, 1.25
 
 
 class SubsampleBlur:
@@ -30,11 +32,18 @@ class SubsampleBlur:
         Least depth of any visible surface, m; inf where there is none.
     wavelengths : callable, optional
         From a sample to its `passes.surface.chromatic.ChromaticSample`, with chromatic aberration.
+    lens : LensTables, optional
+        With a real lens.
     """
 
-    def __init__(self, plan, nearest, wavelengths=None):
+    def __init__(self, plan, nearest, wavelengths=None, lens=None):
         self._plan = plan
         self._wavelengths = wavelengths
+        self._lens = lens
+        self._turns = np.zeros((1, 2, 2, 2))
+        if lens:
+            places = plan.lens_positions[:: -(-plan.samples // _TYPICAL)]
+            self._turns = _SURE * plan.turns(places).reshape(-1, 2, 2, 2)
         self._sweep, self._gain = plan.sweep, None
         if wavelengths:
             self._sweep, self._gain = plan.sweep_parts
@@ -73,9 +82,11 @@ class SubsampleBlur:
                 self._sweep + self._gain * focus
                 for focus in self._plan.chromatic.overall().inverse_focus
             ]
-        return max(
+        largest = max(
             np.abs(opening * (sweep[:2] + sweep[2:] * window_depth)).max() for sweep in sweeps
         )
+        turns = self._turns[:, 0] + self._turns[:, 1] * window_depth
+        return largest + float((np.abs(turns) @ opening).max())
 
     @property
     def reach(self):
@@ -145,4 +156,5 @@ class SubsampleBlur:
             count=int(plan.subsample_counts[index]),
             gain=self._gain,
             wavelength=self._wavelengths and self._wavelengths(index),
+            lens=self._lens and self._lens.sample(index),
         )

@@ -12,6 +12,7 @@ import numpy as np
 from ...device import geometry, readback
 from ...device.textures import texture_2d
 from ...passes import picture_error
+from ...passes.tile_scales import TileScales
 from ...sampling.rounds import first_look, looks
 from ...sampling.tile_control import HALF_SHARE, TILE, TileControl, runs
 
@@ -29,8 +30,8 @@ class FrameWeights:
         Summed weight of the samples so far; of each channel, where they differ.
     mean : float
         Mean over the channels.
-    scales, mean_scales : GPUTexture or None
-        One over the weights of each tile, where tiles have different numbers of samples.
+    scales, mean_scales : TileScales or None
+        The weights of each tile, where tiles have different numbers of samples.
     light, mean_light : passes.surface.real_lens.SampleLight or None
         The weights over the picture, where they differ by place.
     """
@@ -91,6 +92,8 @@ class TileSampling:
     fullscreen : GPUBatch
     leader : TileSampling or None
         Follow the decisions of another renderer's tiles (for Fringe).
+    lens : LensTables or None
+        With a real lens, whose weights differ by place.
 
     Attributes
     ----------
@@ -100,7 +103,7 @@ class TileSampling:
         1 for the active tiles, else 0; None while all are.
     """
 
-    def __init__(self, plan, fullscreen, leader=None):
+    def __init__(self, plan, fullscreen, leader=None, lens=None):
         wanted = plan.automatic
         self._fullscreen = fullscreen
         self._size = (plan.width, plan.height)
@@ -112,7 +115,11 @@ class TileSampling:
         )
         self._looks = looks(most, wanted.unit)
         self._first = first_look(wanted.unit)
-        self._weights = np.zeros((*self._control.shape, 4))
+        self._lens = lens
+        # Of each tile, or with a real lens at corners in it.
+        corners = (lens.corners, lens.corners) if lens else ()
+        self._weights = np.zeros((*self._control.shape, *corners, 4))
+        self._noted_light = 0.0
         self._samples = np.zeros(self._control.shape, np.int64)
         self._noted = 0
         self._pictures = {}
@@ -185,7 +192,12 @@ class TileSampling:
     def note(self, plan, samples):
         """Add the samples drawn since the last call to the counts of the active tiles."""
         if samples > self._noted:
-            weights = plan.sample_weights(self._noted, samples).sum(axis=0)
+            if self._lens:
+                light = self._lens.corner_sums(self._control.shape)
+                weights = (light - self._noted_light)[self._control.active]
+                self._noted_light = light
+            else:
+                weights = plan.sample_weights(self._noted, samples).sum(axis=0)
             self._weights[self._control.active] += weights
             self._samples[self._control.active] += samples - self._noted
             self._noted = samples
@@ -200,12 +212,17 @@ class TileSampling:
         self.note(plan, samples)
         if (self._samples == self._samples[0, 0]).all():
             return weights_of(plan, int(self._samples[0, 0]))
-        scales = self._scales()
-        mean = np.repeat(scales[..., 3:], 4, axis=-1)
-        return FrameWeights(1.0, 1.0, texture_2d(scales), texture_2d(mean))
+        return FrameWeights(1.0, 1.0, self._scales(), self._scales(mean=True))
 
-    def _scales(self):
-        return 1.0 / np.where(self._weights > 0.0, self._weights, 1.0)
+    def _scales(self, mean=False):
+        weights = np.where(self._weights > 0.0, self._weights, 1.0)
+        if mean:
+            weights = np.repeat(weights[..., 3:], 4, axis=-1)
+        if not self._lens:
+            return TileScales(texture_2d(1.0 / weights))
+        rows, columns, corners = weights.shape[:3]
+        weights = weights.transpose(0, 2, 1, 3, 4).reshape(rows * corners, columns * corners, 4)
+        return TileScales(texture_2d(weights), corners)
 
     def is_look(self, samples):
         """Return whether the error is measured after this number of samples."""
@@ -264,7 +281,7 @@ class TileSampling:
             oldest = min(n for n in self._pictures if n not in kept)
             spare = [self._pictures.pop(oldest)]
         self._pictures[samples] = spare[0]
-        scales = texture_2d(self._scales())
+        scales = self._scales()
         with targets.framebuffer(spare[0]).bind():
             picture_error.display(self._fullscreen, targets["sum"], scales, bokeh)
 

@@ -174,6 +174,7 @@ class FramePlan:
             **drawn.arrays(self.width, self.height),
             first=self.samples,
             chromatic=chromatic,
+            real_lens=self.real_lens and self.real_lens.with_samples(2 * self.samples),
         )
 
     def weight(self, samples):
@@ -218,6 +219,13 @@ class FramePlan:
         return bool(self.subsample_counts.any())
 
     @property
+    def blur_doubt(self):
+        """How far a real lens' blur may differ from the thin lens' circle of confusion, px."""
+        if self.real_lens is None:
+            return 0.0
+        return self.real_lens.most_blurred * float(self.projection[1, 1]) * self.height / 2.0
+
+    @property
     def sweep(self):
         """Movement of surfaces between two places on the lens; see ``lib/bokeh/sweep_lib.glsl``.
 
@@ -235,6 +243,31 @@ class FramePlan:
         else:
             constant, linear = 1.0 / focus - (slope - 1.0) / offset, -2.0 / offset
         return np.concatenate([scale * constant, scale * linear])
+
+    def turns(self, lens_positions):
+        """Return what the real lens adds to `sweep` at lens samples.
+
+        Parameters
+        ----------
+        lens_positions : ndarray of shape (N, 2)
+            In m.
+
+        Returns
+        -------
+        ndarray of shape (N, rows, columns, 2, 2, 2)
+            At the nodes of the displacements: constant, and per unit of the depth buffer; x and y
+            of the movement in texels; by x and y on the lens, m.
+        """
+        tables = self.real_lens.tables
+        found = tables.turns(lens_positions)
+        slope, offset = self.projection[2, 2:]
+        # 1 / depth, in units of the largest vergence, is affine in the depth buffer's value.
+        first = (slope - 1.0) / offset / tables.largest_vergence
+        step = 2.0 / offset / tables.largest_vergence
+        parts = found[..., 0, :, :] + first * found[..., 1, :, :], step * found[..., 1, :, :]
+        size = np.array([self.width, self.height]) * self.subpixels
+        scale = np.diag(self.projection)[:2] * size / 2.0
+        return np.stack(parts, axis=-3) * scale[:, None]
 
     @property
     def sweep_parts(self):

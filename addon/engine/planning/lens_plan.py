@@ -1,12 +1,12 @@
 """The real lens of a frame's samples: tables over its picture, and the light of each sample.
 
-The exposure is even, or that of the lens. Even: the light of the samples is divided, at each place
-of the picture, by that of all of them, so that the lens takes no light away, whatever its rims do.
-Where next to none comes through, a little is added to all samples alike. As the lens: it is divided
-by the light of the picture's optical axis.
+The light that samples bring to each place of the picture is divided by that of all of them, so that
+an even world is even, however few they are and whatever the rims cut: *even exposure*. *As the
+lens* multiplies it by what a great many samples bring there, over the same on the picture's optical
+axis. Where next to no light comes through, a little is added to all samples alike.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -14,14 +14,17 @@ import numpy as np
 from ...errors import AplanatError
 from ...lens_bokeh.samples.lens_rays import lens_rays
 from ...lens_bokeh.samples.sample_tables import SampleTables, field_grid, sample_tables
+from ...sampling.sequence import lens_samples
 from .field_table import field_of_raster
 
 # Share of the picture's sides that points beyond its edges are told apart, too.
 _MARGIN = 0.15
-# Light of a place of the picture over that of the axis, below which an even exposure lets some by.
+# Light of a place of the picture over that of the axis, below which some is let by.
 _DARK = 0.02
-# Samples whose light is added up to begin with; the sums of all are divided by in the end.
-_TYPICAL = 256
+# Samples whose mean is the light of the lens; of them, how many are looked at for bounds.
+_MANY, _TYPICAL = 1024, 64
+# Steps over the vergences for bounds, and what is added for samples that were not looked at.
+_LOOKS, _SURE = 5, 1.1
 # Fields are traced up to a step, so that a little larger picture has the same.
 _STEPS = 16.0
 
@@ -33,21 +36,32 @@ class RealLensPlan:
     Parameters
     ----------
     tables : SampleTables
-    even : bool
-        Exposure: even, else as the lens.
+    base : ndarray of shape (rows, columns)
+        Light that counts as 1, at the nodes of the light.
+    floor : ndarray of shape (rows, columns)
+        Added to the light of each sample.
+    falloff : ndarray of shape (rows, columns)
+        Light of the picture over that of an even one: 1 with an even exposure.
+    most_moved : float
+        Bound of what the lens adds to the thin lens' displacement, as a tangent, up to the largest
+        vergence of the tables.
+    most_blurred : float
+        Bound of how far it moves samples apart beyond the thin lens, as a tangent.
     spacing : float
         Of the samples, in radii of the iris.
-    base : ndarray of shape (rows, columns) or (1, 1)
-        Light that counts as 1.
-    floor : ndarray of shape (rows, columns) or (1, 1)
-        Added to the light of each sample.
     """
 
     tables: SampleTables
-    even: bool
-    spacing: float
     base: np.ndarray
     floor: np.ndarray
+    falloff: np.ndarray
+    most_moved: float
+    most_blurred: float
+    spacing: float = 0.0
+
+    def with_samples(self, count):
+        """Return the plan for a number of samples."""
+        return replace(self, spacing=float(np.sqrt(np.pi / count)))
 
     def light(self, lens_positions):
         """Return the weights of lens samples over the picture.
@@ -60,7 +74,7 @@ class RealLensPlan:
         Returns
         -------
         ndarray of float32, shape (N, rows, columns)
-            About 1 in the mean over the samples of an even exposure.
+            About 1 in the mean over the samples.
         """
         found = self.tables.light(lens_positions, self.spacing)
         return ((found + self.floor) / self.base).astype(np.float32)
@@ -70,8 +84,25 @@ class RealLensPlan:
         """The `FieldGrid` of the light."""
         return self.tables.light_grid
 
+    def growth(self, farthest):
+        """Return how much farther points move than those of a thin lens.
 
-def plan_real_lens(camera, film, lens, lens_positions):
+        Parameters
+        ----------
+        farthest : ndarray of shape (...)
+            Depth, m.
+
+        Returns
+        -------
+        ndarray of shape (...)
+            Bound for that depth and all nearer ones, m.
+        """
+        tables = self.tables
+        near = 1.0 / (tables.largest_vergence - tables.focus_vergence)
+        return self.most_moved * (np.maximum(farthest, 0.0) + near)
+
+
+def plan_real_lens(camera, film, lens):
     """Plan the real lens of a frame's samples.
 
     Parameters
@@ -81,8 +112,6 @@ def plan_real_lens(camera, film, lens, lens_positions):
     film : Film
     lens : ThinLens
         Of the camera.
-    lens_positions : ndarray of shape (N, 2)
-        In m.
 
     Returns
     -------
@@ -91,38 +120,45 @@ def plan_real_lens(camera, film, lens, lens_positions):
     report : tuple of str
         Warnings, one sentence each.
     """
-    settings = camera.real_lens
     scale_x, scale_y, *low = field_of_raster(camera.projection, film)
     low = np.array(low)
     high = low + np.array([scale_x, scale_y]) * film.region[2:]
     low, high = np.minimum(low, high), np.maximum(low, high)
-    name = settings.prescription.name
+    name = camera.real_lens.prescription.name
     try:
-        rays = _rays(_Lens(settings), lens.focus_distance, _reach(low, high))
+        made = _plan(_Lens(camera.real_lens), _Thin(lens), (*low.tolist(), *high.tolist()))
     except AplanatError as error:
         return None, (f"lens '{name}' shapes no lens samples, a thin lens does: {error}",)
-    tables = sample_tables(
-        rays,
-        field_grid(low, high),
-        field_grid(low, high, _MARGIN),
-        lens.aperture_radius,
-        lens.iris.ratio,
-    )
-    spacing = float(np.sqrt(np.pi / len(lens_positions)))
-    axis = float(tables.axial_light(lens_positions, spacing).mean())
-    if settings.exposure == "LENS":
-        unit, none = np.full((1, 1), axis), np.zeros((1, 1))
-        return RealLensPlan(tables, False, spacing, unit, none), ()
-    step = -(-len(lens_positions) // _TYPICAL)
-    mean = tables.light(lens_positions[::step], spacing).mean(axis=0)
-    floor = np.maximum(_DARK * axis - mean, 0.0)
     report = ()
-    if floor.any():
+    if made.floor.any() and camera.real_lens.exposure == "EVEN":
         report = (
             f"lens '{name}' lets next to no light through at the edge of the picture; it is drawn"
             " as if it did (a smaller sensor, or Exposure: As the Lens)",
         )
-    return RealLensPlan(tables, True, spacing, mean + floor, floor), report
+    return made, report
+
+
+# Memo of its arguments alone: a picture asks for the same again and again.
+@lru_cache(maxsize=4)
+def _plan(key, thin, corners):
+    settings, lens = key.settings, thin.lens
+    low, high = np.array(corners[:2]), np.array(corners[2:])
+    rays = _rays(key, lens.focus_distance, _reach(low, high))
+    grids = field_grid(low, high), field_grid(low, high, _MARGIN)
+    tables = sample_tables(rays, *grids, lens.aperture_radius, lens.iris.ratio)
+    places = lens_samples(0, _MANY, lens.iris) * lens.aperture_radius
+    spacing = float(np.sqrt(np.pi / _MANY))
+    axis = float(tables.axial_light(places, spacing).mean())
+    mean = tables.light(places, spacing).mean(axis=0)
+    floor = np.maximum(_DARK * axis - mean, 0.0)
+    falloff = np.ones_like(mean)
+    if settings.exposure == "LENS":
+        falloff = mean / axis
+    moves = tables.moves(np.append(places[:_TYPICAL], [[0.0, 0.0]], axis=0))
+    powers = np.linspace(0.0, 1.0, _LOOKS)[:, None] ** np.arange(4)
+    moves = np.einsum("vk,nyxkc->nvyxc", powers, moves)
+    moved, apart = (np.linalg.norm(each, axis=-1).max() for each in (moves, moves - moves[-1:]))
+    return RealLensPlan(tables, mean + floor, floor, falloff, _SURE * moved, _SURE * apart)
 
 
 def _reach(low, high):
@@ -139,7 +175,8 @@ class _Lens:
         self.settings = settings
 
     def _key(self):
-        return self.settings.id, self.settings.label, self.settings.f_number
+        own = self.settings
+        return own.id, own.label, own.f_number, own.exposure
 
     def __eq__(self, other):
         same = self.settings.prescription == other.settings.prescription
@@ -149,7 +186,20 @@ class _Lens:
         return hash(self._key())
 
 
-# Memo of its arguments alone: a picture asks for the same again and again.
+class _Thin:
+    """A thin lens as a cache key; its iris may hold a picture."""
+
+    def __init__(self, lens):
+        self.lens = lens
+
+    def __eq__(self, other):
+        return self.lens == other.lens
+
+    def __hash__(self):
+        return hash((self.lens.aperture_radius, self.lens.focus_distance))
+
+
+# Memo of its arguments alone: as of `_plan`, whatever part of the field is shown.
 @lru_cache(maxsize=4)
 def _rays(lens, focus_distance, tangent):
     settings = lens.settings

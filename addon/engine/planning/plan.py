@@ -160,7 +160,7 @@ def _plan_raster(snapshot):
         )
         sampling = settle(sampling, snapshot, first)
         sampling = replace(sampling, lens_samples=first_look(automatic.unit))
-    plan = _plan(snapshot, sampling, automatic)
+    plan = _through_lens(snapshot, _plan(snapshot, sampling, automatic))
     if snapshot.stack is not None:
         return replace(plan, bokeh=plan_stack_bokeh(snapshot, plan))
     plan = replace(plan, bokeh=plan_bokeh(snapshot, plan))
@@ -168,8 +168,20 @@ def _plan_raster(snapshot):
         return plan
     camera = replace(snapshot.camera, chromatic=None)
     achromatic = replace(snapshot, camera=camera, passes=("Combined",))
-    plain = _plan(achromatic, sampling, automatic)
+    plain = _through_lens(achromatic, _plan(achromatic, sampling, automatic))
     return replace(plan, plain=replace(plain, bokeh=plan_bokeh(achromatic, plain)))
+
+
+def _through_lens(snapshot, plan):
+    """Return a plan whose samples see through the camera's real lens, where that can be."""
+    camera, lens = snapshot.camera, snapshot.camera.lens
+    if plan.layered or lens is None or not lens.aperture_radius or not camera.real_lens:
+        return plan
+    made, report = plan_real_lens(camera, snapshot.film, lens)
+    if made is None:
+        return replace(plan, report=report)
+    # Samples that are at one place with a thin lens need not be with this one.
+    return replace(plan, real_lens=made.with_samples(plan.samples), reuse_grid=0, report=report)
 
 
 def _plan(snapshot, sampling, automatic=None):
@@ -210,9 +222,6 @@ def _plan(snapshot, sampling, automatic=None):
     )
     scale = coc_scale(camera.projection, film, camera.lens)
     colors = drawn.colors
-    real_lens, report = None, ()
-    if lens is not None and camera.real_lens and sampling.method == "REFERENCE":
-        real_lens, report = plan_real_lens(camera, film, lens, drawn.lens_positions)
     return FramePlan(
         width=width,
         height=height,
@@ -240,8 +249,6 @@ def _plan(snapshot, sampling, automatic=None):
         automatic=automatic,
         time_limit=sampling.time_limit,
         layered=plan_layered(sampling, source, snapshot.stack, projection),
-        real_lens=real_lens,
-        report=report,
     )
 
 

@@ -15,6 +15,7 @@ makes the opening narrower, and movements with it.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -144,6 +145,37 @@ class SampleTables:
         terms = (terms[:-1] - terms[-1]).reshape(len(lens_positions), -1)
         found = (terms @ self._moves).reshape(-1, len(self._chief), 4, 2) + self._chief
         return found.reshape(-1, grid.rows, grid.columns, 4, 2).astype(np.float32)
+
+    def turns(self, lens_positions):
+        """Tables of how displacements change with the place on the lens.
+
+        Parameters
+        ----------
+        lens_positions : ndarray of shape (N, 2)
+            In m.
+
+        Returns
+        -------
+        ndarray of shape (N, rows, columns, 2, 2, 2)
+            Derivatives of `moves`, 1/m: the powers 0 and 1 of V over the largest vergence; x and y
+            of the displacement; by x and by y on the lens.
+        """
+        grid, places, found = self.moves_grid, self.places(lens_positions), []
+        for axis, scale in enumerate((self.ratio, 1.0)):
+            step = np.zeros(2)
+            step[axis] = _NUDGE
+            ahead, behind = (disc_terms(self.orders, places + s) for s in (step, -step))
+            slopes = (ahead - behind).reshape(len(places), -1) * (0.5 * scale / _NUDGE)
+            found.append(slopes @ self._linear_moves / self.aperture_radius)
+        return np.stack(found, axis=-1).reshape(-1, grid.rows, grid.columns, 2, 2, 2)
+
+    @cached_property
+    def _linear_moves(self):
+        """`_moves` as straight lines over the vergence, through two Chebyshev points."""
+        at = 0.5 - 0.5 * np.array([1.0, -1.0]) * np.sqrt(0.5)
+        line = np.linalg.inv(at[:, None] ** np.arange(2)) @ at[:, None] ** np.arange(4)
+        moves = self._moves.reshape(len(self._moves), -1, 4, 2)
+        return np.einsum("lk,tnkc->tnlc", line, moves).reshape(len(moves), -1)
 
     def light(self, lens_positions, spacing=0.0):
         """Tables of the light of lens samples, without a division.

@@ -9,7 +9,7 @@ from ...device.shader_variants import variants
 from ...device.shaders import ShaderInfo, compile_shader
 from ...device.uniform_block import UniformStruct
 from ...device.uniforms import bind_resource
-from ..surface import chromatic
+from ..surface import chromatic, real_lens
 from ..surface.surface import VIEW_PARAMS
 from ..visibility.culling import VISIBILITY_PARAMS
 from .highlights import COLUMNS
@@ -47,8 +47,9 @@ _LOOK_VARYINGS = {
     casts=(False, True),
     variants=((), ("PROFILE",), ("RIMS",), ("PROFILE", "RIMS"), ("TILES",)),
     in_wavelengths=(False, True),
+    through_lens=(False, True),
 )
-def _info(casts, variants, in_wavelengths=False):
+def _info(casts, variants, in_wavelengths=False, through_lens=False):
     names = _TEXTURES + _RAYS * casts
     samplers = tuple(("FLOAT_2D", name) for name in names) + (("FLOAT_2D_ARRAY", "opening_tx"),)
     samplers += tuple(texture for variant in variants for texture in _LOOK_TEXTURES[variant])
@@ -81,7 +82,8 @@ def _info(casts, variants, in_wavelengths=False):
             *((variant, "1") for variant in variants),
         ),
     )
-    return chromatic.over_field(info) if in_wavelengths else info
+    info = chromatic.over_field(info) if in_wavelengths else info
+    return real_lens.declared(info, real_lens.LIGHT_SAMPLERS) if through_lens else info
 
 
 def splat(square, count, textures, look, view_buffer, rays=None):
@@ -98,7 +100,8 @@ def splat(square, count, textures, look, view_buffer, rays=None):
         of masks (see `engine.visibility.stage`).
     look : engine.bokeh.look.BokehLook
         Shape of the discs, as ``variants``, ``textures`` and, for each band of wavelengths,
-        ``blocks``; ``field`` as in `passes.bokeh.highlights.SearchedRaster`, empty without bands.
+        ``blocks``; ``field`` as in `passes.bokeh.highlights.SearchedRaster`, empty without bands;
+        ``lens``, the `LensSample` of the middle of a real lens, or None.
     view_buffer : GPUUniformBuf
         `ViewParams` of the frame.
     rays : tuple or None
@@ -108,10 +111,15 @@ def splat(square, count, textures, look, view_buffer, rays=None):
     if count == 0:
         return
     state.additive()
-    shader = compile_shader(_info(rays is not None, look.variants, bool(look.field)))
+    shader = compile_shader(
+        _info(rays is not None, look.variants, bool(look.field), look.lens is not None)
+    )
     shader.bind()
     for name, resource in look.field:
         bind_resource(shader, name, resource)
+    if look.lens is not None:
+        look.lens.bind(shader)
+        shader.uniform_sampler("light_tx", look.lens.light.texture)
     for name, texture in zip(_TEXTURES, textures, strict=True):
         shader.uniform_sampler(name, texture)
     if rays is not None:

@@ -6,8 +6,6 @@ Passes that draw one lens sample have a variant for it, `declared`; the shader s
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ...device.textures import texture_2d
 from ...device.uniform_block import UniformStruct
 from ...device.uniforms import bind_resource, uniform_buffer
@@ -36,11 +34,14 @@ class LensSample:
         As `resources` gives them.
     light : SampleLight or None
         None: the light is not weighted.
+    turns : GPUTexture or None
+        Of `turns_texture`, for subsamples.
     """
 
     slot: int
     resources: tuple
     light: "SampleLight | None" = None
+    turns: object = None
 
     def bind(self, shader):
         """Set what `declared` has declared in a bound shader."""
@@ -91,12 +92,14 @@ class SampleOptics:
                 part.bind(shader)
 
 
-def declared(info):
+def declared(info, samplers=()):
     """Return the variant of a shader for a real lens.
 
     Parameters
     ----------
     info : ShaderInfo
+    samplers : tuple of (str, str)
+        Of its own, beside those that every variant has.
 
     Returns
     -------
@@ -106,44 +109,66 @@ def declared(info):
         info,
         typedefs=info.typedefs + REAL_LENS_PARAMS.source,
         uniforms=(*info.uniforms, *UNIFORMS),
-        samplers=(*info.samplers, *SAMPLERS),
+        samplers=(*info.samplers, *SAMPLERS, *samplers),
         push_constants=(*info.push_constants, *PUSH_CONSTANTS),
         defines=(*info.defines, *DEFINES),
     )
 
 
-def resources(moves, low, high, focus_vergence, largest_vergence):
+def resources(moves, tables, size):
     """Upload the displacements of lens samples.
 
     Parameters
     ----------
     moves : ndarray of shape (N, rows, columns, 4, 2)
         Coefficients of the powers of the vergence over the largest, as tangents.
-    low, high : ndarray of shape (2,)
-        Field of the first and the last node.
-    focus_vergence, largest_vergence : float
-        1/m.
+    tables : lens_bokeh.samples.sample_tables.SampleTables
+        Those that they are of: grids over the field, vergences.
+    size : tuple of 2 int
+        Of the region, px.
 
     Returns
     -------
     tuple of (str, GPUUniformBuf or GPUTexture)
     """
-    count, rows, columns = moves.shape[:3]
-    halves = moves.reshape(count * rows, columns, 2, 4).transpose(0, 2, 1, 3)
+    grid, shown = tables.moves_grid, tables.light_grid
+    largest, focus = tables.largest_vergence, tables.focus_vergence
+    block = REAL_LENS_PARAMS.pack(
+        grid=(*grid.low, *(1.0 / (grid.high - grid.low))),
+        table=(grid.columns, grid.rows, len(moves), 0.0),
+        vergence=(1.0 / largest, focus, 1.0 / (largest - focus), 0.0),
+        raster=(*((shown.high - shown.low) / size), *shown.low),
+        light=(shown.columns, shown.rows, 0.0, 0.0),
+    )
+    texture = _in_halves(moves.reshape(*moves.shape[:3], 2, 4))
+    return (("real_lens_buf", uniform_buffer(block)), ("moves_tx", texture))
+
+
+def turns_texture(turns):
+    """Upload how the displacements of lens samples change with the place on the lens.
+
+    Parameters
+    ----------
+    turns : ndarray of shape (N, rows, columns, 2, 2, 2)
+        Constant, and per unit of the depth buffer; x and y of the movement in texels; by x and y
+        on the lens, m.
+
+    Returns
+    -------
+    GPUTexture
+    """
+    # Columns of the matrices one after the other.
+    return _in_halves(turns.swapaxes(-1, -2).reshape(*turns.shape[:3], 2, 4))
+
+
+def _in_halves(tables):
+    """Upload tables of shape (N, rows, columns, 2, 4): two side by side, samples in a column."""
+    count, rows, columns = tables.shape[:3]
+    halves = tables.reshape(count * rows, columns, 2, 4).transpose(0, 2, 1, 3)
     texture = texture_2d(halves.reshape(count * rows, 2 * columns, 4))
     texture.filter_mode(True)
     texture.extend_mode("EXTEND")
-    block = REAL_LENS_PARAMS.pack(
-        grid=(*low, *(1.0 / (np.asarray(high) - low))),
-        table=(columns, rows, count, 0.0),
-        vergence=(
-            1.0 / largest_vergence,
-            focus_vergence,
-            1.0 / (largest_vergence - focus_vergence),
-            0.0,
-        ),
-    )
-    return (("real_lens_buf", uniform_buffer(block)), ("moves_tx", texture))
+    return texture
 
 
 def light_texture(tables):

@@ -1,7 +1,8 @@
 // A square for each highlight, as large as its disc in the picture.
 // Inputs: pos (corner, 0 or 1); sources_a_tx, sources_b_tx (see highlights_comp); tiles_tx (masks of
 // the sources, see visibility_lib); view_buf (of the frame), splat_buf. CHROMATIC: chromatic_buf,
-// field_tx (field table).
+// field_tx (field table). REAL_LENS: real_lens_buf, moves_tx and lens_slot (tables of the lens' middle),
+// light_tx (light of the picture over that of an even one).
 // Outputs: place on the opening in units of its radius before the anamorphic ratio (v_place), energy
 // density (v_density), blur of the disc in the same units (v_blur); see bokeh_look_lib for the rest; tile, number and region of the source.
 // Source: methods 1, 8, 13.
@@ -10,6 +11,12 @@
 #include "lib/bokeh/disc_lib.glsl"
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
+#endif
+#ifdef REAL_LENS
+#include "lib/light_table_lib.glsl"
+#include "lib/real_lens_lib.glsl"
+#endif
+#ifdef CHROMATIC
 
 // Pixels on either side of a dot's centre over which its light is summed.
 #define TENT_PIXELS 6
@@ -122,6 +129,11 @@ void main()
   v_tile = texelFetch(tiles_tx, texel, 0);
   v_source = gl_InstanceID;
   v_region = b.w;
+  // Where the lens' middle sees the highlight beside a pinhole, m.
+  vec2 aside = vec2(0.0);
+#ifdef REAL_LENS
+  aside = real_lens_shift(moves_tx, vec3(a.xy, -a.z), lens_slot, real_lens_buf);
+#endif
 #ifdef CHROMATIC
   vec2 place = field_place(vec3(a.xy, -a.z), chromatic_buf);
   if (!is_of_level(place)) {
@@ -131,11 +143,11 @@ void main()
   vec2 band = band_at(place);
   v_area = appearing_area(place, band, a.z);
   float coc = coc_radius_at(a.z, band.x, view_buf.lens);
-  vec4 clip = view_buf.projection * vec4(a.xy * band.y, -a.z, 1.0);
+  vec4 clip = view_buf.projection * vec4(a.xy * band.y + aside, -a.z, 1.0);
   a.w = length(vec2(a.w, band_width(a.xy, a.z, place)));
 #else
   float coc = coc_radius_at(a.z, splat_buf.wavelength.w, view_buf.lens);
-  vec4 clip = view_buf.projection * vec4(a.xy, -a.z, 1.0);
+  vec4 clip = view_buf.projection * vec4(a.xy + aside, -a.z, 1.0);
 #endif
   vec2 center = (clip.xy / clip.w * 0.5 + 0.5) * view_buf.film.xy;
   float blur = sqrt(a.w * a.w + splat_buf.opening.y * splat_buf.opening.y);
@@ -224,6 +236,10 @@ void main()
     float area = abs(1.0 / determinant(axes));
     v_density *= area / max(grid_sum(center, origin, axes, farthest), vec3(GRID_LEAST * area));
   }
+#ifdef REAL_LENS
+  vec4 table = vec4(real_lens_buf.light.xy, 1.0, 0.0);
+  v_density *= light_at(light_tx, center / view_buf.film.xy, table).x;
+#endif
   if (v_tile.w == SOURCE_DROP) {
     // No disc: a triangle without area.
     offset = vec2(0.0);

@@ -7,6 +7,7 @@ from addon.device import geometry, readback
 from addon.device.targets import Targets, TargetSpec
 from addon.device.textures import texture_2d
 from addon.passes import picture_error
+from addon.passes.tile_scales import TileScales
 from addon.sampling.tile_control import TILE
 from benchmarks.reference.picture_error import displayed, tile_means, window_errors
 
@@ -27,7 +28,7 @@ def drawn(width, height, first, second, rest):
     tiles = (-(-height // TILE), -(-width // TILE))
     specs = [TargetSpec("sum", "RGBA32F"), *picture_error.specs(width, height, names)]
     with Targets(width, height, specs) as targets:
-        scales = texture_2d(np.full((*tiles, 4), 0.5))
+        scales = TileScales(texture_2d(np.full((*tiles, 4), 0.5)))
         for name, picture in zip(names, (first, second), strict=True):
             with targets.framebuffer(name).bind():
                 picture_error.display(fullscreen, texture_2d(2.0 * picture), scales)

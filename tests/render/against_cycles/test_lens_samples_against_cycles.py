@@ -7,7 +7,13 @@ import pytest
 
 from benchmarks.bokeh.lens import has_osl
 from benchmarks.referees.osl_lens import osl_lens, shader_source
-from tests.pictures import render_aplanat, render_cycles, save_side_by_side, ssim
+from tests.pictures import (
+    render_aplanat,
+    render_cycles,
+    render_picture,
+    save_side_by_side,
+    ssim,
+)
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
@@ -111,3 +117,23 @@ def test_a_lens_that_cannot_be_traced_leaves_the_picture_to_a_thin_one(empty_sce
     real = render_aplanat(empty_scene, 4)
     camera.aplanat.lens = ""
     assert np.array_equal(real, render_aplanat(empty_scene, 4))
+
+
+@pytest.mark.parametrize("fixed", [False, True])
+def test_the_adaptive_method_sees_through_the_lens(empty_scene, camera, tmp_path, fixed):
+    use_lens(camera, "petzval-100mm-f2.2", 36.0)
+    world(empty_scene, (0.05, 0.08, 0.15))
+    balls(empty_scene)
+    wanted = render_aplanat(empty_scene, 256)
+    settings = empty_scene.aplanat
+    settings.method = "ADAPTIVE"
+    settings.use_target_error = not fixed
+    settings.render_samples = 32
+    found = render_picture(empty_scene)
+    camera.aplanat.lens = ""
+    thin = render_picture(empty_scene)
+    save_side_by_side(tmp_path / "pictures.png", found, wanted)
+    assert ssim(found, wanted) > 0.99, tmp_path
+    assert 1.0 - ssim(thin, wanted) > 1.5 * (1.0 - ssim(found, wanted))
+    # Alpha is that of an even world, however many samples each tile had.
+    assert np.abs(found[..., 3] - 1.0).max() < 0.002
