@@ -14,6 +14,7 @@ from ..lens_io.lens_shelf import LensShelf
 from ..levels.level_store import LevelStore
 from ..scene.camera.lenses import read_real_lens, user_folder
 from .final_sessions import FinalSessions
+from .live_pictures import LivePictures
 from .picture_notes import PictureNotes
 from .session import RenderSession
 
@@ -35,6 +36,8 @@ class SharedResources:
         Sessions of 3D views, by the objects shown; each lives as long as a 3D view uses it.
     panels : RenderSession
         Of panels and operators, in the main thread.
+    live : LivePictures
+        Refocused pictures that Image editors show, with a session of their own.
     """
 
     def __init__(self):
@@ -44,14 +47,16 @@ class SharedResources:
         self.renders = FinalSessions(self.open_session)
         self.views = weakref.WeakValueDictionary()
         self.panels = self.open_session()
+        self.live = LivePictures(self.open_session)
 
     def open_session(self):
         """Return a new `RenderSession`; the caller closes it."""
         return RenderSession(self)
 
     def close(self):
-        """Stop making levels of detail, and close the sessions of panels and unheard renders."""
+        """Stop making levels of detail; close all sessions but those that others opened."""
         self.renders.end_render()
+        self.live.close()
         self.panels.close()
         self.levels.close()
 

@@ -94,9 +94,8 @@ OTHERS = {
         ("_errors", "_queue", "_stopped"),
     ),
     "ui.jobs.live_refocus": (
-        "live pictures of Image editors, by scene: each is what its file and the scene's settings"
-        " make it, and is gone with the editor, the file or Aplanat",
-        ("_draw_handle", "_held", "_lives"),
+        "the handle with which Image editors tell that they draw",
+        ("_draw_handle",),
     ),
     "ui.previews.bokeh_previews": ("icons of panels", ("icons",)),
     "ui.previews.chromatic_previews": ("icons of panels", ("icons",)),

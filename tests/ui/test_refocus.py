@@ -181,7 +181,7 @@ def work_on(live, scene):
 def test_the_live_picture_is_that_of_the_command(open_file, captured, own, scene, stack):
     open_file(captured)
     own.use_camera_lens, own.samples, own.focus_distance = False, 40, 2.0
-    live = LiveRefocus()
+    live = LiveRefocus(resources().panels)
     try:
         work_on(live, scene)
         assert live.finished and not live.error and live.share == 1.0
@@ -213,7 +213,7 @@ def test_a_draft_of_the_bokeh_becomes_the_whole(open_file, captured, own, scene,
     own.samples, own.focus_distance = 20, 0.6
     bokeh = scene.camera.data.aplanat.bokeh
     bokeh.use = True
-    live = LiveRefocus()
+    live = LiveRefocus(resources().panels)
     try:
         work_on(live, scene)
         settings = wanted(scene, stack)[0]
@@ -233,7 +233,7 @@ def test_the_live_picture_tells_what_is_wrong(
 ):
     open_file(captured)
     own.samples = 4
-    live = LiveRefocus()
+    live = LiveRefocus(resources().panels)
     try:
         work_on(live, scene)
         assert live.finished

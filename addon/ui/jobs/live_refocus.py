@@ -29,14 +29,15 @@ _RENDER_SECONDS = 0.25
 # Seconds between two drawings of a panel that tells how far a picture is.
 _PANEL_SECONDS = 0.25
 
-# By the session's number of the scene; those whose pictures others make meanwhile.
-_lives = {}
-_held = set()
 _draw_handle = None
 
 
 class LiveRefocus:
     """The live picture of one scene: reads its files, follows its settings, fills its image.
+
+    Parameters
+    ----------
+    session : RenderSession
 
     Attributes
     ----------
@@ -50,7 +51,8 @@ class LiveRefocus:
         What the file cannot know, and settings that cannot be met.
     """
 
-    def __init__(self):
+    def __init__(self, session):
+        self._sources = session.sources
         self.stack, self.is_flat = None, False
         self.error, self.notes = "", ()
         self._picture = None
@@ -142,8 +144,7 @@ class LiveRefocus:
         return self.is_reading
 
     def _refine(self, scene, depsgraph):
-        sources = resources().panels.sources
-        settings, problems = read_refocus(scene, depsgraph, self.stack, sources)
+        settings, problems = read_refocus(scene, depsgraph, self.stack, self._sources)
         if settings == self._failed:
             return False
         # Should this fail, it is not tried again before something changes.
@@ -252,12 +253,12 @@ def fill_image(image, pixels):
 
 def live_of(scene):
     """Return the live picture of a scene, as `LiveRefocus`; None if none is shown."""
-    return _lives.get(scene.session_uid)
+    return resources().live.find(scene)
 
 
 def begin(scene):
     """Return the live picture of a scene, begun if it is not there; a window will show it."""
-    live = _lives.setdefault(scene.session_uid, LiveRefocus())
+    live = resources().live.begin(scene, LiveRefocus)
     wake()
     return live
 
@@ -273,13 +274,12 @@ def wake():
 
 def hold(scene):
     """End the live picture of a scene until `let_go`: others draw the scene's frames."""
-    _held.add(scene.session_uid)
-    _close(scene.session_uid)
+    resources().live.hold(scene)
 
 
 def let_go(scene):
     """Undo `hold`."""
-    _held.discard(scene.session_uid)
+    resources().live.let_go(scene)
     for _, area in shown(scene):
         area.tag_redraw()
 
@@ -306,15 +306,13 @@ def _work():
     if bpy.app.is_job_running("RENDER"):
         # It needs device and data for itself.
         return _RENDER_SECONDS
-    pause = None
-    found = set()
+    pause, found, pictures = None, set(), resources().live
     for scene in bpy.data.scenes:
-        uid = scene.session_uid
-        places = [] if uid in _held else list(shown(scene))
+        places = [] if pictures.is_held(scene) else list(shown(scene))
         if not places:
             continue
-        found.add(uid)
-        live = _lives.setdefault(uid, LiveRefocus())
+        found.add(scene.session_uid)
+        live = pictures.begin(scene, LiveRefocus)
         before = live.told
         with bpy.context.temp_override(window=places[0][0]):
             busy = live.work(scene, bpy.context.evaluated_depsgraph_get())
@@ -322,8 +320,7 @@ def _work():
             _redraw_panels(places)
         next_look = _PIECE_PAUSE if busy and not live.is_reading else _LOOK_SECONDS
         pause = next_look if pause is None else min(pause, next_look)
-    for uid in set(_lives) - found:
-        _close(uid)
+    pictures.keep_only(found)
     return pause
 
 
@@ -334,17 +331,13 @@ def _redraw_panels(places):
                 region.tag_redraw()
 
 
-def _close(uid):
-    live = _lives.pop(uid, None)
-    if live is not None:
-        live.close()
-
-
 def _note_drawing():
     """Begin the picture that an Image editor shows; it calls this whenever it draws."""
     context = bpy.context
     image = context.scene.aplanat.refocus.image
-    if image is None or context.space_data.image != image or context.scene.session_uid in _held:
+    if image is None or context.space_data.image != image:
+        return
+    if resources().live.is_held(context.scene):
         return
     if not bpy.app.timers.is_registered(_work):
         bpy.app.timers.register(_work, first_interval=0.0)
@@ -352,14 +345,12 @@ def _note_drawing():
 
 @persistent
 def _end_all(*_):
-    for uid in list(_lives):
-        _close(uid)
-    _held.clear()
+    resources().live.close()
 
 
 @persistent
 def _after_undo(*_):
-    for live in _lives.values():
+    for live in resources().live:
         live.show_again()
 
 

@@ -18,6 +18,7 @@ NEAR, FAR, FOCUS = 2.0, 8.0, 4.0
 EDITOR = """
 import gc
 live_refocus = module("ui.jobs.live_refocus")
+shared_resources = module("engine.shared_resources")
 census = module("device.census")
 
 def editor():
@@ -82,7 +83,7 @@ def bytes_on_device():
 
 def left():
     timers = bpy.app.timers.is_registered(live_refocus._work)
-    return [len(live_refocus._lives), timers, len(window().modal_operators)]
+    return [len(shared_resources.resources().live), timers, len(window().modal_operators)]
 """
 
 
