@@ -28,7 +28,7 @@ if str(REPOSITORY) not in sys.path:
 from addon.engine.drawing import scene_drawing  # noqa: E402  (after the path is set)
 from addon.levels import choosing  # noqa: E402
 from benchmarks.referees.picture_metrics import srgb  # noqa: E402
-from benchmarks.tools.noise_threshold import SCENES, Results, fingerprint, opened  # noqa: E402
+from benchmarks.tools.noise_threshold import SCENES, kept, opened  # noqa: E402
 
 CHOSEN, FORCED, PSNR = 0.003, 0.01, 42.0
 
@@ -45,7 +45,7 @@ def main():
     options.size = tuple(map(int, options.resolution.split("x")))
     options.cycles = False
     options.folder.mkdir(parents=True, exist_ok=True)
-    results = Results(options.folder / "levels.jsonl", options.label or fingerprint())
+    results = kept(options, "levels.jsonl")
     cases = options.cases or [f"{name}:{look}" for look in ("flat", "lit") for name in SCENES]
     print("| scene | chosen | level 1 | 2 | 3 | PSNR | other seed | bias alone | triangles |")
     print("| --- " * 9 + "|")

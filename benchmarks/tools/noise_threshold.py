@@ -17,8 +17,6 @@ fewest samples.
 """
 
 import argparse
-import hashlib
-import json
 import math
 import sys
 import time
@@ -36,6 +34,7 @@ from addon.engine.frame.pipeline import FrameRenderer  # noqa: E402
 from addon.engine.planning.plan import plan_frame  # noqa: E402
 from addon.sampling.rounds import first_look  # noqa: E402
 from benchmarks.benches.frames import BenchScene  # noqa: E402
+from benchmarks.kept_results import KeptResults, fingerprint  # noqa: E402
 from benchmarks.referees.picture_metrics import compare, read_picture  # noqa: E402
 from benchmarks.referees.shared_scenes import shared_references, shared_scene  # noqa: E402
 
@@ -67,40 +66,16 @@ def main():
         *(f"{name}:{look}" for look in ("flat", "lit") for name in SCENES),
         *(f"pull:{number}" for number in range(1, PULL_FRAMES + 1)),
     ]
-    results = Results(options.folder / "results.jsonl", options.label or fingerprint())
+    results = kept(options, "results.jsonl")
     rows = [row for case in cases for row in measured(case, options, results)]
     print(table(rows))
     sys.exit(any(row["verdict"] != "ok" for row in rows))
 
 
-class Results:
-    """What was measured, in a file from which another run goes on."""
-
-    def __init__(self, path, mark):
-        self._path, self._mark = path, mark
-        lines = path.read_text().splitlines() if path.exists() else []
-        self.found = {
-            (row["case"], row["size"], row["number"], row["reference"]): row
-            for row in map(json.loads, lines)
-            if row["mark"] == mark
-        }
-
-    def add(self, row):
-        """Keep a row."""
-        row["mark"] = self._mark
-        self.found[row["case"], row["size"], row["number"], row["reference"]] = row
-        with self._path.open("a") as file:
-            file.write(json.dumps(row) + "\n")
-
-
-def fingerprint():
-    """Return a text that changes with the sources that decide how a frame is drawn."""
-    digest = hashlib.sha256()
-    for folder in _SOURCES:
-        for path in sorted((REPOSITORY / folder).rglob("*")):
-            if path.is_file() and "__pycache__" not in path.parts:
-                digest.update(str(path.relative_to(REPOSITORY)).encode() + path.read_bytes())
-    return digest.hexdigest()[:16]
+def kept(options, name):
+    """Return the results in a file of the folder, as `KeptResults`."""
+    mark = options.label or fingerprint(*_SOURCES)
+    return KeptResults(options.folder / name, mark, ("case", "size", "number", "reference"))
 
 
 def measured(case, options, results):

@@ -1,8 +1,6 @@
 """`scripts/zoo`: many scenes in worker processes, resumed, shrunk, summed up."""
 
 import argparse
-import hashlib
-import json
 import os
 import queue
 import signal
@@ -12,55 +10,13 @@ import time
 from collections import Counter
 from pathlib import Path
 
+from ..kept_results import KeptResults, fingerprint
 from .scenes.script import script
 from .shrink import shrink
 from .worker_process import REPOSITORY, START_SECONDS, Worker
 
 # What decides how a scene comes out: with other sources, scenes are judged again.
 _SOURCES = ("addon", "gpu_shaders", "lens_profiles", "benchmarks/zoo")
-
-
-class Results:
-    """What became of the scenes of a seed, kept in a file from which another run goes on.
-
-    Parameters
-    ----------
-    path : Path
-    fingerprint : str
-        Of the sources: results of others are forgotten.
-    """
-
-    def __init__(self, path, fingerprint):
-        self._path = path
-        self.verdicts = {}
-        lines = path.read_text().splitlines() if path.exists() else []
-        if lines and lines[0] == fingerprint:
-            for line in lines[1:]:
-                # The last line of a run that was killed may be half of one.
-                try:
-                    entry = json.loads(line)
-                except ValueError:
-                    continue
-                self.verdicts[entry["number"]] = entry
-        else:
-            path.write_text(fingerprint + "\n")
-
-    def add(self, number, verdict):
-        """Keep a verdict."""
-        entry = {"number": number, **verdict}
-        self.verdicts[number] = entry
-        with self._path.open("a") as file:
-            file.write(json.dumps(entry) + "\n")
-
-
-def fingerprint():
-    """Return a text that changes with the sources."""
-    digest = hashlib.sha256()
-    for folder in _SOURCES:
-        for path in sorted((REPOSITORY / folder).rglob("*")):
-            if path.is_file() and "__pycache__" not in path.parts:
-                digest.update(str(path.relative_to(REPOSITORY)).encode() + path.read_bytes())
-    return digest.hexdigest()
 
 
 class Run:
@@ -75,7 +31,9 @@ class Run:
         self.options = options
         self.folder = options.folder
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.results = Results(self.folder / f"{options.state}.jsonl", fingerprint())
+        self.results = KeptResults(
+            self.folder / f"{options.state}.jsonl", fingerprint(*_SOURCES), ("number",)
+        )
         self.end = time.monotonic() + options.time_limit if options.time_limit else None
         self.stopped = ""
         self._start = time.monotonic()
@@ -88,7 +46,7 @@ class Run:
         """Judge all scenes that are not judged yet."""
         waiting = queue.SimpleQueue()
         for number in self.numbers:
-            if number not in self.results.verdicts:
+            if (number,) not in self.results.found:
                 waiting.put(number)
         count = min(self.options.workers, max(waiting.qsize(), 1))
         self._workers = [Worker(self.folder / f"worker-{i}.log", 1) for i in range(count)]
@@ -136,7 +94,7 @@ class Run:
                 # Shrinking was broken off.
                 break
             with self._lock:
-                self.results.add(number, verdict)
+                self.results.add({"number": number, **verdict})
                 self._tell(number, verdict)
         worker.close()
 
@@ -166,7 +124,7 @@ class Run:
         verdict["tries"] = tries
 
     def _tell(self, number, verdict):
-        done = sum(n in self.results.verdicts for n in self.numbers)
+        done = sum((n,) in self.results.found for n in self.numbers)
         if verdict["kind"] == "ok":
             if self.options.verbose:
                 numbers = " ".join(f"{k} {v:.3g}" for k, v in verdict["measured"].items())
@@ -183,7 +141,7 @@ class Run:
 
     def summary(self):
         """Return the last lines: six at most, the failures among them."""
-        found = [self.results.verdicts[n] for n in self.numbers if n in self.results.verdicts]
+        found = [self.results.found[n,] for n in self.numbers if (n,) in self.results.found]
         kinds = Counter(entry["kind"] for entry in found)
         undecided = sum(bool(entry["measured"].get("undecided")) for entry in found)
         bad = [entry for entry in found if entry["kind"] != "ok"]

@@ -1,11 +1,9 @@
 """Small scenes, and the command run in this process."""
 
-import json
-from types import SimpleNamespace
-
 import pytest
 
 from benchmarks.scenes.small_scene import build_scene
+from tests.cli.running import runner
 
 
 @pytest.fixture(scope="session")
@@ -34,14 +32,7 @@ def aplanat(aplanat_bpy, capfd):
     """Run the command line in this process; tells code, out, err, and the answer of --json."""
     from addon.cli.command import main
 
-    def run(*words):
-        capfd.readouterr()
-        code = main([str(word) for word in words])
-        out, err = capfd.readouterr()
-        answer = json.loads(out) if "--json" in words else None
-        return SimpleNamespace(code=code, out=out, err=err, answer=answer)
-
-    return run
+    return runner(main, capfd)
 
 
 @pytest.fixture

@@ -1,11 +1,11 @@
 """`aplanat lens info` and `trace` against the values of independent software."""
 
 import json
-from types import SimpleNamespace
 
 import pytest
 
 from addon.cli.command import main
+from tests.cli.running import runner
 
 # The wavelengths of the referee by its keys, which have six digits.
 WAVELENGTHS = {"587.562": 587.5618, "486.133": 486.1327, "656.273": 656.2725}
@@ -15,14 +15,7 @@ WAVELENGTHS = {"587.562": 587.5618, "486.133": 486.1327, "656.273": 656.2725}
 def aplanat(capfd):
     """Run the command line in this process, without Blender."""
 
-    def run(*words):
-        capfd.readouterr()
-        code = main([str(word) for word in words])
-        out, err = capfd.readouterr()
-        answer = json.loads(out) if "--json" in words else None
-        return SimpleNamespace(code=code, out=out, err=err, answer=answer)
-
-    return run
+    return runner(main, capfd)
 
 
 @pytest.fixture(scope="module")
