@@ -25,8 +25,9 @@ import numpy as np
 from ...errors import InputError
 from ...sampling.iris import concentric_disk, polygon, star
 
-# Angles in a sector of blades by which its area is found.
-_ANGLES = 2049
+# Angles in a sector of blades by which samples are spread, and in half of one by which its area is
+# found again and again.
+_ANGLES, _COARSE_ANGLES = 2049, 257
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,7 @@ class BladedIris:
 
     def _cut_area(self, radius):
         """Return the area of a round stop behind blades of a radius."""
-        angles = np.linspace(0.0, np.pi / self.blades, _ANGLES)
+        angles = np.linspace(0.0, np.pi / self.blades, _COARSE_ANGLES)
         squares = np.minimum(1.0, radius * self._blade_reach(angles)) ** 2
         return self.blades * np.trapezoid(squares, angles)
 

@@ -26,10 +26,14 @@ class PictureIris:
         (the first three) are averaged. Row 0 is the bottom. The longer side spans the diameter.
     rotation : float
         In radians, anticlockwise.
+    stop : bool
+        A real lens' round stop cuts off what lies farther from the middle than the radius; without
+        it the corners of the picture are open, too.
     """
 
     picture: np.ndarray
     rotation: float = 0.0
+    stop: bool = False
     _grey: np.ndarray = field(init=False, repr=False)
 
     # Its coverage is the mean over a square; see `iris_mask`.
@@ -52,8 +56,8 @@ class PictureIris:
         object.__setattr__(self, "_grey", picture / picture.max())
         if iris_mask(self, _COARSE).max() <= 0.0:
             raise InputError(
-                "iris picture is turned so that all that is lit leaves the opening; paint it nearer"
-                " to the middle"
+                "iris picture lets light through outside of the opening only, as it is turned;"
+                " paint it nearer to the middle"
             )
 
     def __eq__(self, other):
@@ -67,16 +71,18 @@ class PictureIris:
     @cached_property
     def _identity(self):
         picture = np.ascontiguousarray(self._grey)
-        return picture.shape, self.rotation, hashlib.sha256(picture).digest()
+        return picture.shape, self.rotation, self.stop, hashlib.sha256(picture).digest()
 
     @property
     def area(self):
         """Transmitting area in units of the squared radius."""
+        if self.stop:
+            return float(iris_mask(self, _SPREAD).sum()) * (2.0 / _SPREAD) ** 2
         return float(self._grey.sum()) * (2.0 / max(self._grey.shape)) ** 2
 
     def amplitude(self):
         """Return the opening whose coverage is the share of amplitude, the root of intensity."""
-        return PictureIris(np.sqrt(self._grey), self.rotation)
+        return PictureIris(np.sqrt(self._grey), self.rotation, self.stop)
 
     def coverage(self, points, width):
         """Mean transmission of a small square.
@@ -111,7 +117,11 @@ class PictureIris:
             - _between(sums, high, left)
             + _between(sums, low, left)
         )
-        return np.clip(total / (2.0 * half) ** 2, 0.0, 1.0)
+        covered = np.clip(total / (2.0 * half) ** 2, 0.0, 1.0)
+        if not self.stop:
+            return covered
+        clear = (1.0 - np.hypot(points[..., 0], points[..., 1])) / np.maximum(width, 1e-12)
+        return covered * np.clip(0.5 + clear, 0.0, 1.0)
 
     def spread(self, square):
         """Distribute points of the unit square by transmission; see `sampling.iris.Opening`."""

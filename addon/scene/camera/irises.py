@@ -43,7 +43,7 @@ def read_opening(camera, real_lens, irises):
     if settings.iris_image is not None:
         image = settings.iris_image.original
         try:
-            opening = irises.read(image, dof.aperture_rotation)
+            opening = irises.read(image, dof.aperture_rotation, real_lens is not None)
             if image.source in ANIMATED:
                 problems = (
                     f"iris image '{image.name}' is animated; the picture in its file name, or the"
@@ -75,7 +75,7 @@ class IrisReader:
         self._reader_of = lru_cache(_MOST_KEPT)(lambda _uid: ImageReader(still=True))
         self._iris_of = lru_cache(_MOST_KEPT)(_iris_of_pixels)
 
-    def read(self, image, rotation):
+    def read(self, image, rotation, stop=False):
         """Return the iris of an image.
 
         Parameters
@@ -84,11 +84,13 @@ class IrisReader:
             The original, not an evaluated copy.
         rotation : float
             In radians, anticlockwise.
+        stop : bool
+            Behind the round stop of a real lens.
 
         Returns
         -------
         PictureIris
-            The same object until image or rotation changes.
+            The same object until one of them changes.
 
         Raises
         ------
@@ -102,7 +104,7 @@ class IrisReader:
             raise InputError("it cannot be read; choose another file")
         # Colours that are not multiplied by alpha are here: what is transparent is no light.
         alpha = not use.associated and image.alpha_mode != "CHANNEL_PACKED"
-        return self._iris_of(_Pixels((use.uid, alpha), reader.images[use.uid]), rotation)
+        return self._iris_of(_Pixels((use.uid, alpha), reader.images[use.uid]), rotation, stop)
 
 
 class _Pixels:
@@ -119,13 +121,13 @@ class _Pixels:
         return hash(self.uid)
 
 
-def _iris_of_pixels(pixels, rotation):
+def _iris_of_pixels(pixels, rotation, stop):
     image = pixels.image
     picture = image.linear_colors().astype(np.float64).mean(axis=-1)
     if pixels.uid[1]:
         alpha = image.pixels[..., 3].astype(np.float64)
         picture *= alpha / 255.0 if image.pixels.dtype == np.uint8 else alpha
-    return PictureIris(_reduced(picture), rotation)
+    return PictureIris(_reduced(picture), rotation, stop)
 
 
 def _reduced(picture):

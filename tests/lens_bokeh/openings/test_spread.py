@@ -26,6 +26,7 @@ OPENINGS = {
     "grey": PictureIris(GREY),
     "one texel": PictureIris(np.full((1, 1), 0.3)),
     "cut by the square": PictureIris(np.ones((8, 8)), 0.6),
+    "cut by the stop": PictureIris(np.ones((8, 8)), 0.6, stop=True),
 }
 
 
@@ -143,5 +144,12 @@ def test_closings_and_pictures_that_leave_nothing_are_refused():
     corner = np.zeros((32, 32))
     corner[0, 0] = 1.0
     assert PictureIris(corner).spread(SQUARE[:8]).max() < -0.9
-    with pytest.raises(InputError, match="turned"):
-        PictureIris(corner, np.pi / 4)
+    for rotation, stop in ((np.pi / 4, False), (0.0, True)):
+        with pytest.raises(InputError, match="outside of the opening"):
+            PictureIris(corner, rotation, stop)
+
+
+def test_the_stop_of_a_real_lens_makes_a_square_round():
+    assert PictureIris(np.ones((256, 256)), stop=True).area == pytest.approx(np.pi, rel=5e-3)
+    assert PictureIris(np.ones((8, 8))).area == 4.0
+    assert PictureIris(np.ones((8, 8)), stop=True) != PictureIris(np.ones((8, 8)))

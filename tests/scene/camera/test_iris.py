@@ -54,6 +54,7 @@ def test_samples_have_the_opening_of_the_discs_with_and_without_bokeh(camera, bo
     found = read(aplanat_bpy)
     assert isinstance(found.lens.iris.opening, PictureIris)
     assert found.lens.iris.opening.rotation == 0.25
+    assert not found.lens.iris.opening.stop
     if bokeh:
         assert found.bokeh.appearance.iris is found.lens.iris.opening
     assert found.report == ()
@@ -74,6 +75,8 @@ def test_a_real_lens_is_round_wide_open_and_shows_its_blades_when_stopped_down(c
     assert opening_of(read(aplanat_bpy).lens.iris).is_polygon
     camera.aplanat.bokeh.use_round_stop, camera.dof.aperture_fstop = False, 1.4
     assert read(aplanat_bpy).lens.iris == Iris(5)
+    camera.aplanat.bokeh.iris_image = image(aplanat_bpy, heart(16))
+    assert read(aplanat_bpy).lens.iris.opening.stop
 
 
 @pytest.mark.parametrize("bokeh", [True, False])
