@@ -22,6 +22,7 @@ from addon.engine.render_engine import ENGINE_ID
 from addon.errors import InputError
 
 from ..referees.picture_metrics import compare, read_picture
+from ..scenes.pictures import use_cycles, write_floats
 from .curve import Curve, samples_to_reach
 from .scenes import save_picture
 
@@ -122,7 +123,8 @@ class _Study:
         return self._measured("adaptive", picture, seconds, work=statistics.work(heard.statistics))
 
     def cycles(self):
-        self._use_cycles()
+        use_cycles(self._scene, 1)
+        self._scene.render.use_persistent_data = False
         numbers, ssim = [], []
         number = _CYCLES_FIRST
         while number <= _CYCLES_MOST:
@@ -144,7 +146,8 @@ class _Study:
         }
 
     def denoised(self, samples):
-        self._use_cycles()
+        use_cycles(self._scene, 1)
+        self._scene.render.use_persistent_data = False
         cycles = self._scene.cycles
         try:
             cycles.denoiser = "OPENIMAGEDENOISE"
@@ -187,17 +190,6 @@ class _Study:
         eevee.bokeh_max_size = 200.0
         eevee.bokeh_threshold = 0.0
 
-    def _use_cycles(self):
-        scene = self._scene
-        scene.render.engine = "CYCLES"
-        cycles = scene.cycles
-        cycles.device = "CPU"
-        cycles.use_adaptive_sampling = cycles.use_denoising = False
-        cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
-        cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
-        cycles.max_bounces = 0
-        scene.render.use_persistent_data = False
-
     def _beside(self, engine, samples, times):
         """Time a peer, each render beside one of the adaptive method."""
         found, ratios = [], []
@@ -218,11 +210,7 @@ class _Study:
             scene.cycles.samples = samples
         self._console.progress(f"{self._case.name}: {engine}, {samples} samples")
         path = self._folder / "picture.exr"
-        render = scene.render
-        render.filepath, render.use_file_extension = str(path), False
-        settings = render.image_settings
-        settings.media_type = "IMAGE"
-        settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
+        write_floats(scene.render, path, "RGB")
         start = time.perf_counter()
         bpy.ops.render.render(write_still=True)
         seconds = time.perf_counter() - start

@@ -32,6 +32,7 @@ from addon.errors import InputError
 from ..referees.osl_guide import boxes
 from ..referees.osl_lens import osl_lens, pinhole_offset, shader_source
 from ..referees.picture_metrics import read_picture
+from ..scenes.pictures import use_cycles, write_floats
 from .frames import BokehScene
 from .lens_chart import CROP, RESOLUTION, chart_scene, lens_chart
 
@@ -239,7 +240,7 @@ def _traced(scene, chart, lens, depth, field, samples):
     region = (x / RESOLUTION[0], (x + CROP) / RESOLUTION[0],
               y / RESOLUTION[1], (y + CROP) / RESOLUTION[1])  # fmt: skip
     data, render = scene.camera.data, scene.render
-    _use_cycles(scene, samples)
+    use_cycles(scene, samples)
     render.use_border = render.use_crop_to_border = True
     # Between the pixels' edges, so that rounding does not matter.
     share = 0.5 / np.array(RESOLUTION)
@@ -267,22 +268,8 @@ def _traced(scene, chart, lens, depth, field, samples):
     return pictures
 
 
-def _use_cycles(scene, samples):
-    scene.render.engine = "CYCLES"
-    cycles = scene.cycles
-    cycles.device = "CPU"
-    cycles.samples = samples
-    cycles.use_adaptive_sampling = cycles.use_denoising = False
-    cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
-    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
-    cycles.max_bounces = 0
-
-
 def _render(scene, path):
-    settings = scene.render.image_settings
-    settings.media_type, settings.file_format = "IMAGE", "OPEN_EXR"
-    settings.color_mode, settings.color_depth = "RGBA", "32"
-    scene.render.filepath, scene.render.use_file_extension = str(path), False
+    write_floats(scene.render, path)
     bpy.ops.render.render(write_still=True)
     return read_picture(path)[..., 1]
 

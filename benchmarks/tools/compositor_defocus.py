@@ -107,12 +107,10 @@ def defocused(color, depth, camera):
     tree.links.new(nodes[1].outputs["Image"], lens.inputs["Z"])
     tree.links.new(lens.outputs[0], output.inputs[0])
     from benchmarks.referees.picture_metrics import read_picture
+    from benchmarks.scenes.pictures import write_floats
 
     with tempfile.TemporaryDirectory() as folder:
-        settings = render.image_settings
-        settings.media_type, settings.file_format = "IMAGE", "OPEN_EXR"
-        settings.color_depth = "32"
-        render.filepath, render.use_file_extension = f"{folder}/defocused.exr", False
+        write_floats(render, f"{folder}/defocused.exr")
         bpy.ops.render.render(write_still=True)
         return read_picture(Path(render.filepath))[::-1]
 
