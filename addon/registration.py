@@ -22,27 +22,27 @@ from .ui.panels import (
     compositor_panel,
     iris_panel,
     lens_panel,
-    panels,
     refocus_panel,
+    render_panels,
     sampling_panel,
 )
-from .ui.presets import presets
+from .ui.presets import preset_menus
 from .ui.previews import bokeh_previews, chromatic_previews, lens_thumbnails
-from .ui.properties import migrations, overrides, properties
+from .ui.properties import data_block_properties, migrations, overrides
 
 _MODULES = (
     shared_resources,
     background,
     lens_thumbnails,
-    properties,
+    data_block_properties,
     overrides,
     migrations,
     render_engine,
     blender_panels,
-    presets,
+    preset_menus,
     level_operators,
     sampling_panel,
-    panels,
+    render_panels,
     lens_operators,
     lens_import,
     lens_panel,

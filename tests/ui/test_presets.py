@@ -7,7 +7,7 @@ import pytest
 from addon.sampling.field_maps import FIELD_PRESETS, FieldMap
 from addon.scene.camera.chromatic import read_field_map
 from addon.settings.setting import kept_names, settings_of
-from addon.ui.presets.presets import KINDS, PRESET_CLASSES, APLANAT_OT_preset
+from addon.ui.presets.preset_menus import KINDS, PRESET_CLASSES, APLANAT_OT_preset
 from addon.ui.properties.lens_memory import values_of
 
 from .panel_drawing import Layout

@@ -2,7 +2,7 @@
 
 from ...engine.refocus.scene_refocus import refocus_camera
 from ...engine.render_engine import ENGINE_ID
-from ..presets.presets import PRESET_CLASSES
+from ..presets.preset_menus import PRESET_CLASSES
 
 
 class EnginePanel:
@@ -50,7 +50,7 @@ class PresetsHeader:
     Attributes
     ----------
     presets : str
-        Their kind, out of `ui.presets.presets.KINDS`.
+        Their kind, out of `ui.presets.preset_menus.KINDS`.
     """
 
     presets = ""

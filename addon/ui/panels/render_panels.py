@@ -1,4 +1,4 @@
-"""The panels of the properties editor."""
+"""Panels of render, view layer, object, material, light and world in the properties editor."""
 
 import bpy
 
