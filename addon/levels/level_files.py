@@ -17,7 +17,7 @@ from ..files.whole_file import whole_file
 from .making.mesh_levels import Halving
 
 # Version of the cache; raised when the same mesh would get other levels.
-_VERSION = 5
+_VERSION = 6
 _FIELDS = tuple(field.name for field in fields(Halving))
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..snapshot.content import MeshSnapshot
+from .making.level_shadow import covering
 from .making.level_surface import weld
 from .making.mesh_levels import replay, seam_edges, simplify
 
@@ -106,7 +107,7 @@ class LevelMaker:
         known = self._find(key, mesh, work)
         if known is not None:
             return replay(mesh, known.halvings, places), work
-        levels, halvings = simplify(mesh, least_triangles, check, seams)
+        levels, halvings = _simplified(mesh, least_triangles, check, seams)
         self._keep(key, mesh, levels, halvings, work)
         return levels, work
 
@@ -128,7 +129,7 @@ class LevelMaker:
         known = self._find(key, mesh, own)
         if known is None:
             shape = _bare(mesh, mesh.rest, places)
-            known = self._keep(key, shape, *simplify(shape, least_triangles, check, seams), own)
+            known = self._keep(key, shape, *_simplified(shape, least_triangles, check, seams), own)
         work.add(own)
         levels = replay(mesh, known.halvings, places)
         ratio = _shrinkage(mesh, levels) / max(known.shrinkage, 1e-30)
@@ -195,6 +196,13 @@ def content_key(mesh, least_triangles):
         digest.update(f"|{name} {array.dtype} {array.shape}|".encode())
         digest.update(np.ascontiguousarray(array))
     return digest.digest()
+
+
+def _simplified(mesh, least_triangles, check, seams):
+    """Return the levels of a mesh that cover what it covers, and their halvings."""
+    levels, halvings = simplify(mesh, least_triangles, check, seams)
+    kept = covering(mesh, levels)
+    return levels[:kept], halvings[:kept]
 
 
 def _shape_key(mesh, positions, places, seams, least_triangles):

@@ -6,6 +6,7 @@ The right values are those of the full mesh, computed here from its triangles by
 import numpy as np
 import pytest
 
+from addon.levels.making.level_shadow import covering
 from addon.levels.making.level_surface import weld
 from addon.levels.making.mesh_levels import replay, seam_edges, simplify
 
@@ -115,6 +116,28 @@ def leaf():
     return painted(mesh_of(positions, triangles, **{"uv:": uv}))
 
 
+def sieve():
+    """A ball of wire: a thick shell with a hole in two of five of its squares."""
+    mesh = cube_sphere(40)
+    places = weld(mesh.positions)
+    kept = np.repeat(np.random.default_rng(5).random(len(mesh.triangles) // 2) > 0.4, 2)
+    outer = places[mesh.triangles[kept]]
+    shell = np.zeros((places.max() + 1, 3))
+    shell[places] = mesh.positions
+    inner = outer[:, ::-1] + len(shell)
+    edges = np.concatenate([outer[:, (0, 1)], outer[:, (1, 2)], outer[:, (2, 0)]])
+    code = edges.astype(np.int64) @ (len(shell), 1)
+    rim = edges[~np.isin(code, edges[:, ::-1].astype(np.int64) @ (len(shell), 1))]
+    a, b = rim.T
+    walls = np.concatenate(
+        [np.stack([b, a, a + len(shell)], 1), np.stack([b, a + len(shell), b + len(shell)], 1)]
+    )
+    return mesh_of(
+        np.concatenate([shell, 0.96 * shell]),
+        np.concatenate([outer, inner, walls]).astype(np.int32),
+    )
+
+
 CLOSED = [ball, wrinkled, limbs, crate]
 
 
@@ -150,6 +173,23 @@ def test_every_level_keeps_its_silhouette(made, build):
         # 1 % is what a body of 250 triangles may gain here and lose there; half with a thousand.
         bar = 0.005 if len(level.triangles) > 1000 else 0.01
         assert silhouette(level) == pytest.approx(whole, rel=bar), len(level.triangles)
+
+
+def test_levels_end_where_wires_have_grown_thin():
+    mesh = sieve()
+    whole, levels = silhouette(mesh), simplify(mesh, 250)[0]
+    count = covering(mesh, levels)
+    assert len(levels) >= 4
+    for level in levels[:count]:
+        # The bar of 1 %, and what the raster that decides it miscounts.
+        assert silhouette(level) == pytest.approx(whole, rel=0.013)
+    assert silhouette(levels[count]) < 0.99 * whole
+
+
+@pytest.mark.parametrize("build", [*CLOSED, leaf])
+def test_all_levels_of_bodies_cover_what_they_cover(made, build):
+    mesh, levels = made(build)
+    assert covering(mesh, levels) == len(levels)
 
 
 def test_wrinkles_that_are_lost_do_not_make_a_body_brighter(made):
