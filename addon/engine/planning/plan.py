@@ -163,6 +163,9 @@ def _plan_raster(snapshot):
     plan = _through_lens(snapshot, _plan(snapshot, sampling, automatic))
     if snapshot.stack is not None:
         return replace(plan, bokeh=plan_stack_bokeh(snapshot, plan))
+    if plan.report and plan.real_lens is None:
+        # The discs are those of the thin lens, too.
+        snapshot = replace(snapshot, camera=replace(snapshot.camera, real_lens=None))
     plan = replace(plan, bokeh=plan_bokeh(snapshot, plan))
     if plan.chromatic is None or "Fringe" not in snapshot.passes:
         return plan

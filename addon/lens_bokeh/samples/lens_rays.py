@@ -207,7 +207,10 @@ def _focused(prescription, label, focus_distance):
         )
     for _ in range(_FOCUS_STEPS):
         distance = focus_distance * _MM - first_order(lens).enp_z
-        lens = focused(wide, distance, prescription.focus)
+        try:
+            lens = focused(wide, distance, prescription.focus)
+        except PrescriptionError as error:
+            raise FocusError(f"{error}; focus farther away") from error
     return lens, first_order(lens)
 
 
