@@ -65,6 +65,8 @@ class BokehPlan:
         Camera space to clip space of the peeled raster.
     subpixels : int
         Along each side of a pixel of the peeled raster.
+    small_mirrors : int
+        As `subpixels`, for the sake of small mirroring objects.
     part : tuple of 4 int
         x, y, width and height of the part of the raster that holds all shining surfaces that do
         not mirror, px.
@@ -97,6 +99,7 @@ class BokehPlan:
     margin: tuple[int, int]
     projection: np.ndarray
     subpixels: int
+    small_mirrors: int
     part: tuple[int, int, int, int]
     world: bool
     world_share: float
@@ -117,7 +120,7 @@ class BokehPlan:
             In units of half the opening, row by row: the centres of n x n regions; one place where
             no surface mirrors.
         """
-        side = max(1, int(np.sqrt(self.settings.lens_views))) if self.mirroring else 1
+        side = _views_across(self.settings) if self.mirroring else 1
         axis = (2.0 * np.arange(side) + 1.0) / side - 1.0
         return np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
 
@@ -126,7 +129,8 @@ class BokehPlan:
         """As `subpixels`, for mirroring surfaces: all views together have as many as one."""
         if self.draft:
             return 1
-        return max(1, LEAST_SUBPIXELS // int(np.sqrt(len(self.lens_views))))
+        least = LEAST_SUBPIXELS // int(np.sqrt(len(self.lens_views)))
+        return max(1, least, self.small_mirrors)
 
     @property
     def world_subpixels(self):
@@ -215,10 +219,15 @@ def plan_bokeh(snapshot, plan):
     film = snapshot.film
     projection = np.diag([plan.width / width, plan.height / height, 1.0, 1.0]) @ plan.projection
     mirroring = _mirroring(snapshot.content, shining)
-    rows, _ = rows_of(snapshot.content, shining - mirroring)
-    part = part_of(rectangles_of(snapshot.content, rows, plan, projection, (width, height)))
+    size = (width, height)
+
+    def seen_in_raster(keys):
+        rows, _ = rows_of(snapshot.content, keys)
+        return rectangles_of(snapshot.content, rows, plan, projection, size)
+
+    steady = seen_in_raster(shining - mirroring)
+    part = part_of(steady)
     rows, of_group = rows_of(snapshot.content, emitting(snapshot.content, shining))
-    lamps = rectangles_of(snapshot.content, rows, plan, projection, (width, height))
     return BokehPlan(
         settings=settings,
         shining=shining,
@@ -231,8 +240,11 @@ def plan_bokeh(snapshot, plan):
         margin=margin,
         projection=projection,
         subpixels=max(
-            subpixels_of_triangles(snapshot.content, plan, rows, of_group, (width, height)),
-            subpixels_of_lamps(lamps, part),
+            subpixels_of_triangles(snapshot.content, plan, rows, of_group, size),
+            subpixels_of_lamps(steady, part),
+        ),
+        small_mirrors=subpixels_of_lamps(
+            seen_in_raster(mirroring), (0, 0, *size), _views_across(settings) ** 2
         ),
         part=part,
         world=world,
@@ -254,6 +266,10 @@ def shaping_lens(camera):
     """Return the traced lens that shapes a camera's discs, as `LensSettings`, or None."""
     lens = camera.real_lens
     return lens if lens and lens.shapes_bokeh and not camera.orthographic else None
+
+
+def _views_across(settings):
+    return max(1, int(np.sqrt(settings.lens_views)))
 
 
 def _shining(content, threshold):

@@ -120,15 +120,17 @@ def subpixels_of_triangles(content, plan, rows, of_group, size):
     return max(1, min(affordable, max(int(min(wanted, _MOST_SUBPIXELS)), LEAST_SUBPIXELS)))
 
 
-def subpixels_of_lamps(rectangles, part):
-    """Return the sub-pixels of the search, so that each small lamp keeps its energy.
+def subpixels_of_lamps(rectangles, part, views=1):
+    """Return the sub-pixels of the search, so that small lamps and lit objects keep their light.
 
     Parameters
     ----------
     rectangles : tuple
-        Of the instances that emit; see `rectangles_of`.
+        Of the instances that are searched; see `rectangles_of`.
     part : tuple of 4 int
         The part of the raster that is searched.
+    views : int, optional
+        Places on the lens that it is searched from: they share the sub-pixels.
 
     Returns
     -------
@@ -138,6 +140,6 @@ def subpixels_of_lamps(rectangles, part):
     if len(lower) == 0:
         return 1
     width = max(float((upper - lower).max(axis=1).min()), 1e-3)
-    wanted = np.ceil(_HITS_A_LAMP / (width * np.cbrt(len(lower))))
-    affordable = int(np.sqrt(_FINE_RASTER / (part[2] * part[3])))
+    wanted = np.ceil(_HITS_A_LAMP / (width * np.cbrt(len(lower)) * np.sqrt(views)))
+    affordable = int(np.sqrt(_FINE_RASTER / (max(part[2] * part[3], 1) * views)))
     return int(min(wanted, affordable, _FINEST))

@@ -54,6 +54,7 @@ def plan_stack_bokeh(snapshot, plan):
         margin=plan.layered.origin,
         projection=grown @ projection,
         subpixels=1,
+        small_mirrors=1,
         part=(0, 0, width, height),
         world=world,
         world_share=float(highlight_share(plan.empty_coc, least)) if world else 0.0,
