@@ -7,6 +7,7 @@ import numpy as np
 from ...device.targets import Targets
 from ...device.textures import texture_2d, texture_array
 from ...device.uniforms import uniform_buffer
+from ...layers.joining import join_layers
 from ...passes.bokeh import layer_highlights
 from ...passes.layered import layers
 from ...passes.surface import surface
@@ -63,7 +64,7 @@ class StackLayers:
     """
 
     def __init__(self, stack):
-        self.stack = stack
+        self.stack = join_layers(stack)
         self._depths = None
         self._made = None
         self._occluders = None
