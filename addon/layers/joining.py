@@ -79,8 +79,8 @@ def open_ends(coverages, depths, reach=REACH):
         return found
     side = range(-reach - 1, reach + 2)
     rises = np.zeros(len(rows))
-    for coverage, depth in zip(coverages, depths, strict=True):
-        held = _around(np.where(coverage > 0.0, depth, np.nan), rows, columns, side)
+    for held, depth in zip((front > 0.0, first), depths, strict=True):
+        held = _around(np.where(held, depth, np.nan), rows, columns, side)
         rises += np.nanmax(held, axis=0) - np.nanmin(held, axis=0)
     side = range(-reach, reach + 1)
     beside = _around(np.where(first, depths[1], np.nan), rows, columns, side)

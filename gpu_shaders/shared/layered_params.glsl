@@ -1,6 +1,5 @@
 // The depth layers of one frame, for rays of the lens that are cast through them.
 struct LayeredParams {
-  vec4 bounds[64];      // of each layer: x, y: least and largest value of the depth buffer; zw unused
   vec4 surroundings;    // colour where no layer has a surface, premultiplied
   vec4 raster;          // xy: texels of a layer along a side of a texel of the sample; zw: texels of a
                         // layer on the left of and below the sample's raster

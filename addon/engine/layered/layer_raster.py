@@ -110,8 +110,6 @@ class DeviceLayers:
     textures : Targets
         See `passes.layered.layers.specs`.
     raster : LayerRaster
-    bounds : ndarray of shape (K, 2)
-        Least and largest value of the depth buffer that each layer may hold.
     filtered : bool
         Colours are filtered pictures: alpha is the share of a texel that is covered, and they are
         mixed between texels; else a texel is one place of one surface.
@@ -119,5 +117,4 @@ class DeviceLayers:
 
     textures: object
     raster: LayerRaster
-    bounds: np.ndarray
     filtered: bool

@@ -91,19 +91,17 @@ class LayeredDrawing:
         size = (raster.width, raster.height)
         eyes = plan.layered.eyes
         if plan.layered.stack is None:
-            layers.build_pyramids(made.textures, *size, len(made.bounds), made.filtered, len(eyes))
+            count = plan.layered.count
+            layers.build_pyramids(made.textures, *size, count, made.filtered, len(eyes))
         margin = [raster.fine * side for side in raster.margin]
         if plan.layered.stack is not None:
             margin = plan.layered.origin
-        bounds = np.zeros((len(made.bounds), 4))
-        bounds[:, :2] = made.bounds
         self._params = uniform_buffer(
             cast.LAYERED_PARAMS.pack(
-                bounds=bounds,
                 surroundings=self._surroundings,
                 raster=(raster.fine, raster.fine, *margin),
                 sampling=(
-                    len(bounds),
+                    plan.layered.count,
                     layers.level_count(*size),
                     float(made.filtered),
                     plan.layered.cell,

@@ -9,14 +9,13 @@ from ...device import state
 from ...device.targets import Targets, TargetSpec
 from ...device.uniforms import uniform_buffer
 from ...layers.cuts import OVERLAP, layer_cuts
-from ...passes.layered import layers
+from ...passes.layered import joining, layers
 from ...passes.surface import surface
 from .layer_raster import (
     DeviceLayers,
     clip_planes,
     clipped_projection,
     layer_raster,
-    window_depth,
 )
 
 # Of a depth: what lies on the outermost planes is inside.
@@ -63,10 +62,11 @@ def draw_scene_layers(plan, drawing, draws, instances, mattes, resources):
     sides = (raster.width, raster.height)
     textures = Targets(*sides, layers.specs(*sides, count, mattes, eyes))
     _draw_layers(plan, raster, planes, draws, instances, textures, resources)
+    if not plan.layered.peeled:
+        joining.join(textures, count, eyes)
     drawing.counts.draw_calls += count * eyes * len(draws)
     drawing.counts.triangles += count * eyes * sum(d.triangles * d.count for d in draws)
-    bounds = np.array([[window_depth(plan, depth) for depth in pair] for pair in planes])
-    return DeviceLayers(textures, raster, bounds, filtered=False)
+    return DeviceLayers(textures, raster, filtered=False)
 
 
 def _planes(cuts, number, orthographic):

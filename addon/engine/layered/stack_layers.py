@@ -15,9 +15,6 @@ from .layer_raster import DeviceLayers, LayerRaster
 from .stack_highlights import find_highlights, runs_of
 from .stack_occluders import occluding_surfaces
 
-# Of a depth buffer's value: what lies on a layer's bounds is inside.
-_ROUNDING = 1e-6
-
 
 def stack_near(stack):
     """Return the near plane that a captured picture is kept with: half its least depth, m."""
@@ -105,7 +102,7 @@ class StackLayers:
         else:
             self._forget_highlights()
         if self._stale:
-            count = len(self._made.bounds)
+            count = len(self.stack.layers)
             layers.build_pyramids(textures, raster.width, raster.height, count, True)
             self._stale = False
         return self._made
@@ -226,13 +223,8 @@ def _upload(depths, stack):
     textures = Targets(width, height, layers.specs(width, height, count)[2:])
     textures.textures["colors"] = _texels(colors, layers.COLOR_FORMAT)
     textures.textures["depths"] = _texels(depths[..., None], layers.DEPTH_FORMAT)
-    bounds = np.empty((count, 2))
-    for number, found in enumerate(depths):
-        held = found[found <= 1.0]
-        bounds[number] = (held.min(), held.max()) if held.size else (1.0, 0.0)
-    bounds += (-_ROUNDING, _ROUNDING)
     raster = LayerRaster(width, height, 1, stack.overscan)
-    return DeviceLayers(textures, raster, bounds, filtered=True)
+    return DeviceLayers(textures, raster, filtered=True)
 
 
 def _texels(array, texel_format):

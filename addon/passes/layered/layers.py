@@ -12,24 +12,21 @@ from ...device.shaders import ShaderInfo, compile_shader, dispatch
 from ...device.targets import TargetSpec
 
 EMPTY = 2.0
-# As many as `LayeredParams` has bounds for.
-MOST_LAYERS = 64
-
 COLOR_FORMAT, DEPTH_FORMAT = "RGBA16F", "R32F"
 
 _GROUP = 8
-_COLORS = (COLOR_FORMAT, "FLOAT_2D_ARRAY")
-_DEPTHS = (DEPTH_FORMAT, "FLOAT_2D_ARRAY")
-_MATTES = ("RGBA32F", "FLOAT_2D_ARRAY")
+COLORS = (COLOR_FORMAT, "FLOAT_2D_ARRAY")
+DEPTHS = (DEPTH_FORMAT, "FLOAT_2D_ARRAY")
+MATTES = ("RGBA32F", "FLOAT_2D_ARRAY")
 _RANGES = ("RGBA32F", "FLOAT_2D_ARRAY")
 
 
 @variants(mattes=(False, True))
 def _pack_info(mattes=False):
-    images = [(*_COLORS, "colors_img", ("WRITE",)), (*_DEPTHS, "depths_img", ("WRITE",))]
+    images = [(*COLORS, "colors_img", ("WRITE",)), (*DEPTHS, "depths_img", ("WRITE",))]
     samplers = [("FLOAT_2D", "color_tx"), ("FLOAT_2D", "depth_tx")]
     if mattes:
-        images.append((*_MATTES, "mattes_img", ("WRITE",)))
+        images.append((*MATTES, "mattes_img", ("WRITE",)))
         samplers.append(("FLOAT_2D", "mattes_tx"))
     return ShaderInfo(
         name="aplanat_layer_pack",
@@ -52,7 +49,7 @@ _PYRAMID = ShaderInfo(
     compute=shader_source.load("passes/layered/layer_pyramid_comp.glsl"),
     samplers=(("FLOAT_2D_ARRAY", "colors_tx"), ("FLOAT_2D_ARRAY", "depths_tx")),
     images=(
-        (*_COLORS, "means_img", ("READ", "WRITE")),
+        (*COLORS, "means_img", ("READ", "WRITE")),
         (*_RANGES, "ranges_img", ("READ", "WRITE")),
     ),
     push_constants=(("INT", "level"), ("INT", "alpha_covers"), ("INT", "eyes")),
@@ -101,13 +98,13 @@ def specs(width, height, layers, mattes=False, eyes=1):
     """
     atlas = atlas_size(width, height)
     found = [
-        TargetSpec("colors", _COLORS[0], layers * eyes),
-        TargetSpec("depths", _DEPTHS[0], layers),
-        TargetSpec("means", _COLORS[0], layers * eyes, size=atlas),
+        TargetSpec("colors", COLORS[0], layers * eyes),
+        TargetSpec("depths", DEPTHS[0], layers),
+        TargetSpec("means", COLORS[0], layers * eyes, size=atlas),
         TargetSpec("ranges", _RANGES[0], layers, size=atlas),
     ]
     if mattes:
-        found.append(TargetSpec("mattes", _MATTES[0], layers))
+        found.append(TargetSpec("mattes", MATTES[0], layers))
     return found
 
 

@@ -291,8 +291,10 @@ void main()
   seen_from = lens * layered_buf.eyes.xy;
 #endif
   Hit nearest;
+  // The last level of a layer's pyramid is one square.
+  ivec2 whole = level_origin(size, int(layered_buf.sampling.y));
   for (int layer = 0; layer < layers && through > LEAST_THROUGH; layer++) {
-    vec2 between = layered_buf.bounds[layer].xy;
+    vec2 between = texelFetch(ranges_tx, ivec3(whole, layer), 0).xy;
     if (nearest_layer >= 0) {
       between.y = min(between.y, nearest.depth);
     }
