@@ -12,6 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from .layer_file import is_world
+
 # Coverage of a pixel that nothing is seen through: a sample's share may be lost in rounding.
 WHOLE = 1.0 - 1e-3
 # Pixels that are copied before the farther layer's first whole one: colours are mixed between
@@ -34,6 +36,9 @@ def join_layers(stack):
     joined = list(stack.layers)
     for number in range(1, len(joined)):
         before, layer = joined[number - 1], stack.layers[number]
+        if is_world(layer):
+            # No surface goes on into it, and it stays without any depth.
+            continue
         depths = [_steps(found.depth, stack.camera.orthographic) for found in (before, layer)]
         coverages = [found.color[..., 3] for found in (before, layer)]
         ends = open_ends(coverages, depths)
