@@ -199,7 +199,7 @@ class LayeredDrawing:
                 self._plan.lens_sample(index),
                 index,
                 highlights=self._highlights,
-                wavelength=self._wavelengths(index),
+                optics=self._wavelengths(index),
             )
         counts = self._drawing.counts
         counts.draw_calls += len(self._by_chance)

@@ -37,7 +37,7 @@ def draw_scene_layers(plan, drawing, draws, instances, mattes, resources):
     mattes : bool
         The draws have a second target, of mattes.
     resources : dict
-        ``highlights`` and ``wavelength`` of `passes.surface.surface.draw_sample`.
+        ``highlights`` and ``optics`` of `passes.surface.surface.draw_sample`.
 
     Returns
     -------
