@@ -26,7 +26,7 @@ class APLANAT_CAMERA_PT_iris(CameraPanel, bpy.types.Panel):
         blades.active = settings.iris_image is None and camera.dof.aperture_blades > 2
         blades.prop(settings, "blade_curvature", slider=True)
         stop = blades.column()
-        stop.active = lens is not None
+        stop.active = blades.active and lens is not None
         stop.prop(settings, "use_round_stop")
         image = column.column()
         image.use_property_decorate = False
