@@ -120,5 +120,7 @@ def test_an_even_world_is_as_bright_as_traced_from_the_sensor(name, f_number):
 def test_a_lens_with_cylinders_and_a_focus_inside_the_lens_are_refused():
     with pytest.raises(PrescriptionError, match="cylinder"):
         lens_rays(_prescription("anamorphic-60mm-f2"), None, FOCUS, 2.0, 0.3)
+    with pytest.raises(PrescriptionError, match="stop it down"):
+        lens_rays(_prescription("sonnar-50mm-f1.5"), None, FOCUS, 1.5, 0.4)
     with pytest.raises((FocusError, PrescriptionError)):
         lens_rays(_prescription("double-gauss-50mm-f2"), None, 0.01, 2.0, 0.3)

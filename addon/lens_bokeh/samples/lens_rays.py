@@ -45,6 +45,9 @@ _BEYOND, _FEWEST = 1.15, 5
 _WIDEST_DEG = 80.0
 _PARAXIAL = 1e-4
 _FOCUS_STEPS = 8
+# Some fast lenses turn rays back before the rim of their stop, which then are no function of the
+# place in it: they are traced a little closed, and their rays spread over the whole iris.
+_CLOSED = (1.0, 1.05, 1.1, 1.15, 1.2, 1.3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,7 +169,6 @@ def lens_rays(
         If the lens cannot be focused there, has cylinders, or no ray comes through.
     """
     configuration, order = _focused(prescription, label, focus_distance)
-    lens = configuration.stopped_down(f_number)
     focus = 1.0 / (focus_distance * _MM)
     room = max(order.enp_z, 0.0) + _ROOM * order.efl
     if focus * room >= 1.0:
@@ -176,11 +178,20 @@ def lens_rays(
     nearest = min(_NEAREST * focus, 1.0 / room)
     turn = (np.arange(VERGENCES) + 0.5) / VERGENCES * np.pi
     vergences = nearest * 0.5 * (1.0 - np.cos(turn))
-    scale, aim = _paraxial(lens, order.enp_z, focus, wavelength_nm)
     limit = np.tan(np.radians(min(configuration.half_field_deg * _BEYOND, _WIDEST_DEG)))
     fields = np.linspace(0.0, min(largest_tangent, limit), _FIELDS)
-    fan = RayFan(aim, scale, focus, vergences)
-    found = fan.follow(fields)
+    for closed in _CLOSED:
+        lens = configuration.stopped_down(max(f_number, configuration.f_number) * closed)
+        scale, aim = _paraxial(lens, order.enp_z, focus, wavelength_nm)
+        fan = RayFan(aim, scale, focus, vergences)
+        found = fan.follow(fields)
+        if not fan.folded:
+            break
+    if fan.folded:
+        raise PrescriptionError(
+            f"at f/{f_number:.3g} it turns rays back before the rim of its stop, so that places"
+            " in it do not tell them apart; stop it down"
+        )
     if len(found) < _FEWEST:
         raise PrescriptionError("no ray gets through the lens but near its axis")
     fields = fields[: len(found)]

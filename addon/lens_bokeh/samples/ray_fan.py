@@ -22,6 +22,8 @@ _NEAR_RIM, _MOST_RIMS = 0.05, 8
 # Light of an axial ray, over that through the middle, from which on the stop counts as one that
 # turns rays back before its rim.
 _FOLDED = 1.6
+# Share of the rays of a field that may have more than that.
+_WILD = 0.01
 # Where the edge of the rays that pass is looked for: in radii of the paraxial pupil.
 _WIDEST_PUPIL, _REACH_RAYS = 2.0, 2001
 
@@ -44,6 +46,8 @@ class RayFan:
         self.aim, self.scale, self.focus = aim, scale, focus
         self.radius_mm = abs(aim.pupil_radius)
         self.reach = None
+        # Whether the stop turns rays of axial points back before its rim.
+        self.folded = False
         self.orders = disc_orders(_DEGREE)
         self.slabs = np.append(vergences, focus)
         # Denser towards the rim, as polynomials want it; mirror symmetry: half of the disc.
@@ -65,10 +69,13 @@ class RayFan:
         followed = self._follow(fields, None)
         if followed:
             rays, light = followed[0]
-            if rays.found.all() and light.max() < _FOLDED:
-                return followed
-        self.reach = self._reach()
-        return self._follow(fields, self.reach)
+            self.folded = not (rays.found.all() and light.max() < _FOLDED)
+            for rays, light in followed:
+                rims = np.delete(rays.rims[:, -len(light) :], self.aim.stop, axis=0)
+                clear = (rims.min(axis=0) > 0.0) & rays.found[-len(light) :]
+                wild = clear & ~(light < _MOST_LIGHT)
+                self.folded |= wild.sum() > _WILD * clear.sum()
+        return followed
 
     def _follow(self, fields, reach):
         count = len(self.local)
