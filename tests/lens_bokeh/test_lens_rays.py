@@ -124,3 +124,36 @@ def test_a_lens_with_cylinders_and_a_focus_inside_the_lens_are_refused():
         lens_rays(_prescription("sonnar-50mm-f1.5"), None, FOCUS, 1.5, 0.4)
     with pytest.raises((FocusError, PrescriptionError)):
         lens_rays(_prescription("double-gauss-50mm-f2"), None, 0.01, 2.0, 0.3)
+
+
+@pytest.mark.parametrize("focus", [300.0, 1e6])
+def test_near_points_are_as_a_thin_lens_has_them_however_far_the_focus(focus):
+    lens, rays, tables, half = _tables("planar-50mm-f1.4", 1.4, focus=focus)
+    configuration = lens.configuration
+    radius = configuration.surfaces[configuration.stop - 1].semi_diameter
+    for distance, q in ((3.0, (0.5, 0.2)), (12.0, (-0.3, 0.6))):
+        point = np.array([0.1 * half[0] * distance, 0.0, -distance])
+        beam = Beam.from_point((*point[:2] * 1000.0, lens.pupil + point[2] * 1000.0))
+        aimed = aim(configuration, beam, np.array([q]) * radius, LINE)
+        traced = trace(configuration, beam.rays(aimed.coordinates), LINE)
+        assert traced.passed[0]
+        place = traced.at_plane(configuration.sensor)[0] / lens.scale
+        position = np.array(q) * tables.aperture_radius
+        moved = tables.displaced(point[None], tables.moves(position[None])[0], position)[0]
+        error = np.linalg.norm(moved[:2] / distance - place) * WIDTH / (2.0 * half[0])
+        assert error < 0.2, (distance, q)
+
+
+def test_no_light_comes_from_beyond_the_field_of_a_lens():
+    prescription = _prescription("telephoto-300mm-f2.9")
+    corner = np.tan(np.radians(20.0))
+    half = corner * np.array([3.0, 2.0]) / np.sqrt(13.0)
+    rays = lens_rays(prescription, None, FOCUS * 5.0, 2.9, 1.2 * corner)
+    tables = sample_tables(rays, field_grid(-half, half), field_grid(-half, half, 0.1), 0.05)
+    turn = 2.399963 * np.arange(200)
+    radius = np.sqrt((np.arange(200) + 0.5) / 200.0)
+    places = radius[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1) * 0.05
+    light = tables.light(places).mean(axis=0)
+    assert light[0, 0] == 0.0 and light.max() > 0.5
+    away = np.hypot(*tables.light_grid.nodes.T).reshape(light.shape)
+    assert light[away > np.tan(np.radians(12.0))].max() == 0.0

@@ -101,9 +101,10 @@ class LensTables:
         return found.reshape(rows, count, columns, count, 4).swapaxes(1, 2)
 
     def _divisors(self):
-        # What the lens takes away is left out of the divisor; the first samples may have no light
-        # at some place.
-        sums = self._sums / np.maximum(self._lens.falloff, _LEAST)[..., None]
+        # What the lens takes away is left out of the divisor of the colours: what is opaque stays
+        # so. The first samples may have no light at some place.
+        sums = self._sums.copy()
+        sums[..., :3] /= np.maximum(self._lens.falloff, _LEAST)[..., None]
         return np.maximum(sums, _LEAST * max(float(self._sums.max()), 1e-30))
 
     def _part(self, number):

@@ -35,9 +35,9 @@ from .stop_rays import StopAim
 _MM = 1000.0
 _FIELDS = 17
 VERGENCES = 4
-# The nearest point of the fit is this many times as near as the focus; nearer ones go on as they
-# went.
-_NEAREST = 4.0
+# The nearest point of the fit is this many times as near as the focus, and at least this near, in
+# focal lengths, however far the focus is; nearer ones go on as they went.
+_NEAREST, _NEAREST_LENGTHS = 4.0, 20.0
 # Room before surface 1 that no point of the fit comes into, in focal lengths.
 _ROOM = 0.25
 # Fields beyond the lens' own, in which rays are looked for; fewest of them that light comes from.
@@ -84,6 +84,8 @@ class LensRays:
     reach : float or None
         None: q are places of the stop. Else the stop of this lens turns rays back before its rim,
         and q are places of the plane of the pupil around the chief ray, in units of `reach` mm.
+    complete : bool
+        Whether the fields reach as far as they were wanted; else no light comes from farther out.
     """
 
     orders: np.ndarray
@@ -98,6 +100,7 @@ class LensRays:
     distorted: np.ndarray
     flat: bool
     reach: float | None = None
+    complete: bool = True
 
     def of_fields(self, values, odd, wanted):
         """Interpolate over the field.
@@ -118,6 +121,15 @@ class LensRays:
         nodes = np.concatenate([-self.fields[:0:-1], self.fields])
         matrix = spline_matrix(nodes, np.minimum(wanted, self.fields[-1]))
         return np.tensordot(matrix, np.concatenate([mirrored, values]), 1)
+
+    @property
+    def last_seen(self):
+        """Distance from the axis in the picture from which on no light comes; may be infinite."""
+        if self.complete:
+            return np.inf
+        if self.flat:
+            return float(self.fields[-1])
+        return float(np.interp(self.fields[-1], *self.distorted.T))
 
     def field_shown(self, tangents):
         """Return the fields of points in focus that are shown at distances from the axis.
@@ -175,16 +187,15 @@ def lens_rays(
         raise FocusError(
             f"focus distance {focus_distance:g} m is inside the lens; focus farther away"
         )
-    nearest = min(_NEAREST * focus, 1.0 / room)
+    nearest = max(_NEAREST * focus, 1.0 / (_NEAREST_LENGTHS * order.efl))
+    nearest = min(nearest, 1.0 / room)
     turn = (np.arange(VERGENCES) + 0.5) / VERGENCES * np.pi
     vergences = nearest * 0.5 * (1.0 - np.cos(turn))
-    limit = np.tan(np.radians(min(configuration.half_field_deg * _BEYOND, _WIDEST_DEG)))
-    fields = np.linspace(0.0, min(largest_tangent, limit), _FIELDS)
     for closed in _CLOSED:
         lens = configuration.stopped_down(max(f_number, configuration.f_number) * closed)
         scale, aim = _paraxial(lens, order.enp_z, focus, wavelength_nm)
         fan = RayFan(aim, scale, focus, vergences)
-        found = fan.follow(fields)
+        fields, found = _followed(fan, configuration.half_field_deg, largest_tangent)
         if not fan.folded:
             break
     if fan.folded:
@@ -194,7 +205,6 @@ def lens_rays(
         )
     if len(found) < _FEWEST:
         raise PrescriptionError("no ray gets through the lens but near its axis")
-    fields = fields[: len(found)]
     distorted = fan.chiefs(fields)
     return LensRays(
         fan.orders,
@@ -206,7 +216,24 @@ def lens_rays(
         distorted,
         flat,
         fan.reach,
+        bool(fields[-1] >= largest_tangent * (1.0 - 1e-9)),
     )
+
+
+def _followed(fan, half_field_deg, largest_tangent):
+    """Return fields and their rays: as far as they are wanted, or to where no light comes through.
+
+    In steps beyond the lens' own field, so that those that have light are looked at closely.
+    """
+    farthest = half_field_deg
+    while True:
+        farthest = min(farthest * _BEYOND, _WIDEST_DEG)
+        limit = np.tan(np.radians(farthest))
+        fields = np.linspace(0.0, min(largest_tangent, limit), _FIELDS)
+        found = fan.follow(fields)
+        whole = limit >= largest_tangent or farthest == _WIDEST_DEG
+        if whole or len(found) < len(fields) or fan.is_dark(found[-1]):
+            return fields[: len(found)], found
 
 
 def _focused(prescription, label, focus_distance):

@@ -77,6 +77,12 @@ class RayFan:
                 self.folded |= wild.sum() > _WILD * clear.sum()
         return followed
 
+    def is_dark(self, followed):
+        """Whether the rims stop all rays in focus of a field, as `follow` returns it."""
+        rays, _ = followed
+        at = slice(-len(self.local), None)
+        return not (rays.found[at] & (rays.rims[:, at].min(axis=0) >= 0.0)).any()
+
     def _follow(self, fields, reach):
         count = len(self.local)
         seen = np.tile(_turned_back(self.local), (len(self.slabs), 1)) * self.radius_mm

@@ -273,6 +273,9 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0):
     every = rays.of_fields(every, odd, away)
     every = np.stack([_scalar(each, rays.orders, turn) for each in np.moveaxis(every, 1, 0)])
     every[..., :-1] = _where_they_land(every[..., :-1], rays, grid, aperture_radius)
+    # Rays are followed to the last light.
+    beyond = np.hypot(*grid.nodes.T) > rays.last_seen
+    every[0, :, :-1][:, beyond] = 0.0
     light, rims = every[0], every[1:]
     slopes = [_rim_slope(rim, rays.orders) for rim in rims]
     # Rims that cut nothing of this picture.
