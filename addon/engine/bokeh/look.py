@@ -165,10 +165,10 @@ def make_look(plan, textures, field=None, lens=None):
     try:
         variants, arrays, params = describe_look(plan)
     except AplanatError as error:
-        lens = plan.bokeh.real_lens
-        if lens is None:
+        real = plan.bokeh.real_lens
+        if real is None:
             raise
-        report = (f"lens '{lens.prescription.name}' shapes no bokeh, a thin lens does: {error}",)
+        report = (f"lens '{real.prescription.name}' shapes no bokeh, a thin lens does: {error}",)
         variants, arrays, params = describe_look(
             replace(plan, bokeh=replace(plan.bokeh, real_lens=None))
         )

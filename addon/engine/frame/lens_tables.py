@@ -7,8 +7,9 @@ import numpy as np
 from ...passes.surface import real_lens
 from ...sampling.tile_control import TILE
 
-# Samples whose tables are uploaded together, and how many such parts are kept: 15 MB.
-_TOGETHER, _KEPT = 64, 4
+# Samples whose tables are uploaded together, and how many such parts are kept: 8 MB, and as much
+# for the slopes of subsamples.
+_TOGETHER, _KEPT = 32, 4
 # Share of the brightest place's light that counts as none.
 _LEAST = 1e-5
 # Steps between corners of a tile over those between nodes of the light.

@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...errors import AplanatError
+from ...errors import AplanatError, FocusError
 from ...lens_bokeh.samples.lens_rays import lens_rays
 from ...lens_bokeh.samples.sample_tables import SampleTables, field_grid, sample_tables
 from ...sampling.sequence import lens_samples
@@ -119,6 +119,11 @@ def plan_real_lens(camera, film, lens):
         None where the lens cannot be traced: the samples are those of the thin lens.
     report : tuple of str
         Warnings, one sentence each.
+
+    Raises
+    ------
+    FocusError
+        If the lens cannot be focused there: then its discs cannot be traced either.
     """
     scale_x, scale_y, *low = field_of_raster(camera.projection, film)
     low = np.array(low)
@@ -130,8 +135,11 @@ def plan_real_lens(camera, film, lens):
         return None, ()
     try:
         made = _plan(_Lens(camera.real_lens), _Thin(lens), (*low.tolist(), *high.tolist()))
+    except FocusError:
+        raise
     except AplanatError as error:
-        return None, (f"lens '{name}' is left out, a thin lens is drawn: {error}",)
+        # Its discs may be traced all the same.
+        return None, (f"lens samples do without lens '{name}' and are a thin lens': {error}",)
     report = ()
     if made.floor.any() and camera.real_lens.exposure == "EVEN":
         report = (

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...errors import FocusError
 from ...sampling.pixel_filter import MOST_SUBPIXELS, filter_support
 from ...sampling.rounds import first_look
 from ...sampling.spectral_samples import GROUP
@@ -160,12 +161,16 @@ def _plan_raster(snapshot):
         )
         sampling = settle(sampling, snapshot, first)
         sampling = replace(sampling, lens_samples=first_look(automatic.unit))
-    plan = _through_lens(snapshot, _plan(snapshot, sampling, automatic))
+    plan = _plan(snapshot, sampling, automatic)
+    try:
+        plan = _through_lens(snapshot, plan)
+    except FocusError as error:
+        name = snapshot.camera.real_lens.prescription.name
+        report = (f"lens '{name}' is left out, a thin lens is drawn: {error}",)
+        snapshot = replace(snapshot, camera=replace(snapshot.camera, real_lens=None))
+        plan = replace(plan, report=report)
     if snapshot.stack is not None:
         return replace(plan, bokeh=plan_stack_bokeh(snapshot, plan))
-    if plan.report and plan.real_lens is None:
-        # The discs are those of the thin lens, too.
-        snapshot = replace(snapshot, camera=replace(snapshot.camera, real_lens=None))
     plan = replace(plan, bokeh=plan_bokeh(snapshot, plan))
     if plan.chromatic is None or "Fringe" not in snapshot.passes:
         return plan
