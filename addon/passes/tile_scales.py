@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 from ..sampling.tile_control import TILE
 
-# What a pass can divide by: the same everywhere, one number a tile, sums at corners of tiles (any
-# number of them along its sides).
-KINDS = (None, 1, 2)
+# Corners along the sides of a tile that sums may be given at.
+CORNERS = (2, 5, 17)
+# What a pass can divide by: the same everywhere, one number a tile, sums at corners of tiles.
+KINDS = (None, 1, *CORNERS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +20,7 @@ class TileScales:
         One over the summed weights by channel, a texel a tile; with several corners the sums there,
         a square of texels a tile.
     corners : int
-        Along each side of a tile, from edge to edge.
+        Along each side of a tile, from edge to edge: 1 or one of `CORNERS`.
     """
 
     texture: object

@@ -8,8 +8,8 @@ the same sensor, focus and f-number, at the wavelength of the d line.
 Aplanat's picture keeps the camera's field of view and blur and takes the lens' patterns. So the
 camera's focal length is the one whose opening is that of the lens at this f-number, the traced
 lens' sensor has the size that gives the same field of view, and it is moved aside for each lamp by
-what the lens distorts: the ray through the middle of the stop then lands where a pinhole camera
-has the lamp.
+what the lens distorts: the ray through the middle of the stop of a point in focus, in the lamp's
+direction, then lands where a pinhole camera has it.
 
 Of each lamp a square is compared, just large enough for all that is brighter than a hundredth of
 the reference's maximum in either picture, and two pixels more on each side. The peak of the PSNR is
@@ -230,7 +230,9 @@ def _traced(scene, chart, lens, depth, field, samples):
     place, radius = chart.lamp(depth, field)
     x, y = chart.corner(field)
     sides = [np.arange(CROP + 1) + first for first in (x, y)]
-    offset = pinhole_offset(lens, place, chart.focal_length)
+    # Distortion is that of points in focus, in the same direction.
+    in_focus = np.asarray(place) * (chart.focus / place[2])
+    offset = pinhole_offset(lens, in_focus, chart.focal_length)
     step = chart.sensor_width / RESOLUTION[0]
     film = [
         (side - 0.5 * count) * step + shift

@@ -5,6 +5,7 @@ from collections import OrderedDict
 import numpy as np
 
 from ...passes.surface import real_lens
+from ...passes.tile_scales import CORNERS
 from ...sampling.tile_control import TILE
 
 # Samples whose tables are uploaded together, and how many such parts are kept: 8 MB, and as much
@@ -75,8 +76,8 @@ class LensTables:
         """Corners along each side of a tile between which the light is nearly linear."""
         grid = self._lens.grid
         pitch = min(self._plan.width / (grid.columns - 1), self._plan.height / (grid.rows - 1))
-        steps = 2 ** int(np.ceil(np.log2(max(_PARTS * TILE / pitch, 1.0))))
-        return 1 + min(steps, TILE)
+        steps = _PARTS * TILE / pitch
+        return next((count for count in CORNERS if count - 1 >= steps), CORNERS[-1])
 
     def corner_sums(self, shape):
         """Weights to divide the sums so far by, at corners of tiles.

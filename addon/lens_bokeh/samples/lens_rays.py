@@ -81,9 +81,6 @@ class LensRays:
         over m; both rising from 0.
     flat : bool
         Whether T takes the distortion away.
-    reach : float or None
-        None: q are places of the stop. Else the stop of this lens turns rays back before its rim,
-        and q are places of the plane of the pupil around the chief ray, in units of `reach` mm.
     complete : bool
         Whether the fields reach as far as they were wanted; else no light comes from farther out.
     """
@@ -99,7 +96,6 @@ class LensRays:
     rims: np.ndarray
     distorted: np.ndarray
     flat: bool
-    reach: float | None = None
     complete: bool = True
 
     def of_fields(self, values, odd, wanted):
@@ -215,7 +211,6 @@ def lens_rays(
         *fan.fitted(fields, found, distorted if flat else None),
         distorted,
         flat,
-        fan.reach,
         bool(fields[-1] >= largest_tangent * (1.0 - 1e-9)),
     )
 

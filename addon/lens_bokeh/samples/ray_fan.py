@@ -1,7 +1,5 @@
 """Fans of rays through a lens, field by field, and the sums of `disc_terms` that follow them."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from ..tables.spline import spline_matrix
@@ -24,8 +22,6 @@ _NEAR_RIM, _MOST_RIMS = 0.05, 8
 _FOLDED = 1.6
 # Share of the rays of a field that may have more than that.
 _WILD = 0.01
-# Where the edge of the rays that pass is looked for: in radii of the paraxial pupil.
-_WIDEST_PUPIL, _REACH_RAYS = 2.0, 2001
 
 
 class RayFan:
@@ -45,7 +41,6 @@ class RayFan:
     def __init__(self, aim, scale, focus, vergences):
         self.aim, self.scale, self.focus = aim, scale, focus
         self.radius_mm = abs(aim.pupil_radius)
-        self.reach = None
         # Whether the stop turns rays of axial points back before its rim.
         self.folded = False
         self.orders = disc_orders(_DEGREE)
@@ -66,7 +61,7 @@ class RayFan:
 
     def follow(self, fields):
         """Return `StopRays` of each field with its light, up to the last that rays come from."""
-        followed = self._follow(fields, None)
+        followed = self._follow(fields)
         if followed:
             rays, light = followed[0]
             self.folded = not (rays.found.all() and light.max() < _FOLDED)
@@ -83,7 +78,7 @@ class RayFan:
         at = slice(-len(self.local), None)
         return not (rays.found[at] & (rays.rims[:, at].min(axis=0) >= 0.0)).any()
 
-    def _follow(self, fields, reach):
+    def _follow(self, fields):
         count = len(self.local)
         seen = np.tile(_turned_back(self.local), (len(self.slabs), 1)) * self.radius_mm
         # The stop may be seen upside down.
@@ -93,10 +88,7 @@ class RayFan:
         followed = []
         for field in fields:
             start = 2.0 * places - before
-            if reach is None:
-                rays = self.aim.rays(field, vergences, targets, start)
-            else:
-                rays = self._through_pupil(field, vergences, start)
+            rays = self.aim.rays(field, vergences, targets, start)
             focus = rays.found.reshape(-1, count)[-1]
             if not focus[-1] or focus.mean() < 0.5:
                 break
@@ -104,27 +96,9 @@ class RayFan:
             guess = (chief + seen.reshape(-1, count, 2)).reshape(-1, 2)
             before, places = places, np.where(rays.found[:, None], rays.places, guess)
             at = slice(-count, None)
-            light = self.aim.throughput(field, vergences[at], rays.places[at], reach)
+            light = self.aim.throughput(field, vergences[at], rays.places[at])
             followed.append((rays, light * (self.scale / self.radius_mm) ** 2))
         return followed
-
-    def _through_pupil(self, field, vergences, start):
-        """Rays through places of the pupil around those of the rays through the stop's middle."""
-        count = len(self.local)
-        middle = start.reshape(-1, count, 2)[:, -1]
-        chief = self.aim.rays(field, self.slabs, np.zeros_like(middle), middle)
-        places = chief.places[:, None] + _turned_back(self.local) * self.reach
-        rays = self.aim.rays_of(field, vergences, places.reshape(-1, 2))
-        return replace(rays, found=rays.found & np.repeat(chief.found, count))
-
-    def _reach(self):
-        """Return how far from the axis rays of the axial point in focus pass, mm."""
-        heights = self.radius_mm * np.linspace(0.0, _WIDEST_PUPIL, _REACH_RAYS)
-        places = np.stack([np.zeros_like(heights), heights], axis=-1)
-        rays = self.aim.rays_of(0.0, np.full(len(heights), self.focus), places)
-        clear = np.where(rays.found, rays.rims.min(axis=0), -1.0)
-        last = int(np.argmax(clear < 0.0)) if (clear < 0.0).any() else len(heights) - 1
-        return float(heights[last])
 
     def chiefs(self, fields):
         """Return fields and landing places of rays through the middle of the iris, over m."""
@@ -163,7 +137,7 @@ class RayFan:
                 shown = undistorted(distorted, away.ravel()).reshape(away.shape)
                 seen = seen * (shown / np.maximum(away, 1e-30))[..., None]
             clear = rays.rims.reshape(-1, slabs, count)
-            others = np.delete(clear, self.aim.stop, axis=0) if self.reach is None else clear
+            others = np.delete(clear, self.aim.stop, axis=0)
             weight = self.weight * np.exp(_STEEP * np.minimum(others.min(axis=0), 0.0))
             weight = np.where(known, np.maximum(weight, _BLOCKED), 0.0)
             here, chief = [], []
@@ -202,9 +176,8 @@ class RayFan:
             ],
             axis=0,
         )
-        if self.reach is None:
-            # Places of the iris are those of the stop: its own rim cuts none of them.
-            least[self.aim.stop] = 1.0
+        # Places of the iris are those of the stop: its own rim cuts none of them.
+        least[self.aim.stop] = 1.0
         order = np.argsort(least)[:_MOST_RIMS]
         return np.sort(order[least[order] < _NEAR_RIM])
 

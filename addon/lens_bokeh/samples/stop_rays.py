@@ -124,7 +124,7 @@ class StopAim:
         landing = traced.at_plane(self._configuration.sensor)
         return np.where(traced.reached[:, None], stops, 0.0), landing
 
-    def throughput(self, field, vergences, places, reach=None):
+    def throughput(self, field, vergences, places):
         """Light of rays of one radiance, for even places of the iris and of the sensor.
 
         Etendue is what an optical system keeps: the light of a cell of the iris that comes to a
@@ -138,9 +138,6 @@ class StopAim:
         vergences : ndarray of shape (N,)
         places : ndarray of shape (N, 2)
             As `rays` found them.
-        reach : float or None
-            None: q are places of the stop, in units of its radius. Else the places are
-            ``chief + reach q``, the last one being that of the chief ray.
 
         Returns
         -------
@@ -156,8 +153,6 @@ class StopAim:
             # Where the field moves, the place on the pupil goes along, so that q stays.
             follow = -_inverse(stop_x) @ stop_h
             opened = 1.0 / _determinant(stop_x)
-            if reach is not None:
-                follow, opened = follow[-1:], reach**2
             total = land_h + land_x @ follow
             slopes = places * vergences[:, None] - (0.0, field)
             cosine2 = 1.0 / (1.0 + np.sum(slopes**2, axis=-1))

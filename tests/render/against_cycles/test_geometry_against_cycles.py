@@ -263,7 +263,7 @@ def test_colour_attributes_of_every_kind_have_cycles_values(bpy, tmp_path):
         attribute = data.color_attributes.new("tint", kind, domain)
         values = rng.uniform(0.1, 0.9, (len(attribute.data), 4)).astype(np.float32)
         attribute.data.foreach_set("color", values.ravel())
-        paint = scenes.emission(bpy, f"paint {i}", (0, 0, 0), "tint")
+        paint = scenes.emission(bpy, f"paint {i}", (0, 0, 0), attribute="tint")
         obj = scenes.add(bpy, data.name, data, paint, (-3 + 2 * i, 0))
         obj.rotation_euler = (0.5, 0.3, 0.8)
     ours, cycles = (render_aplanat(scene, 64), render_cycles(scene, 64))

@@ -89,7 +89,7 @@ def test_a_deforming_mesh_has_its_other_positions(bpy, split):
         tint = data.color_attributes.new("tint", "FLOAT_COLOR", "CORNER")
         for i, element in enumerate(tint.data):
             element.color = (i / 8, 0, 0, 1)
-    obj = scenes.add(bpy, "obj", data, scenes.emission(bpy, "paint", (0, 0, 0), "tint"))
+    obj = scenes.add(bpy, "obj", data, scenes.emission(bpy, "paint", (0, 0, 0), attribute="tint"))
     obj.shape_key_add(name="rest")
     key = obj.shape_key_add(name="moved")
     key.data[1].co.x += 2.0
