@@ -14,8 +14,9 @@ import numpy as np
 from ...errors import AplanatError, FocusError
 from ...lens_bokeh.samples.lens_rays import lens_rays
 from ...lens_bokeh.samples.sample_tables import SampleTables, field_grid, sample_tables
+from ...optics.distortion import divisor
 from ...sampling.sequence import lens_samples
-from .field_table import field_of_raster
+from .field_table import field_of_raster, picture_radius
 
 # Share of the picture's sides that points beyond its edges are told apart, too.
 _MARGIN = 0.15
@@ -134,7 +135,8 @@ def plan_real_lens(camera, film, lens):
         # Its cylinders are told by the camera's report.
         return None, ()
     try:
-        made = _plan(_Lens(camera.real_lens), _Thin(lens), (*low.tolist(), *high.tolist()))
+        corners = (*low.tolist(), *high.tolist())
+        made = _plan(_Lens(camera.real_lens), _Thin(lens), corners, _outermost(camera))
     except FocusError:
         raise
     except AplanatError as error:
@@ -151,12 +153,12 @@ def plan_real_lens(camera, film, lens):
 
 # Memo of its arguments alone: a picture asks for the same again and again.
 @lru_cache(maxsize=4)
-def _plan(key, thin, corners):
+def _plan(key, thin, corners, outermost):
     settings, lens = key.settings, thin.lens
     low, high = np.array(corners[:2]), np.array(corners[2:])
-    rays = _rays(key, lens.focus_distance, _reach(low, high))
+    rays = _rays(key, lens.focus_distance, _reach(outermost))
     grids = field_grid(low, high), field_grid(low, high, _MARGIN)
-    tables = sample_tables(rays, *grids, lens.aperture_radius, lens.iris.ratio)
+    tables = sample_tables(rays, *grids, lens.aperture_radius, lens.iris.ratio, outermost)
     places = lens_samples(0, _MANY, lens.iris) * lens.aperture_radius
     spacing = float(np.sqrt(np.pi / _MANY))
     axis = float(tables.axial_light(places, spacing).mean())
@@ -172,11 +174,20 @@ def _plan(key, thin, corners):
     return RealLensPlan(tables, mean + floor, floor, falloff, _SURE * moved, _SURE * apart)
 
 
-def _reach(low, high):
-    """Return the tangent of the outermost field that is wanted, rounded up."""
-    wider = _MARGIN * (high - low)
-    corner = float(np.hypot(*np.maximum(np.abs(low - wider), np.abs(high + wider))))
-    return float(2.0 ** (np.ceil(np.log2(corner) * _STEPS) / _STEPS))
+def _outermost(camera):
+    """Return the tangent of the farthest field that the camera's own picture shows.
+
+    It does not depend on the part that is drawn: a region, or more around it in a viewport.
+    """
+    corner = camera.field_radius or picture_radius(camera.projection, camera.orthographic)
+    # A barrel shows what lies beyond.
+    return corner / min(float(divisor(1.0, camera.distortion)), 1.0)
+
+
+def _reach(outermost):
+    """Return the tangent of the farthest field that is traced, rounded up."""
+    wider = (1.0 + 2.0 * _MARGIN) * outermost
+    return float(2.0 ** (np.ceil(np.log2(wider) * _STEPS) / _STEPS))
 
 
 class _Lens:

@@ -244,7 +244,7 @@ class SampleTables:
         return light
 
 
-def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0):
+def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=np.inf):
     """Lay out a lens over a picture.
 
     Parameters
@@ -258,6 +258,9 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0):
         Of the camera's thin lens, m.
     ratio : float
         Anamorphic.
+    outermost : float
+        Distance of the camera's own picture's corner from the axis, a tangent: farther out, which
+        only a viewport shows, the light is that of the corner.
 
     Returns
     -------
@@ -268,13 +271,14 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0):
     odd = rays.orders[:, 1] % 2 == 1
     # The nodes of the picture, and the axis.
     away, turn = _polar(np.append(grid.nodes, [[0.0, 0.0]], axis=0))
+    away = np.minimum(away, outermost)
+    beyond = away[:-1] > rays.last_seen
     away = rays.field_shown(away)
     every = np.concatenate([rays.light[:, None], rays.rims], axis=1)
     every = rays.of_fields(every, odd, away)
     every = np.stack([_scalar(each, rays.orders, turn) for each in np.moveaxis(every, 1, 0)])
     every[..., :-1] = _where_they_land(every[..., :-1], rays, grid, aperture_radius)
     # Rays are followed to the last light.
-    beyond = np.hypot(*grid.nodes.T) > rays.last_seen
     every[0, :, :-1][:, beyond] = 0.0
     light, rims = every[0], every[1:]
     slopes = [_rim_slope(rim, rays.orders) for rim in rims]

@@ -88,7 +88,7 @@ class APLANAT_CAMERA_PT_lens(CameraPanel, bpy.types.Panel):
         exposure.prop(settings, "exposure")
         breathing = column.column()
         breathing.active = camera.dof.use_dof and camera.type == "PERSP"
-        breathing.prop(settings, "use_breathing")
+        breathing.prop(settings, "use_breathing", text="Breathing")
         _draw_work(column)
 
 
