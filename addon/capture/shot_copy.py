@@ -10,13 +10,13 @@ import bpy
 
 from ..errors import CameraError, InputError
 from ..layers.layer_stack import LayerCamera
+from ..layers.slices import MEASURED_SIDE
 from ..sampling.thin_lens import aperture_radius
 from ..scene.camera.camera import camera_place, check_kind, evaluated_camera, focus_distance
 from ..scene.camera.lens_record import record_lens
 from .kept_values import KeptValues
 
-# Longest side of the picture that depths are measured in, and of what Blender renders.
-_DEPTH_SIDE = 512
+# Longest side of what Blender renders.
 _MOST_PIXELS = 65536
 _RENDER_RESULT = "Render Result"
 # Where engines are told how many samples they take.
@@ -143,7 +143,7 @@ class ShotCopy:
         data.clip_start, data.clip_end = self.clip
         self._before_nothing()
         long_side = max(render.resolution_x, render.resolution_y)
-        share = min(1.0, _DEPTH_SIDE / long_side) if measures else 1.0
+        share = min(1.0, MEASURED_SIDE / long_side) if measures else 1.0
         render.resolution_percentage = max(1, math.ceil(100.0 * share))
         for (owner, name), count in self._samples.items():
             setattr(getattr(scene, owner), name, 1 if measures else count)

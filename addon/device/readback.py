@@ -30,6 +30,28 @@ def read_color(framebuffer, width, height, channels=4, slot=0):
     return pixels
 
 
+def read_texel(texture, layer, x, y):
+    """Read a texel of four channels of an array texture.
+
+    Parameters
+    ----------
+    texture : GPUTexture
+        An array, of a format that can be drawn into.
+    layer, x, y : int
+
+    Returns
+    -------
+    ndarray of float32, shape (4,)
+    """
+    import gpu
+
+    slot = {"texture": texture, "layer": layer}
+    framebuffer = gpu.types.GPUFrameBuffer(color_slots=slot)
+    with framebuffer.bind():
+        found = framebuffer.read_color(x, y, 1, 1, 4, 0, "FLOAT")
+    return np.array(found, np.float32).reshape(4)
+
+
 def wait(framebuffer):
     """Wait until the device has finished drawing into a frame buffer.
 

@@ -19,6 +19,8 @@ FADE_BEGIN, FADE_END = 0.5, 0.75
 NOTHING = 1e9
 # Coverage of a pixel that nothing is seen through: a sample's share may be lost in rounding.
 _WHOLE = 1.0 - 1e-4
+# Longest side of the picture that depths in view are measured in, px.
+MEASURED_SIDE = 512
 # Overlap of slices that are denoised: a denoiser draws some pixels of a ragged end wrongly.
 DENOISED_OVERLAP = 0.3
 # Below this share of the depth, a range of depths is cut no further.

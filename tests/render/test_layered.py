@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.scenes.capture_scene import add_plane
 from tests.pictures import energy_ratio, save_side_by_side, ssim
 from tests.render.test_adaptive import (
     FOCUS,
@@ -37,8 +38,8 @@ def check(scene, tmp_path, least_ssim, samples=64, energy=0.01, **settings):
 def test_the_layered_picture_is_the_reference(scene, tmp_path):
     # The bar of the whole method, which the shared scenes are held to as well.
     work = check(scene, tmp_path, 0.97).statistics
-    # Each layer draws the scene once, whatever the number of samples.
-    assert work.triangles_submitted <= 8 * work.triangles_full_detail / 64
+    # Layers draw the scene once each, and two looks for depths, whatever the number of samples.
+    assert work.triangles_submitted <= (8 + 2) * work.triangles_full_detail / 64
 
 
 def changed_plan(monkeypatch, **values):
@@ -133,6 +134,18 @@ def test_highlights_are_splatted_over_it(scene):
     pictures = [combined(render(scene, method, 64)) for method in ("LAYERED", "ADAPTIVE")]
     assert energy_ratio(*pictures) == pytest.approx(1.0, abs=0.01)
     assert ssim(*pictures) > 0.98
+
+
+def test_a_floor_under_the_camera_takes_no_layers_from_what_is_in_view(scene, aplanat_bpy):
+    # Of its depths from the near plane on, those that are seen count.
+    add_plane(aplanat_bpy, "Floor", (0.0, 10.0, -1.2), 40.0, color=(0.3, 0.2, 0.1))
+    scene.render.resolution_x, scene.render.resolution_y = 96, 54
+    pictures = []
+    for clip_start in (0.001, 1.0):
+        scene.camera.data.clip_start = clip_start
+        pictures.append(combined(render(scene, "LAYERED", 16)))
+    # The same cuts but for rounding; 0.98 when they began at the near plane.
+    assert ssim(*pictures) > 0.999
 
 
 def test_peeled_layers_are_the_reference(scene, tmp_path):

@@ -73,6 +73,13 @@ def window_depth(plan, depth):
     return float(clip[2] / clip[3]) * 0.5 + 0.5
 
 
+def depth_in_window(plan, value):
+    """Return the depth in m that a value of a frame's depth buffer stands for."""
+    slope, offset = plan.projection[2, 2:]
+    ndc = 2.0 * value - 1.0
+    return float((offset - ndc) / slope if plan.orthographic else offset / (ndc + slope))
+
+
 def clipped_projection(projection, near, far):
     """Return a projection with other near and far planes, m.
 
@@ -108,8 +115,10 @@ class DeviceLayers:
     Parameters
     ----------
     textures : Targets
-        See `passes.layered.layers.specs`.
+        See `passes.layered.layers.specs`, with pyramids.
     raster : LayerRaster
+    count : int
+        Layers.
     filtered : bool
         Colours are filtered pictures: alpha is the share of a texel that is covered, and they are
         mixed between texels; else a texel is one place of one surface.
@@ -117,4 +126,5 @@ class DeviceLayers:
 
     textures: object
     raster: LayerRaster
+    count: int
     filtered: bool

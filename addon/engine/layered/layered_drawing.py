@@ -90,9 +90,6 @@ class LayeredDrawing:
         self._made, raster = made, made.raster
         size = (raster.width, raster.height)
         eyes = plan.layered.eyes
-        if plan.layered.stack is None:
-            count = plan.layered.count
-            layers.build_pyramids(made.textures, *size, count, made.filtered, len(eyes))
         margin = [raster.fine * side for side in raster.margin]
         if plan.layered.stack is not None:
             margin = plan.layered.origin
@@ -101,7 +98,7 @@ class LayeredDrawing:
                 surroundings=self._surroundings,
                 raster=(raster.fine, raster.fine, *margin),
                 sampling=(
-                    plan.layered.count,
+                    made.count,
                     layers.level_count(*size),
                     float(made.filtered),
                     plan.layered.cell,

@@ -1,6 +1,8 @@
 """Depth layers of a scene: drawn from the middle of the lens, a slice or a peel of the scene each.
 
-What chance makes transparent is left out: it is drawn anew for every lens sample.
+Slices are planned as a capture plans them, from the depths that are in view: bounds of objects say
+little of a floor that goes on under the camera. What chance makes transparent is left out: it is
+drawn anew for every lens sample.
 """
 
 import numpy as np
@@ -8,18 +10,21 @@ import numpy as np
 from ...device import state
 from ...device.targets import Targets, TargetSpec
 from ...device.uniforms import uniform_buffer
-from ...layers.cuts import OVERLAP, layer_cuts
+from ...layers.slices import MEASURED_SIDE, plan_slices
 from ...passes.layered import joining, layers
 from ...passes.surface import surface
 from .layer_raster import (
     DeviceLayers,
     clip_planes,
     clipped_projection,
+    depth_in_window,
     layer_raster,
 )
 
 # Of a depth: what lies on the outermost planes is inside.
 _ROUNDING = 1e-4
+# How often depths in view are measured: nearer things need a wider picture, which shows more.
+_MEASURES = 2
 
 
 def draw_scene_layers(plan, drawing, draws, instances, mattes, resources):
@@ -43,92 +48,160 @@ def draw_scene_layers(plan, drawing, draws, instances, mattes, resources):
     -------
     DeviceLayers
     """
+    drawn = _Slices(plan, draws, instances, mattes, resources)
+    near, far, nearest, farthest = _depths(plan, drawing, drawn)
+    count, eyes = plan.layered.count, plan.layered.eyes
+    planes = [(near, far)] * count
+    if not plan.layered.peeled:
+        slices = plan_slices(count, nearest, farthest, near, far, plan.orthographic)
+        planes = [(slice_.clip_start, slice_.clip_end) for slice_ in slices]
+    raster = layer_raster(plan, nearest, farthest)
+    sides = (raster.width, raster.height)
+    textures = drawn.draw(raster, sides, planes, eyes)
+    if not plan.layered.peeled:
+        joining.join(textures, len(planes), len(eyes))
+    drawing.counts.draw_calls += drawn.times * len(draws)
+    drawing.counts.triangles += drawn.times * sum(d.triangles * d.count for d in draws)
+    layers.build_pyramids(textures, *sides, len(planes), False, len(eyes))
+    return DeviceLayers(textures, raster, len(planes), filtered=False)
+
+
+def _depths(plan, drawing, drawn):
+    """Return where layers begin and end, and the nearest and farthest depths in view, m."""
     near, far = clip_planes(plan.projection)
     nearest, farthest = max(drawing.nearest, near), min(drawing.farthest, far)
     if not nearest < farthest:
         # Nothing is in view, or all at one depth.
         nearest = min(max(farthest, near), nearest)
         farthest = 2.0 * nearest
-    nearest = max(near, nearest * (1.0 - _ROUNDING))
-    farthest = min(far, farthest * (1.0 + _ROUNDING))
-    count = plan.layered.count
-    if plan.layered.peeled:
-        planes = [(nearest, farthest)] * count
-    else:
-        cuts = layer_cuts(count, nearest, farthest, plan.orthographic)
-        planes = [_planes(cuts, number, plan.orthographic) for number in range(count)]
-    raster = layer_raster(plan, nearest, farthest)
-    eyes = len(plan.layered.eyes)
-    sides = (raster.width, raster.height)
-    textures = Targets(*sides, layers.specs(*sides, count, mattes, eyes))
-    _draw_layers(plan, raster, planes, draws, instances, textures, resources)
-    if not plan.layered.peeled:
-        joining.join(textures, count, eyes)
-    drawing.counts.draw_calls += count * eyes * len(draws)
-    drawing.counts.triangles += count * eyes * sum(d.triangles * d.count for d in draws)
-    return DeviceLayers(textures, raster, filtered=False)
+    # The first and the last layer have all that there may be beside what was measured.
+    near = max(near, nearest * (1.0 - _ROUNDING))
+    far = min(far, farthest * (1.0 + _ROUNDING))
+    nearest, farthest = near, far
+    raster = None
+    for _ in range(_MEASURES):
+        wider, raster = raster, layer_raster(plan, nearest, farthest)
+        seen = raster != wider and drawn.depths(raster, (near, far))
+        if not seen:
+            break
+        nearest, farthest = seen
+    return near, far, nearest, farthest
 
 
-def _planes(cuts, number, orthographic):
-    """Return the depths between which a layer is drawn, m."""
-    near, far = cuts[number : number + 2]
-    if number + 2 < len(cuts):
-        if orthographic:
-            far += OVERLAP * (far - near)
-        else:
-            # In equal steps of the circle of confusion, and no farther than there is anything.
-            far = 1.0 / (1.0 / far - OVERLAP * (1.0 / near - 1.0 / far))
-        far = min(far, cuts[-1]) if far > 0.0 else cuts[-1]
-    return float(near), float(far)
+class _Slices:
+    """Draws slices of a scene.
 
+    Parameters
+    ----------
+    plan : FramePlan
+    draws, instances, mattes, resources
+        As of `draw_scene_layers`.
 
-def _draw_layers(plan, raster, planes, draws, instances, textures, resources):
-    sides = (raster.width, raster.height)
-    grown = [
-        size * raster.fine / side
-        for size, side in zip((plan.width, plan.height), sides, strict=True)
-    ]
-    projection = np.diag([*grown, 1.0, 1.0]) @ plan.projection
-    mattes = "mattes" in textures
-    # Peeled layers take turns with the depths: what is drawn lies behind the one before.
-    depths = ("depth", "front")
-    specs = [TargetSpec("color", "RGBA32F")]
-    specs += [TargetSpec(name, "DEPTH_COMPONENT32F") for name in depths]
-    if mattes:
-        specs.append(TargetSpec("mattes", "RGBA32F"))
-    slots = ("color", "mattes")[: 1 + mattes]
-    origin = [
-        (first - side) * raster.fine for first, side in zip(plan.origin, raster.margin, strict=True)
-    ]
-    lens = (plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius)
-    with Targets(*sides, specs) as drawn:
-        with drawn.framebuffer(depth="front").bind():
-            drawn.framebuffer(depth="front").clear(depth=0.0)
-        for number, pair in enumerate(planes):
-            depth, front = depths
-            clipped = clipped_projection(projection, *pair)
-            view = uniform_buffer(
-                surface.VIEW_PARAMS.pack(
-                    view=plan.view,
-                    view_inverse=np.linalg.inv(plan.view),
-                    projection=clipped,
-                    lens=lens,
-                    film=(*sides, *origin),
-                )
+    Attributes
+    ----------
+    times : int
+        How often the scene was drawn so far.
+    """
+
+    def __init__(self, plan, draws, instances, mattes, resources):
+        self._plan = plan
+        self._draws = draws
+        self._instances = instances
+        self._slots = ("color", "mattes")[: 1 + mattes]
+        self._resources = resources
+        self.times = 0
+
+    def draw(self, raster, sides, planes, eyes):
+        """Draw slices into new layers.
+
+        Parameters
+        ----------
+        raster : LayerRaster
+            What they show.
+        sides : tuple of 2 int
+            Width and height, texels.
+        planes : list of (float, float)
+            Depths that they lie between, m.
+        eyes : ndarray of shape (E, 2)
+            As `LayeredPlan.eyes`.
+
+        Returns
+        -------
+        Targets
+            Of `passes.layered.layers.specs`, without pyramids.
+        """
+        plan, mattes = self._plan, len(self._slots) > 1
+        shown = np.array([raster.width, raster.height]) / raster.fine
+        projection = np.diag([*(plan.width, plan.height) / shown, 1.0, 1.0]) @ plan.projection
+        origin = (np.array(plan.origin) - raster.margin) * sides / shown
+        # Peeled layers take turns with the depths: what is drawn lies behind the one before.
+        depths = ("depth", "front")
+        specs = [TargetSpec(name, "RGBA32F") for name in self._slots]
+        specs += [TargetSpec(name, "DEPTH_COMPONENT32F") for name in depths]
+        made = Targets(*sides, layers.specs(*sides, len(planes), mattes, len(eyes)))
+        with Targets(*sides, specs) as drawn:
+            with drawn.framebuffer(depth="front").bind():
+                drawn.framebuffer(depth="front").clear(depth=0.0)
+            for number, pair in enumerate(planes):
+                clipped = clipped_projection(projection, *pair)
+                view = self._view(clipped, sides, origin)
+                for turn, eye in enumerate(eyes):
+                    self._draw(drawn, depths, view, eye)
+                    seen = {name: drawn[name] for name in self._slots}
+                    seen["depth"] = drawn[depths[0]]
+                    slot = turn * len(planes) + number
+                    layers.pack(seen, number, made, clipped, plan.projection, slot)
+                if plan.layered.peeled:
+                    depths = depths[::-1]
+        return made
+
+    def depths(self, raster, planes):
+        """Return the least and the largest depth that a raster shows between two depths, m.
+
+        Returns
+        -------
+        tuple of 2 float, or None
+            None where nothing is in view.
+        """
+        shown = np.array([raster.width, raster.height]) / raster.fine
+        sides = np.ceil(shown * min(1.0, MEASURED_SIDE / shown.max())).astype(int).tolist()
+        with self.draw(raster, sides, [planes], np.zeros((1, 2))) as made:
+            layers.build_pyramids(made, *sides, 1, False)
+            least, largest = layers.depth_range(made, *sides)
+        if least > largest:
+            return None
+        found = (depth_in_window(self._plan, value) for value in (least, largest))
+        return tuple(float(np.clip(depth, *planes)) for depth in found)
+
+    def _draw(self, drawn, depths, view, eye):
+        depth, front = depths
+        for name in self._slots:
+            drawn.clear(name, (0.0, 0.0, 0.0, 0.0))
+        bindings = (("front_tx", drawn[front]), ("eye", tuple(eye.tolist())))
+        framebuffer = drawn.framebuffer(*self._slots, depth=depth)
+        with framebuffer.bind():
+            framebuffer.clear(depth=1.0)
+            state.opaque()
+            surface.draw_sample(
+                self._draws,
+                view,
+                self._instances,
+                (0.0,) * 4,
+                0,
+                bindings,
+                **self._resources,
             )
-            for turn, eye in enumerate(plan.layered.eyes):
-                for name in slots:
-                    drawn.clear(name, (0.0, 0.0, 0.0, 0.0))
-                framebuffer = drawn.framebuffer(*slots, depth=depth)
-                bindings = (("front_tx", drawn[front]), ("eye", tuple(eye.tolist())))
-                with framebuffer.bind():
-                    framebuffer.clear(depth=1.0)
-                    state.opaque()
-                    surface.draw_sample(
-                        draws, view, instances, (0.0,) * 4, 0, bindings, **resources
-                    )
-                color_layer = turn * len(planes) + number
-                seen = {name: drawn[name] for name in slots} | {"depth": drawn[depth]}
-                layers.pack(seen, number, textures, clipped, plan.projection, color_layer)
-            if plan.layered.peeled:
-                depths = (front, depth)
+        self.times += 1
+
+    def _view(self, projection, sides, origin):
+        plan = self._plan
+        lens = (plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius)
+        return uniform_buffer(
+            surface.VIEW_PARAMS.pack(
+                view=plan.view,
+                view_inverse=np.linalg.inv(plan.view),
+                projection=projection,
+                lens=lens,
+                film=(*sides, *origin),
+            )
+        )

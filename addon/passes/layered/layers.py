@@ -6,7 +6,7 @@ frame would hold; `EMPTY` where a layer has no surface.
 
 import numpy as np
 
-from ...device import shader_source
+from ...device import readback, shader_source
 from ...device.shader_variants import variants
 from ...device.shaders import ShaderInfo, compile_shader, dispatch
 from ...device.targets import TargetSpec
@@ -62,6 +62,13 @@ def level_count(width, height):
     return max(1, (max(width, height) - 1).bit_length())
 
 
+def _level_sizes(width, height):
+    return [
+        tuple(-(-side // 2**level) for side in (width, height))
+        for level in range(1, level_count(width, height) + 1)
+    ]
+
+
 def atlas_size(width, height):
     """Return the size of the texture that holds all levels; see ``lib/pyramid_atlas_lib.glsl``.
 
@@ -69,10 +76,7 @@ def atlas_size(width, height):
     -------
     tuple of 2 int
     """
-    sizes = [
-        tuple(-(-side // 2**level) for side in (width, height))
-        for level in range(1, level_count(width, height) + 1)
-    ]
+    sizes = _level_sizes(width, height)
     second = sizes[1:]
     return (
         sizes[0][0] + max((w for w, _ in second), default=0),
@@ -175,3 +179,25 @@ def build_pyramids(textures, width, height, layers, alpha_covers, eyes=1):
         shader.uniform_int("level", level)
         across, up = (-(-side // 2**level) for side in (width, height))
         dispatch(shader, -(-across // _GROUP), -(-up // _GROUP), layers)
+
+
+def depth_range(textures, width, height, layer=0):
+    """Read the least and the largest depth of a layer from its pyramid.
+
+    Parameters
+    ----------
+    textures : Targets
+        Of `specs`, with pyramids.
+    width, height : int
+        Of the layers.
+    layer : int
+
+    Returns
+    -------
+    least, largest : float
+        The least is the greater one where the layer has no surface.
+    """
+    sizes = _level_sizes(width, height)
+    # The last level is one square, above the others in the second column of the atlas.
+    place = (sizes[0][0], sum(h for _, h in sizes[1:-1])) if len(sizes) > 1 else (0, 0)
+    return tuple(readback.read_texel(textures["ranges"], layer, *place)[:2].tolist())
