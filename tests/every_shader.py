@@ -15,7 +15,8 @@ from addon.device import geometry, shader_variants
 from addon.device.shaders import ShaderInfo, compile_shader, dispatch
 from addon.device.targets import Targets, TargetSpec
 from addon.device.uniforms import uniform_buffer
-from addon.passes.surface import data, environment_bake, surface, surface_code, surface_target
+from addon.passes.nodes import surface_code
+from addon.passes.surface import data, environment_bake, surface, surface_target
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 
 _MODULES = [

@@ -1,6 +1,6 @@
 """A surface or world shader as a value: the nodes that reach the output, in evaluation order.
 
-The reader of Blender's node trees makes these; `passes.surface.surface_code` turns one into GLSL.
+The reader of Blender's node trees makes these; `passes.nodes.surface_code` turns one into GLSL.
 Constants are kept apart from the shape, so that dragging a slider never compiles a shader.
 """
 

@@ -91,7 +91,7 @@ def surfaces_blend(aplanat_bpy, tmp_path_factory):
 @pytest.fixture(scope="session")
 def nodes_blend(aplanat_bpy, tmp_path_factory):
     """Every operation and blend mode in chains, and a world of nodes."""
-    from addon.passes.surface.surface_values import MATH, VECTOR_MATH, VECTOR_NUMBERS
+    from addon.passes.nodes.value_nodes import MATH, VECTOR_MATH, VECTOR_NUMBERS
 
     bpy = aplanat_bpy
     scene = surface_scenes.sphere_scene(bpy, [("Emission", {})] * 4)

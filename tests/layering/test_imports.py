@@ -53,7 +53,9 @@ ROOMS = {
     "levels": ("files", "snapshot", "levels.making"),
     # The graphics device, and passes on it.
     "device": (),
-    "passes.surface": ("device", "sampling", "snapshot"),
+    # Node trees as GLSL.
+    "passes.nodes": ("device", "snapshot"),
+    "passes.surface": ("device", "sampling", "snapshot", "passes.nodes"),
     "passes.visibility": ("device", "passes.surface"),
     "passes.bokeh": ("device", "passes.surface", "passes.visibility"),
     "passes.layered": ("device", "passes.surface"),
@@ -79,7 +81,7 @@ ROOMS = {
     # The scene through depth layers, in place of a drawing for each lens sample.
     "engine.layered": ("device", "layers", "passes.bokeh", "passes.layered", "passes.surface"),
     "engine.visibility": (
-        *("device", "passes.surface", "passes.visibility", "passes.bokeh"),
+        *("device", "passes.nodes", "passes.surface", "passes.visibility", "passes.bokeh"),
         "engine.drawing",
     ),
     "engine.bokeh": (
@@ -163,7 +165,8 @@ BLENDER = {"bpy", "bl_ui", "bl_operators", "bpy_extras", "mathutils", "addon_uti
 # Rooms that read or drive Blender. All others work on values: nothing in them imports Blender, not
 # even inside a function.
 BLENDER_ROOMS = {
-    *("scene", "scene.images", "scene.camera", "engine", "engine.refocus", "capture", "compositor"),
+    *("scene", "scene.images", "scene.nodes", "scene.camera"),
+    *("engine", "engine.refocus", "capture", "compositor"),
     *(
         f"ui.{name}"
         for name in ("jobs", "previews", "operators", "properties", "presets", "panels")

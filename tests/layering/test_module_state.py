@@ -84,8 +84,11 @@ OTHERS = {
     "cli.blender_command": ("what `unregister` gives back to Blender", ("_handles",)),
     # Filled by decorators while their modules are imported, and not after that.
     "device.shader_variants": ("the makers of shaders, for tests", ("_makers",)),
-    "passes.surface.surface_nodes": ("makers of GLSL by kind of node", ("generates",)),
-    "passes.surface.surface_values": ("makers of GLSL by kind of node", ("generates",)),
+    "passes.nodes.closure_nodes": ("makers of GLSL by kind of node", ("generates",)),
+    "passes.nodes.image_nodes": ("makers of GLSL by kind of node", ("generates",)),
+    "passes.nodes.input_nodes": ("makers of GLSL by kind of node", ("generates",)),
+    "passes.nodes.value_nodes": ("makers of GLSL by kind of node", ("generates",)),
+    "passes.nodes.vector_nodes": ("makers of GLSL by kind of node", ("generates",)),
     "scene.nodes.material_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.value_nodes": ("readers by kind of node", ("reads",)),
     # Panels.

@@ -2,7 +2,8 @@
 
 from functools import cached_property
 
-from ...passes.surface import surface, surface_code
+from ...passes.nodes import surface_code
+from ...passes.surface import surface
 from ...passes.visibility import cones, visibility_raster
 from ..drawing.occluders import Occluders, Part
 

@@ -10,7 +10,7 @@ from ...device import geometry, readback, shader_source, state
 from ...device.shaders import ShaderInfo, compile_shader
 from ...device.targets import Targets, TargetSpec
 from ...device.uniforms import uniform_buffer
-from . import surface_code
+from ..nodes import surface_code
 
 # Images below the first size (texels along the longer side) are baked twice as finely, and none
 # smaller than the second: the baked result is interpolated after the nodes, not before.

@@ -11,7 +11,8 @@ from ...device.geometry import attribute_identifier, attribute_type
 from ...device.shaders import ShaderInfo, compile_shader
 from ...device.uniform_block import UniformStruct
 from ...device.uniforms import bind_resource
-from . import environment, surface_code
+from ..nodes import surface_code
+from . import environment
 from .surface_target import COLOR, whole
 
 # Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and the
@@ -118,6 +119,9 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
             defines |= {"HAS_NORMAL": "1", "ATTRIBUTE_NORMAL": name}
         varyings.append((kind, f"v_{name}"))
         forward.append(f"  v_{name} = {name};")
+    if shades and code.reads_place:
+        varyings.append(("VEC3", "v_object_position"))
+        forward.append("  v_object_position = pos;")
     vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
     vertex = shader_source.join((shader_source.Text(vertex), target.vertex))
     structs, uniforms = target.structs, [*target.uniforms]
@@ -127,6 +131,7 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
         structs = VIEW_PARAMS.source + structs
         uniforms.insert(0, ("ViewParams", "view_buf"))
         push_constants += [("VEC4", "lens_sample"), ("INT", "sample_index")]
+        defines["SEEN"] = "1"
     generated = ""
     if shades:
         generated = code.source

@@ -1,7 +1,46 @@
-"""Walking Blender's node trees: reroutes, muted nodes and groups are followed through.
+"""Walking Blender's node trees.
 
-A place in a tree is a socket and the group nodes that enclose it, outermost first.
+Blender itself resolves groups, reroutes, muted nodes, menus, closures and repeat zones, and
+computes what is constant (`inlined`), as it does for its own engines. Where it cannot, groups,
+reroutes and muted nodes are followed here: a place in a tree is a socket and the group nodes that
+enclose it, outermost first.
 """
+
+import bpy
+
+
+def inlined(block, target):
+    """Return the node tree of a material, world or light as one without groups.
+
+    Parameters
+    ----------
+    block : bpy.types.Material, bpy.types.World or bpy.types.Light
+        Evaluated.
+    target : str
+        Of the output node that is looked for first, as `ShaderNodeTree.get_output_node` takes it.
+
+    Returns
+    -------
+    output : bpy.types.Node or None
+        The output node.
+    owner : object
+        To be kept as long as the tree is read.
+    """
+    if block.node_tree is None:
+        return None, None
+    own = block.node_tree.get_output_node(target)
+    if own is None:
+        return None, None
+    make = {"Material": "from_material", "World": "from_world"}
+    kind = next((kind for kind in make if isinstance(block, getattr(bpy.types, kind))), None)
+    method = make.get(kind, "from_light")
+    made = getattr(bpy.types.InlineShaderNodes, method)(block)
+    output = made.node_tree and made.node_tree.get_output_node(target)
+    # Blender resolves nothing where all outputs are of certain engines, and another tree where
+    # there are several.
+    if not output or output.target != own.target:
+        return own, block
+    return output, made
 
 
 def source_of(socket, groups):

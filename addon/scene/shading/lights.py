@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from ...snapshot.content import Light
-from ..nodes.node_tree import source_of
+from ..nodes.node_tree import inlined, source_of
 from ..nodes.tree_reader import constant, constant_number, numbers_of
 
 # Most lights, a row each of the light table: every device has textures of this height.
@@ -46,7 +46,7 @@ def read_light(light, matrix):
     if light.use_temperature:
         power *= light.temperature_color[:]
     if light.node_tree:
-        power *= _emission(light.node_tree, notes)
+        power *= _emission(light, notes)
     if not power.any():
         return None, notes
     if light.type == "SUN":
@@ -77,9 +77,10 @@ def read_light(light, matrix):
     )
 
 
-def _emission(tree, notes):
+def _emission(light, notes):
     """Return the factor of a light's node tree: of one Emission with constant inputs."""
-    output = tree.get_output_node("EEVEE")
+    # The nodes live as long as their tree: `_owner` is kept.
+    output, _owner = inlined(light, "EEVEE")
     socket = output and source_of(output.inputs["Surface"], ())[0]
     if not socket or not socket.is_output:
         return np.zeros(3)

@@ -5,6 +5,7 @@ from ...snapshot.cryptomatte import cryptomatte_id
 from ...snapshot.surface_graph import DEFAULT_GRAPH, Constant, Link, ShaderNode, SurfaceGraph
 from ..images.images import ImageReader
 from ..nodes import material_nodes, value_nodes
+from ..nodes.node_tree import inlined
 from ..nodes.tree_reader import TreeReader
 
 _READERS = material_nodes.READERS | value_nodes.READERS
@@ -93,9 +94,9 @@ class MaterialReader:
         return MaterialSnapshot(next_uid(), name, graph, matte, highlights)
 
     def _graph(self, material):
-        tree = material.node_tree
-        output = tree and tree.get_output_node("EEVEE")
-        if not output:
+        # The nodes live as long as their tree: `_owner` is kept.
+        output, _owner = inlined(material, "EEVEE")
+        if output is None:
             return SurfaceGraph()
         reader = TreeReader(f"material '{material.name}'", self.image_reader, _READERS)
         graph = reader.surface(output)

@@ -7,7 +7,7 @@ from ...snapshot.surface_graph import LARGEST_RADIANCE, MISSING_IMAGE_COLOR, Con
 from ..images import color_spaces
 from ..nodes import material_nodes, value_nodes
 from ..nodes.material_nodes import euler_matrix, mapping_matrix
-from ..nodes.node_tree import source_of
+from ..nodes.node_tree import inlined, source_of
 from ..nodes.tree_reader import TreeReader, constant, constant_number, numbers_of
 
 # How far a Mapping may be from a rotation.
@@ -31,9 +31,9 @@ def read_world(world, images):
     notes = []
     if world is None:
         return World(), notes
-    tree = world.node_tree
-    output = tree and tree.get_output_node("EEVEE")
-    if not output:
+    # The nodes live as long as their tree: `_owner` is kept.
+    output, _owner = inlined(world, "EEVEE")
+    if output is None:
         return World(), notes
     reader = _WorldReader(world.name, images, notes)
     volume = next((s for s in output.inputs if s.identifier == "Volume"), None)

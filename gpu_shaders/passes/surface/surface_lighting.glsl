@@ -5,6 +5,7 @@
 // lights_tx (light table); environment_buf, environment_tx (image), environment_levels_tx
 // (prefiltered), ggx_tx (albedo table).
 // Source: split-sum environment, Karis, SIGGRAPH 2013 course; closures as Cycles composes them.
+#include "lib/surface/bsdf_inputs_lib.glsl"
 #include "lib/surface/closure_lib.glsl"
 
 #if defined(LIT) && defined(SHADES)
@@ -43,7 +44,8 @@ struct Reflected {
   vec3 unsplit;  // part of it that is never splatted (of lamps without highlights)
 };
 
-Shading surface_shading()
+// `bent`: a normal that nodes have made, 0 for the surface's own.
+Shading surface_shading(vec3 bent)
 {
   Shading s;
   s.position = world_position;
@@ -67,6 +69,7 @@ Shading surface_shading()
 #else
   vec3 normal = geometric;
 #endif
+  normal = (dot(bent, bent) > 0.0) ? bent : normal;
   float size = length(normal);
   s.normal = (size > 0.0) ? normal / size : s.view;
   s.cos_view = clamp(dot(s.normal, s.view), 1e-4, 1.0);
@@ -233,47 +236,38 @@ Closure reflecting(Reflected reflected)
   return Closure(finite_light(reflected.light), vec3(0.0), 0.0, finite_light(reflected.unsplit));
 }
 
-Closure closure_diffuse(vec3 color)
+Closure closure_diffuse(Shading s, Bsdf bsdf)
 {
-  Reflected reflected = diffuse_light(surface_shading());
+  Reflected reflected = diffuse_light(s);
   // Negative colours reflect nothing, as in Cycles; negative lamps do take light away.
-  vec3 c = max(number_or_zero(color), vec3(0.0));
+  vec3 c = max(number_or_zero(bsdf.color), vec3(0.0));
   return reflecting(Reflected(c * reflected.light, c * reflected.unsplit));
 }
 
-Closure closure_glossy(vec3 color, float roughness, bool repeats)
+Closure closure_glossy(Shading s, Bsdf bsdf)
 {
-  Shading s = surface_shading();
-  float r = clamp(number_or_zero(roughness), 0.0, 1.0);
+  float r = clamp(number_or_zero(bsdf.roughness), 0.0, 1.0);
   vec3 albedo = ggx_albedo(ggx_tx, s.cos_view, r);
-  vec3 c = max(number_or_zero(color), vec3(0.0));
+  vec3 c = max(number_or_zero(bsdf.color), vec3(0.0));
   // The same reflectance in every direction: a lobe of f0 = 1, with the colour as its weight.
   // Above 1 light grows with every scattering; from about 8 on its sum has no limit.
-  vec3 repeat_color = repeats ? ggx_multiple_scattering(albedo, min(c, vec3(5.0))) : vec3(1.0);
+  vec3 repeat_color = bsdf.repeats ? ggx_multiple_scattering(albedo, min(c, vec3(5.0))) : vec3(1.0);
   Lobe lobe = Lobe(c * repeat_color, vec3(1.0), 0.0, false);
   Lobe none = Lobe(vec3(0.0), vec3(0.0), 0.0, false);
   return reflecting(glossy_light(s, r, lobe, none));
 }
 
-Closure closure_principled(vec3 base_color,
-                           float metallic,
-                           float roughness,
-                           float ior,
-                           float specular_level,
-                           vec3 specular_tint,
-                           vec3 emission_color,
-                           float emission_strength)
+Closure closure_principled(Shading s, Bsdf bsdf)
 {
-  Shading s = surface_shading();
   // As in Cycles, a base brighter than white is one only where it is diffuse.
-  vec3 base = max(number_or_zero(base_color), vec3(0.0));
-  float metal = clamp(number_or_zero(metallic), 0.0, 1.0);
-  float r = clamp(number_or_zero(roughness), 0.0, 1.0);
-  vec3 tint = max(number_or_zero(specular_tint), vec3(0.0));
+  vec3 base = max(number_or_zero(bsdf.color), vec3(0.0));
+  float metal = clamp(number_or_zero(bsdf.metallic), 0.0, 1.0);
+  float r = clamp(number_or_zero(bsdf.roughness), 0.0, 1.0);
+  vec3 tint = max(number_or_zero(bsdf.specular_tint), vec3(0.0));
   // At most 1: then all light is reflected.
-  float eta = clamp(number_or_zero(ior), 1e-5, 1e5);
+  float eta = clamp(number_or_zero(bsdf.ior), 1e-5, 1e5);
   float f0 = f0_from_ior(eta);
-  specular_level = number_or_zero(specular_level);
+  float specular_level = number_or_zero(bsdf.specular_level);
   if (specular_level != 0.5) {
     f0 *= 2.0 * max(specular_level, 0.0);
     float raised = ior_from_f0(f0);
@@ -293,30 +287,25 @@ Closure closure_principled(vec3 base_color,
     reflected.unsplit += base * left * diffuse.unsplit;
   }
   Closure closure = reflecting(reflected);
-  closure.radiance += finite_light(emission_color * emission_strength);
+  closure.radiance += finite_light(bsdf.emission_color * bsdf.emission_strength);
   return closure;
+}
+
+Closure closure_lit(Bsdf bsdf)
+{
+  Shading s = surface_shading(bsdf.normal);
+  if (bsdf.kind == BSDF_DIFFUSE) {
+    return closure_diffuse(s, bsdf);
+  }
+  if (bsdf.kind == BSDF_GLOSSY) {
+    return closure_glossy(s, bsdf);
+  }
+  return closure_principled(s, bsdf);
 }
 
 #else
 
-Closure closure_diffuse(vec3 color)
-{
-  return closure_none();
-}
-
-Closure closure_glossy(vec3 color, float roughness, bool repeats)
-{
-  return closure_none();
-}
-
-Closure closure_principled(vec3 base_color,
-                           float metallic,
-                           float roughness,
-                           float ior,
-                           float specular_level,
-                           vec3 specular_tint,
-                           vec3 emission_color,
-                           float emission_strength)
+Closure closure_lit(Bsdf bsdf)
 {
   return closure_none();
 }

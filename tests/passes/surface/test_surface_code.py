@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.passes.surface import surface_code
+from addon.passes.nodes import surface_code
 from addon.passes.surface.environment import ggx_table
 from addon.passes.surface.light_table import light_texels
 from addon.snapshot.content import Light

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.passes.surface.surface_values import MATH, VECTOR_MATH, VECTOR_NUMBERS
+from addon.passes.nodes.value_nodes import MATH, VECTOR_MATH, VECTOR_NUMBERS
 from tests.pictures import save_side_by_side
 from tests.surface_scenes import both, card_scene, image
 

@@ -214,7 +214,7 @@ def test_images_behind_a_mix_are_read_and_those_behind_an_unknown_node_are_told(
 
 def test_more_ramps_than_the_constants_hold_are_told(bpy):
     material, tree = new_material(bpy)
-    value = tree.node("Value").outputs[0]
+    value = tree.node("VertexColor").outputs[0]
     for _ in range(20):
         value = tree.node("ValToRGB", {"Fac": value}).outputs[0]
     tree.emission(value)
@@ -227,7 +227,7 @@ def test_more_ramps_than_the_constants_hold_are_told(bpy):
 
 
 def test_dragging_a_ramps_color_changes_constants_and_not_the_code(bpy):
-    from addon.passes.surface.surface_code import generate
+    from addon.passes.nodes.surface_code import generate
 
     material, tree = new_material(bpy)
     ramp = tree.node("ValToRGB")

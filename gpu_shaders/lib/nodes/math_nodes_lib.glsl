@@ -1,7 +1,7 @@
 // Blender's Math, Vector Math, Clamp and Map Range nodes: an operation a function. Undefined results
 // (a division by 0, the root of a negative number) are 0, as in Cycles.
-#ifndef NODE_MATH_LIB_GLSL
-#define NODE_MATH_LIB_GLSL
+#ifndef MATH_NODES_LIB_GLSL
+#define MATH_NODES_LIB_GLSL
 #include "lib/finite_lib.glsl"
 #include "lib/surface/vector_lib.glsl"
 

@@ -1,11 +1,11 @@
-"""Generators of GLSL for nodes that compute numbers, vectors and colours; see `surface_nodes`."""
+"""Generators of GLSL for nodes that compute numbers, vectors and colours."""
 
-from .surface_registry import generator_registry
+from .registry import generator_registry
 
 GENERATORS, generates = generator_registry()
 
-# What the generated code calls.
-LIBRARIES = ("lib/surface/node_math_lib.glsl", "lib/surface/node_color_lib.glsl")
+_MATH = "lib/nodes/math_nodes_lib.glsl"
+_COLOR = "lib/nodes/color_nodes_lib.glsl"
 
 # Math operations as GLSL of a, b and c, which are variables.
 MATH = {
@@ -115,7 +115,7 @@ def _names_in(pattern):
     return set(_words(pattern))
 
 
-@generates("math")
+@generates("math", _MATH)
 def _math(node, writer):
     operands = {letter: (node.input(letter), "float") for letter in "abc"}
     result = _expression(writer, "float", MATH[node.setting("operation")], operands)
@@ -124,7 +124,7 @@ def _math(node, writer):
     return {"Value": ("float", result)}
 
 
-@generates("vector_math")
+@generates("vector_math", _MATH)
 def _vector_math(node, writer):
     operands = {letter: (node.input(letter), "vec3") for letter in "abc"}
     operands["scale"] = (node.input("scale"), "float")
@@ -138,7 +138,7 @@ def _vector_math(node, writer):
     return {"Vector": ("vec3", vector), "Value": ("float", number)}
 
 
-@generates("clamp")
+@generates("clamp", _MATH)
 def _clamp(node, writer):
     value, least, largest = (
         writer.value(node.input(name), "float") for name in ("Value", "Min", "Max")
@@ -150,7 +150,7 @@ def _clamp(node, writer):
     return {"Result": ("float", writer.let("float", result))}
 
 
-@generates("map_range")
+@generates("map_range", _MATH)
 def _map_range(node, writer):
     kind = "vec3" if node.setting("vector") else "float"
 
@@ -181,7 +181,7 @@ def _map_range(node, writer):
     return {"Result": ("float", f"{result}.x")}
 
 
-@generates("mix_value")
+@generates("mix_value", _MATH)
 def _mix_value(node, writer):
     kind = "vec3" if node.setting("vector") else "float"
     factor_kind = "vec3" if node.setting("by_component") else "float"
@@ -196,7 +196,7 @@ def _factor(node, writer, kind="float"):
     return f"clamp({factor}, 0.0, 1.0)" if node.setting("clamp_factor") else factor
 
 
-@generates("mix_color")
+@generates("mix_color", _COLOR)
 def _mix_color(node, writer):
     factor = _factor(node, writer)
     a, b = (writer.value(node.input(name), "vec3") for name in "ab")
@@ -206,7 +206,7 @@ def _mix_color(node, writer):
     return {"Color": ("color", result)}
 
 
-@generates("hue_saturation")
+@generates("hue_saturation", _COLOR)
 def _hue_saturation(node, writer):
     color = writer.value(node.input("Color"), "vec3")
     names = ("Hue", "Saturation", "Value", "Fac")
@@ -214,14 +214,14 @@ def _hue_saturation(node, writer):
     return {"Color": ("color", writer.let("vec3", f"color_hue_saturation({color}, {values})"))}
 
 
-@generates("gamma")
+@generates("gamma", _COLOR)
 def _gamma(node, writer):
     color = writer.value(node.input("Color"), "vec3")
     gamma = writer.value(node.input("Gamma"), "float")
     return {"Color": ("color", writer.let("vec3", f"color_gamma({color}, {gamma})"))}
 
 
-@generates("contrast")
+@generates("contrast", _COLOR)
 def _contrast(node, writer):
     color = writer.value(node.input("Color"), "vec3")
     values = ", ".join(writer.value(node.input(name), "float") for name in ("Bright", "Contrast"))
@@ -247,7 +247,7 @@ _TO_RGB = {"RGB": "{}", "HSV": "hsv_to_rgb({})", "HSL": "hsl_to_rgb({})", "XYZ":
 _FROM_RGB = {"RGB": "{}", "HSV": "rgb_to_hsv({})", "HSL": "rgb_to_hsl({})", "XYZ": "{}"}
 
 
-@generates("combine")
+@generates("combine", _COLOR)
 def _combine(node, writer):
     values = ", ".join(writer.value(node.input(name), "float") for name in "abc")
     model = node.setting("model")
@@ -255,21 +255,21 @@ def _combine(node, writer):
     return {"Result": ("vec3" if model == "XYZ" else "color", result)}
 
 
-@generates("separate")
+@generates("separate", _COLOR)
 def _separate(node, writer):
     value = writer.value(node.input("Value"), "vec3")
     parts = writer.let("vec3", _FROM_RGB[node.setting("model")].format(value))
     return {name: ("float", f"{parts}.{axis}") for name, axis in zip("abc", "xyz", strict=True)}
 
 
-@generates("ramp")
+@generates("ramp", "lib/finite_lib.glsl")
 def _ramp(node, writer):
     place = f"clamp({writer.value(node.input('Fac'), 'float')}, 0.0, 1.0)"
     found = _look_up(writer, node.table, place, bool(node.setting("steps")))
     return {"Color": ("color", f"{found}.rgb"), "Alpha": ("float", f"{found}.a")}
 
 
-@generates("curves")
+@generates("curves", "lib/finite_lib.glsl")
 def _curves(node, writer):
     kind = "float" if node.setting("channels") == "1" else "vec3"
     value = writer.let(kind, writer.value(node.input("Value"), kind))

@@ -1,8 +1,4 @@
-"""From a `SurfaceGraph` to GLSL: one function `surface_closure()` a tree shape.
-
-Constants become members of a uniform block and images become samplers, both numbered in graph
-order, so graphs of one shape generate the same text and share one compiled shader.
-"""
+"""What node generators write into: code, constants, images and attributes of one surface."""
 
 from dataclasses import dataclass, field
 
@@ -10,45 +6,8 @@ import numpy as np
 
 from ...device.geometry import attribute_identifier
 from ...snapshot.surface_graph import Constant, Link
-from . import surface_nodes, surface_values
 
-_GENERATORS = surface_nodes.GENERATORS | surface_values.GENERATORS
-_ATTRIBUTE_COMPONENTS = {"normal": 3, "generated": 3, "uv": 2, "color": 4}
-
-
-@dataclass(frozen=True)
-class SurfaceCode:
-    """Generated code and what to bind for it.
-
-    Parameters
-    ----------
-    source : str
-        Declares ``Closure surface_closure()``.
-    constants : tuple of 4-tuples of float
-        The material's uniform block, one vec4 a constant.
-    attributes : tuple of str
-        Mesh attributes that the code reads, such as ``"uv:UVMap"``.
-    images : tuple of int
-        `ImageSnapshot.uid` of samplers ``image_0_tx``, ``image_1_tx``, ...
-    transparent : bool
-        The surface may be transparent somewhere. Opaque ones keep the early depth test.
-    lit : bool
-        The surface reflects lights and the world.
-    glows : bool
-        The surface may emit where it is transparent, so that its light must be added for every
-        sample and not only for those that find it opaque.
-    libraries : tuple of str
-        Shader files below ``gpu_shaders/`` that the code calls, besides those of every surface.
-    """
-
-    source: str
-    constants: tuple[tuple[float, ...], ...]
-    attributes: tuple[str, ...]
-    images: tuple[int, ...]
-    transparent: bool
-    lit: bool = False
-    glows: bool = False
-    libraries: tuple[str, ...] = ()
+_ATTRIBUTE_COMPONENTS = {"normal": 3, "generated": 3, "tangent": 4, "uv": 2, "color": 4}
 
 
 @dataclass
@@ -59,24 +18,34 @@ class Writer:
     ----------
     available : frozenset of str
         Attributes that the mesh has.
+    used : frozenset of (int, str)
+        Node and output of all links of the graph.
     luminance : tuple of 3 float
         Weights with which a colour becomes a value.
+    lines, closure_lines : list of str
+        Statements that compute values, and those that put closures together after them.
+    bsdfs : int
+        How many closures are lit: `lit_closure` has filled as many parameter structs.
     transmitting, dark : set of str
         Closures that may be transparent, and those that add no light of their own.
     glows : bool
+    reads_place : bool
+        The code reads the position in object space.
     """
 
     available: frozenset[str]
     used: frozenset[tuple[int, str]]
     luminance: tuple[float, float, float]
     lines: list[str] = field(default_factory=list)
+    closure_lines: list[str] = field(default_factory=list)
+    bsdfs: int = 0
     constants: list[tuple[float, ...]] = field(default_factory=list)
     attributes: list[str] = field(default_factory=list)
     images: list[int] = field(default_factory=list)
     transmitting: set[str] = field(default_factory=set)
     dark: set[str] = field(default_factory=set)
-    lit: bool = False
     glows: bool = False
+    reads_place: bool = False
     # (type, expression) of each output of each node so far
     outputs: list[dict[str, tuple[str, str]]] = field(default_factory=list)
 
@@ -113,11 +82,37 @@ class Writer:
             self.attributes.append(key)
         return f"v_{attribute_identifier(key)}"
 
-    def light(self):
-        """Note that the surface is lit: it reads the normal, where the mesh has one."""
-        self.lit = True
-        if "normal" in self.available and "normal" not in self.attributes:
-            self.attributes.append("normal")
+    def normal(self):
+        """Note that the code reads the normal; a mesh may lack it."""
+        if "normal" in self.available:
+            self.attribute("normal")
+
+    def place(self):
+        """Return the varying of the position in object space."""
+        self.reads_place = True
+        return "v_object_position"
+
+    def lit_closure(self, output, kind, members):
+        """Write a closure that reflects light and return it as the one output of a node.
+
+        Only its parameters are written here: all lit closures of a surface are evaluated by one
+        piece of code, so that a shader compiles in linear time in their number.
+
+        Parameters
+        ----------
+        output : str
+        kind : str
+            ``BSDF_DIFFUSE`` and so on, see lib/surface/bsdf_inputs_lib.glsl.
+        members : dict of str to str
+            Expressions by member of the parameter struct.
+        """
+        self.normal()
+        number = self.bsdfs
+        self.bsdfs += 1
+        self.lines.append(f"  bsdfs[{number}] = bsdf_of_kind({kind});")
+        for member, expression in members.items():
+            self.lines.append(f"  bsdfs[{number}].{member} = {expression};")
+        return {output: ("closure", f"lit[{number}]")}
 
     def image(self, uid):
         """Return the sampler of an image."""
@@ -135,9 +130,40 @@ class Writer:
         self.lines.append(f"  {kind} {name} = {expression};")
         return name
 
+    def let_closure(self, expression):
+        """Write a closure as a local variable and return its name."""
+        name = f"c{len(self.closure_lines)}"
+        self.closure_lines.append(f"  Closure {name} = {expression};")
+        return name
+
     def closure(self, output, expression):
         """Write a closure and return it as the one output of a node."""
-        return {output: ("closure", self.let("Closure", expression))}
+        return {output: ("closure", self.let_closure(expression))}
+
+    def body(self, surface):
+        """Return the statements of ``surface_closure()``.
+
+        Parameters
+        ----------
+        surface : str
+            The closure that is the surface.
+        """
+        lines = self.lines
+        if self.bsdfs:
+            # A count that the compiler does not know keeps it from repeating the body.
+            count = "1"
+            if self.bsdfs > 1:
+                self.constants.append((float(self.bsdfs), 0.0, 0.0, 0.0))
+                count = f"int(material_buf.constants[{len(self.constants) - 1}].x)"
+            lines = [
+                f"  Bsdf bsdfs[{self.bsdfs}];",
+                f"  Closure lit[{self.bsdfs}];",
+                *lines,
+                f"  for (int i = 0; i < {count}; i++) {{",
+                "    lit[i] = closure_lit(bsdfs[i]);",
+                "  }",
+            ]
+        return "\n".join([*lines, *self.closure_lines, f"  return {surface};"])
 
 
 def convert(kind, expression, wanted, luminance):
@@ -154,38 +180,3 @@ def convert(kind, expression, wanted, luminance):
     if {kind, wanted} <= {"color", "vec3"}:
         return expression
     raise TypeError(f"no conversion from {kind} to {wanted}")
-
-
-def generate(graph, available):
-    """Generate the code of a surface.
-
-    Parameters
-    ----------
-    graph : SurfaceGraph
-    available : iterable of str
-        Attributes that the mesh has.
-
-    Returns
-    -------
-    SurfaceCode
-    """
-    links = [value for node in graph.nodes for _, value in node.inputs if isinstance(value, Link)]
-    used = frozenset((link.node, link.output) for link in links)
-    writer = Writer(frozenset(available), used, graph.luminance)
-    for node in graph.nodes:
-        writer.outputs.append(_GENERATORS[node.kind](node, writer))
-    computes = any(node.kind in surface_values.GENERATORS for node in graph.nodes)
-    surface = "closure_none()"
-    if graph.surface is not None:
-        surface = writer.value(graph.surface, "closure")
-    body = "\n".join([*writer.lines, f"  return {surface};"])
-    return SurfaceCode(
-        f"Closure surface_closure()\n{{\n{body}\n}}\n",
-        tuple(writer.constants) or ((0.0,) * 4,),
-        tuple(writer.attributes),
-        tuple(writer.images),
-        transparent=surface in writer.transmitting,
-        lit=writer.lit,
-        glows=writer.glows and surface in writer.transmitting,
-        libraries=surface_values.LIBRARIES if computes else (),
-    )

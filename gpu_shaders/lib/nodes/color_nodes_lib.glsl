@@ -2,9 +2,9 @@
 // hue-saturation-value and hue-saturation-lightness.
 // Blend modes: W3C Compositing and Blending, and Blender's own formulas (manual, Mix Color node).
 // Hue, saturation: Smith, Color gamut transform pairs, SIGGRAPH 1978.
-#ifndef NODE_COLOR_LIB_GLSL
-#define NODE_COLOR_LIB_GLSL
-#include "lib/surface/node_math_lib.glsl"
+#ifndef COLOR_NODES_LIB_GLSL
+#define COLOR_NODES_LIB_GLSL
+#include "lib/nodes/math_nodes_lib.glsl"
 
 // Hue of a colour in turns, from its largest and smallest channel.
 float color_hue(vec3 c, float largest, float range)

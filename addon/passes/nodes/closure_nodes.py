@@ -1,0 +1,112 @@
+"""Generators of GLSL for closures."""
+
+from .registry import generator_registry
+
+GENERATORS, generates = generator_registry()
+
+
+@generates("none")
+def _none(node, writer):
+    name = writer.closure("BSDF", "closure_none()")
+    writer.dark.add(name["BSDF"][1])
+    return name
+
+
+@generates("emission")
+def _emission(node, writer):
+    color = writer.value(node.input("Color"), "vec3")
+    strength = writer.value(node.input("Strength"), "float")
+    return writer.closure("Emission", f"closure_emission({color}, {strength})")
+
+
+@generates("diffuse")
+def _diffuse(node, writer):
+    members = {"color": writer.value(node.input("Color"), "vec3")}
+    return writer.lit_closure("BSDF", "BSDF_DIFFUSE", members | _normal(node, writer))
+
+
+@generates("glossy")
+def _glossy(node, writer):
+    members = {
+        "color": writer.value(node.input("Color"), "vec3"),
+        "roughness": writer.value(node.input("Roughness"), "float"),
+        "repeats": "true" if node.setting("multiple_scattering") else "false",
+    }
+    return writer.lit_closure("BSDF", "BSDF_GLOSSY", members | _normal(node, writer))
+
+
+def _normal(node, writer):
+    """Return the normal of a closure as a member, where a node gives it."""
+    normal = dict(node.inputs).get("Normal")
+    return {} if normal is None else {"normal": writer.value(normal, "vec3")}
+
+
+_PRINCIPLED = {
+    "color": ("Base Color", "vec3"),
+    "metallic": ("Metallic", "float"),
+    "roughness": ("Roughness", "float"),
+    "ior": ("IOR", "float"),
+    "specular_level": ("Specular IOR Level", "float"),
+    "specular_tint": ("Specular Tint", "vec3"),
+    "emission_color": ("Emission Color", "vec3"),
+    "emission_strength": ("Emission Strength", "float"),
+}
+
+
+@generates("principled")
+def _principled(node, writer):
+    members = {
+        member: writer.value(node.input(name), kind) for member, (name, kind) in _PRINCIPLED.items()
+    }
+    surface = writer.lit_closure("BSDF", "BSDF_PRINCIPLED", members | _normal(node, writer))
+    alpha = dict(node.inputs).get("Alpha")
+    if alpha is None:
+        return surface
+    cover = f"closure_cover({surface['BSDF'][1]}, {writer.value(alpha, 'float')})"
+    covered = writer.closure("BSDF", cover)
+    writer.transmitting.add(covered["BSDF"][1])
+    return covered
+
+
+@generates("transparent")
+def _transparent(node, writer):
+    color = writer.value(node.input("Color"), "vec3")
+    result = writer.closure("BSDF", f"closure_transparent({color})")
+    writer.transmitting.add(result["BSDF"][1])
+    writer.dark.add(result["BSDF"][1])
+    return result
+
+
+@generates("holdout")
+def _holdout(node, writer):
+    # A holdout has no light but is not `dark`: its hole must not depend on the random opacity.
+    return writer.closure("Holdout", "closure_holdout()")
+
+
+@generates("mix_shader")
+def _mix_shader(node, writer):
+    factor = writer.value(node.input("Fac"), "float")
+    first = writer.value(node.input("Shader"), "closure")
+    second = writer.value(node.input("Shader_001"), "closure")
+    result = writer.closure("Shader", f"closure_mix({first}, {second}, {factor})")
+    name = result["Shader"][1]
+    if {first, second} & writer.transmitting:
+        writer.transmitting.add(name)
+    if {first, second} <= writer.dark:
+        writer.dark.add(name)
+    return result
+
+
+@generates("add_shader")
+def _add_shader(node, writer):
+    first = writer.value(node.input("Shader"), "closure")
+    second = writer.value(node.input("Shader_001"), "closure")
+    result = writer.closure("Shader", f"closure_add({first}, {second})")
+    name = result["Shader"][1]
+    if {first, second} & writer.transmitting:
+        writer.transmitting.add(name)
+        # Light that does not fade as the surface gets more transparent.
+        writer.glows = writer.glows or not {first, second} <= writer.dark
+    if {first, second} <= writer.dark:
+        writer.dark.add(name)
+    return result
