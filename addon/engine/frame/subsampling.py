@@ -16,7 +16,8 @@ from ...sampling.spectral_samples import GROUP
 # means to help.
 _MOST_LEVELS = 6
 # Largest jitter that subsamples follow, in texels: below half of one, so that a surface in focus is
-# not moved, whatever the width of the pixel filter.
+# not moved. What is more are whole texels, by which the sample is another picture of the same kind:
+# its rays fall where the filter has its places, whatever its width.
 _MOST_JITTER = 0.499
 # Lens samples whose movements through a real lens bound those of all, and what is added to be sure.
 _TYPICAL, _SURE = 64, 1.25
@@ -108,7 +109,8 @@ class SubsampleBlur:
         plan = self._plan
         texels = plan.subpixels * np.array([plan.width, plan.height])
         # The jitter moves the picture, in clip units: the place in the pixel is opposite to it.
-        return np.clip(-0.5 * plan.jitter[index] * texels, -_MOST_JITTER, _MOST_JITTER)
+        place = -0.5 * plan.jitter[index] * texels
+        return np.clip(place - np.rint(place), -_MOST_JITTER, _MOST_JITTER)
 
     def limit(self, earlier):
         """Use no more levels than an earlier round, whose render targets are used.
