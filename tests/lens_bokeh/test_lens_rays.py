@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from addon.errors import FocusError, PrescriptionError
+from addon.lens_bokeh.samples.field_grid import field_grid
 from addon.lens_bokeh.samples.lens_rays import lens_rays, undistorted
-from addon.lens_bokeh.samples.sample_tables import field_grid, sample_tables
+from addon.lens_bokeh.samples.sample_tables import sample_tables
+from addon.lens_bokeh.samples.stop_shapes import paraxial_pupil, stop_shapes
 from addon.lens_io.lens_shelf import LensShelf
 from addon.optics.rays.aiming import aim
 from addon.optics.rays.beam import Beam
-from addon.optics.rays.trace import trace
+from addon.optics.rays.trace import Rays, trace
 from benchmarks.referees.osl_lens import osl_lens, rays_from_sensor
 
 LINE = 587.5618
@@ -75,6 +77,40 @@ def test_points_land_where_traced_rays_do(name, f_number, flat):
     assert compared > 6
 
 
+@pytest.mark.parametrize(("f_number", "near"), [(1.5, 1.0), (2.4, 0.2)])
+def test_a_stop_that_turns_rays_back_has_its_places_on_a_face_as_hollow(f_number, near):
+    lens, rays, tables, half = _tables("sonnar-50mm-f1.5", f_number)
+    plain, pupil, focus = lens.configuration, lens.pupil, 1e-3 / FOCUS
+    _, radius = paraxial_pupil(plain, pupil, focus, LINE)
+    (_, flat), (hollow, _), *_ = stop_shapes(plain, pupil, radius, focus, LINE)
+    assert flat == 1.0
+    face = hollow.surfaces[hollow.stop - 1]
+    rng = np.random.default_rng(2)
+    errors = []
+    for _ in range(60):
+        seen = rng.uniform(-1.0, 1.0, 2) * half
+        vergence = rng.uniform(0.02, rays.largest_vergence)
+        point = np.array([*(seen / vergence), -1.0 / vergence])
+        within = rng.uniform(-0.75, 0.75, 2) * radius
+        start = np.array([*within, pupil])
+        towards = start - [*point[:2] * 1000.0, pupil + point[2] * 1000.0]
+        bundle = Rays(start[None], (towards / np.linalg.norm(towards))[None])
+        traced = trace(hollow, bundle, LINE, record=True)
+        if not traced.passed[0]:
+            continue
+        # Lens positions are as the picture has them, the lens' x and y turned round.
+        q = traced.hits[hollow.stop - 1, 0, :2] / face.semi_diameter
+        place = traced.at_plane(plain.sensor)[0] / lens.scale
+        away = np.hypot(*place)
+        place *= undistorted(rays.distorted, np.array([away]))[0] / away
+        position = q * tables.aperture_radius
+        moved = tables.displaced(point[None], tables.moves(position[None])[0], position)[0]
+        errors.append(np.linalg.norm(moved[:2] * vergence - place) * WIDTH / (2.0 * half[0]))
+    assert len(errors) > 30
+    # Wide open its blur is steep where rays are about to be reflected totally.
+    assert np.median(errors) < near and max(errors) < 10.0 * near
+
+
 def test_straight_lines_in_focus_stay_straight_without_distortion():
     _, rays, tables, half = _tables("petzval-100mm-f2.2", 22.0)
     points = np.linspace(-1.0, 1.0, 9)[:, None] * [half[0], 0.0] + [0.0, 0.9 * half[1]]
@@ -86,7 +122,12 @@ def test_straight_lines_in_focus_stay_straight_without_distortion():
 
 @pytest.mark.parametrize(
     ("name", "f_number"),
-    [("double-gauss-50mm-f2", 2.0), ("petzval-100mm-f2.2", 2.2), ("retrofocus-35mm-f2.5", 2.5)],
+    [
+        ("double-gauss-50mm-f2", 2.0),
+        ("petzval-100mm-f2.2", 2.2),
+        ("retrofocus-35mm-f2.5", 2.5),
+        ("sonnar-50mm-f1.5", 1.5),
+    ],
 )
 def test_an_even_world_is_as_bright_as_traced_from_the_sensor(name, f_number):
     lens, rays, tables, half = _tables(name, f_number)
@@ -114,14 +155,14 @@ def test_an_even_world_is_as_bright_as_traced_from_the_sensor(name, f_number):
         bundle = rays_from_sensor(start, aimed, lens.configuration.sensor, lens.aim)
         passed = trace(lens.configuration, bundle, LINE, backwards=True).passed
         theirs.append((bundle.directions[:, 2] ** 4)[passed].sum())
-    assert ours / ours[0] == pytest.approx(np.array(theirs) / theirs[0], abs=0.006)
+    # The outermost rays of the Sonnar are about to be reflected totally, and land far away.
+    near = 0.02 if "sonnar" in name else 0.006
+    assert ours / ours[0] == pytest.approx(np.array(theirs) / theirs[0], abs=near)
 
 
 def test_a_lens_with_cylinders_and_a_focus_inside_the_lens_are_refused():
     with pytest.raises(PrescriptionError, match="cylinder"):
         lens_rays(_prescription("anamorphic-60mm-f2"), None, FOCUS, 2.0, 0.3)
-    with pytest.raises(PrescriptionError, match="stop it down"):
-        lens_rays(_prescription("sonnar-50mm-f1.5"), None, FOCUS, 1.5, 0.4)
     with pytest.raises((FocusError, PrescriptionError)):
         lens_rays(_prescription("double-gauss-50mm-f2"), None, 0.01, 2.0, 0.3)
 

@@ -12,8 +12,9 @@ from functools import lru_cache
 import numpy as np
 
 from ...errors import AplanatError, FocusError
+from ...lens_bokeh.samples.field_grid import field_grid
 from ...lens_bokeh.samples.lens_rays import lens_rays
-from ...lens_bokeh.samples.sample_tables import SampleTables, field_grid, sample_tables
+from ...lens_bokeh.samples.sample_tables import SampleTables, sample_tables
 from ...optics.distortion import divisor
 from ...sampling.sequence import lens_samples
 from .field_table import field_of_raster, picture_radius

@@ -31,6 +31,7 @@ from ...optics.paraxial import first_order
 from ..tables.spline import spline_matrix
 from .ray_fan import RayFan, undistorted
 from .stop_rays import StopAim
+from .stop_shapes import paraxial_pupil, stop_shapes
 
 _MM = 1000.0
 _FIELDS = 17
@@ -43,11 +44,7 @@ _ROOM = 0.25
 # Fields beyond the lens' own, in which rays are looked for; fewest of them that light comes from.
 _BEYOND, _FEWEST = 1.15, 5
 _WIDEST_DEG = 80.0
-_PARAXIAL = 1e-4
 _FOCUS_STEPS = 8
-# Some fast lenses turn rays back before the rim of their stop, which then are no function of the
-# place in it: they are traced a little closed, and their rays spread over the whole iris.
-_CLOSED = (1.0, 1.05, 1.1, 1.15, 1.2, 1.3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,11 +184,12 @@ def lens_rays(
     nearest = min(nearest, 1.0 / room)
     turn = (np.arange(VERGENCES) + 0.5) / VERGENCES * np.pi
     vergences = nearest * 0.5 * (1.0 - np.cos(turn))
-    for closed in _CLOSED:
-        lens = configuration.stopped_down(max(f_number, configuration.f_number) * closed)
-        scale, aim = _paraxial(lens, order.enp_z, focus, wavelength_nm)
-        fan = RayFan(aim, scale, focus, vergences)
-        fields, found = _followed(fan, configuration.half_field_deg, largest_tangent)
+    lens = configuration.stopped_down(max(f_number, configuration.f_number))
+    scale, radius = paraxial_pupil(lens, order.enp_z, focus, wavelength_nm)
+    for stopped, places in stop_shapes(lens, order.enp_z, radius, focus, wavelength_nm):
+        aim = StopAim(stopped, order.enp_z, radius * places, wavelength_nm)
+        fan = RayFan(aim, scale, abs(radius), focus, vergences)
+        fields, found = _followed(fan, lens.half_field_deg, largest_tangent)
         if not fan.folded:
             break
     if fan.folded:
@@ -245,15 +243,3 @@ def _focused(prescription, label, focus_distance):
         except PrescriptionError as error:
             raise FocusError(f"{error}; focus farther away") from error
     return lens, first_order(lens)
-
-
-def _paraxial(lens, pupil, focus, wavelength):
-    """Return the scale of the picture, mm a tangent, and the aim with the signed pupil radius."""
-    aim = StopAim(lens, pupil, 1.0, wavelength)
-    focus = np.array([focus])
-    stops, _ = aim.through(0.0, focus, np.array([[0.0, _PARAXIAL]]))
-    _, landing = aim.through(_PARAXIAL, focus, np.zeros((1, 2)))
-    if not (stops[0, 1] != 0.0 and landing[0, 1] != 0.0):
-        raise PrescriptionError("rays near the axis do not get through the lens")
-    radius = _PARAXIAL / stops[0, 1]
-    return landing[0, 1] / _PARAXIAL, StopAim(lens, pupil, radius, wavelength)

@@ -13,6 +13,8 @@ _CHIEFS = 5
 # Weight in the fit of rays that a rim stops: how fast it falls with how far outside they are, the
 # least, and that of what the last field had.
 _STEEP, _BLOCKED, _KEPT = 30.0, 1e-5, 1e-7
+# The most weight of what is made up where rays are lost, and how fast a rim ends there.
+_LOST, _LOST_RIM = 1e-3, 0.05
 # Light of rays that counts: no ray inside the rims has more.
 _MOST_LIGHT = 3.0
 # Rims that can cut: those that some ray of the fit comes so near to.
@@ -32,15 +34,17 @@ class RayFan:
     aim : StopAim
     scale : float
         Of the picture, mm a tangent.
+    radius_mm : float
+        Of the paraxial pupil.
     focus : float
         Vergence of the focus, 1/mm.
     vergences : ndarray of shape (K,)
         1/mm.
     """
 
-    def __init__(self, aim, scale, focus, vergences):
+    def __init__(self, aim, scale, radius_mm, focus, vergences):
         self.aim, self.scale, self.focus = aim, scale, focus
-        self.radius_mm = abs(aim.pupil_radius)
+        self.radius_mm = radius_mm
         # Whether the stop turns rays of axial points back before its rim.
         self.folded = False
         self.orders = disc_orders(_DEGREE)
@@ -80,7 +84,8 @@ class RayFan:
 
     def _follow(self, fields):
         count = len(self.local)
-        seen = np.tile(_turned_back(self.local), (len(self.slabs), 1)) * self.radius_mm
+        radius = abs(self.aim.pupil_radius)
+        seen = np.tile(_turned_back(self.local), (len(self.slabs), 1)) * radius
         # The stop may be seen upside down.
         targets = seen / self.aim.pupil_radius
         vergences = np.repeat(self.slabs, count)
@@ -97,7 +102,7 @@ class RayFan:
             before, places = places, np.where(rays.found[:, None], rays.places, guess)
             at = slice(-count, None)
             light = self.aim.throughput(field, vergences[at], rays.places[at])
-            followed.append((rays, light * (self.scale / self.radius_mm) ** 2))
+            followed.append((rays, light * (self.scale / radius) ** 2))
         return followed
 
     def chiefs(self, fields):
@@ -136,14 +141,22 @@ class RayFan:
                 away = np.linalg.norm(seen, axis=-1)
                 shown = undistorted(distorted, away.ravel()).reshape(away.shape)
                 seen = seen * (shown / np.maximum(away, 1e-30))[..., None]
-            clear = rays.rims.reshape(-1, slabs, count)
+            clear = np.stack(
+                [
+                    self._clearances(*each)
+                    for each in zip(
+                        known, np.moveaxis(rays.rims.reshape(-1, slabs, count), 1, 0), strict=True
+                    )
+                ],
+                1,
+            )
             others = np.delete(clear, self.aim.stop, axis=0)
             weight = self.weight * np.exp(_STEEP * np.minimum(others.min(axis=0), 0.0))
-            weight = np.where(known, np.maximum(weight, _BLOCKED), 0.0)
+            weight = np.maximum(np.where(known, weight, np.minimum(weight, _LOST)), _BLOCKED)
             here, chief = [], []
             for k in range(slabs - 1):
                 defocus = self.local * (radius * (self.focus - self.slabs[k]))
-                own = (seen[k] - defocus) / radius
+                own = self._spread(known[k], (seen[k] - defocus) / radius)
                 parts = [
                     self._fit((k, axis), basis, own[:, axis], weight[k], last)
                     for axis, basis in enumerate((self.cosines, self.sines))
@@ -152,8 +165,10 @@ class RayFan:
                 chief.append(self.cosines[-1] @ parts[0] * radius)
             aberrations.append(here)
             chiefs.append(chief)
-            sure = np.where(light < _MOST_LIGHT, weight[-1], 0.0)
-            lights.append(self._fit("light", self.cosines, light, sure, last))
+            sure = known[-1] & (light < _MOST_LIGHT)
+            light = self._spread(sure, light)
+            held = np.where(sure, np.maximum(weight[-1], _LOST), _LOST)
+            lights.append(self._fit("light", self.cosines, light, held, last))
             rims.append(
                 [
                     self._fit(("rim", s), self.cosines, each[-1], weight[-1], last)
@@ -166,6 +181,46 @@ class RayFan:
             np.array(lights),
             np.array(rims)[:, self._cutting(followed)],
         )
+
+    def _spread(self, known, values):
+        """Give rays that do not count what the outermost one before them has, angle by angle."""
+        if known.all():
+            return values
+        index = self._last_known(known)[0]
+        return values[index]
+
+    def _clearances(self, known, rims):
+        """Let clearances of rims go on as they went where rays are lost, and one of them end."""
+        if known.all():
+            return rims
+        index, before, beyond = self._last_known(known)
+        farther = beyond > 0.0
+        rims = rims[:, index] + np.minimum(rims[:, index] - rims[:, before], 0.0) * beyond
+        least = rims.argmin(axis=0), np.arange(rims.shape[1])
+        rims[least] = np.where(farther, np.minimum(rims[least], -_LOST_RIM * beyond), rims[least])
+        return rims
+
+    def _last_known(self, known):
+        """For each ray that counts itself, else the outermost before it on its angle that does.
+
+        Also the ray before that, and how many rays farther out than it the ray is.
+        """
+        order = np.arange(len(known) - 1).reshape(_ANGLES, _RADII)
+        middle = np.full((_ANGLES, 1), len(known) - 1)
+        order = np.concatenate([middle, order], axis=1)
+        row = np.arange(_RADII + 1)
+        # Up to the first that does not count.
+        reach = np.logical_and.accumulate(known[order], axis=1).sum(axis=1, keepdims=True) - 1
+        reach = np.maximum(reach, 0)
+        whole = np.where(known[order], row, reach)
+        result = []
+        for columns in (whole, np.maximum(whole - 1, 0)):
+            flat = np.empty(len(known), int)
+            flat[order] = np.take_along_axis(order, columns, axis=1)
+            result.append(flat)
+        beyond = np.zeros(len(known))
+        beyond[order] = np.where(known[order], 0, row - reach)
+        return *result, beyond
 
     def _cutting(self, followed):
         count = len(self.local)

@@ -20,73 +20,16 @@ from functools import cached_property
 import numpy as np
 
 from .disc_terms import disc_terms
+from .field_grid import FieldGrid
+from .landing import spread_places, where_they_land
 
-# Nodes along the picture's longer side.
-_COLUMNS = 49
 _GRADIENT_PLACES, _NUDGE = 96, 1e-3
-_FIT_PLACES = 300
-_GOLDEN_ANGLE = 2.399963229728653
+# Nodes that are looked at around the picture, for the rays that land in it.
+_PADDING = 4
 # Width of a rim's edge over the distance of samples: it takes noise away, but more would darken.
 _SOFT = 0.5
 # Clearance of rims that never cut, at the places that the slope is found for.
 _CLEAR = 0.1
-
-
-@dataclass(frozen=True, eq=False)
-class FieldGrid:
-    """Nodes over a rectangle of the field.
-
-    Parameters
-    ----------
-    low, high : ndarray of shape (2,)
-        Corners, as tangents.
-    columns, rows : int
-    """
-
-    low: np.ndarray
-    high: np.ndarray
-    columns: int
-    rows: int
-
-    @property
-    def nodes(self):
-        """Places, shape (rows * columns, 2)."""
-        x = np.linspace(self.low[0], self.high[0], self.columns)
-        y = np.linspace(self.low[1], self.high[1], self.rows)
-        return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-
-    def taps(self, places):
-        """Return indices and weights of linear interpolation, shape (P, 4) each."""
-        size = np.array([self.columns, self.rows])
-        at = (places - self.low) / (self.high - self.low) * (size - 1)
-        at = np.clip(at, 0.0, size - 1.0)
-        cell = np.minimum(at.astype(int), size - 2)
-        x, y = np.moveaxis(at - cell, -1, 0)
-        first = cell[..., 1] * self.columns + cell[..., 0]
-        index = np.stack([first, first + 1, first + self.columns, first + self.columns + 1], -1)
-        weights = np.stack([(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y], -1)
-        return index, weights
-
-
-def field_grid(low, high, margin=0.0):
-    """Return a grid over a rectangle, wider by a share of its sides.
-
-    Parameters
-    ----------
-    low, high : sequence of 2 float
-    margin : float
-
-    Returns
-    -------
-    FieldGrid
-    """
-    low, high = np.asarray(low, float), np.asarray(high, float)
-    wider = margin * (high - low)
-    low, high = low - wider, high + wider
-    width, height = high - low
-    short = max(int(np.ceil((_COLUMNS - 1) * min(width, height) / max(width, height))) + 1, 5)
-    size = (_COLUMNS, short) if width >= height else (short, _COLUMNS)
-    return FieldGrid(low, high, *size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,17 +212,21 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=n
     largest = float(rays.largest_vergence)
     moves, chief = _moves(rays, wide_grid.nodes, aperture_radius, ratio)
     odd = rays.orders[:, 1] % 2 == 1
-    # The nodes of the picture, and the axis.
-    away, turn = _polar(np.append(grid.nodes, [[0.0, 0.0]], axis=0))
-    away = np.minimum(away, outermost)
-    beyond = away[:-1] > rays.last_seen
-    away = rays.field_shown(away)
+    source = grid.padded(_PADDING)
+    away, turn = _polar(source.nodes)
     every = np.concatenate([rays.light[:, None], rays.rims], axis=1)
-    every = rays.of_fields(every, odd, away)
+    every = rays.of_fields(every, odd, rays.field_shown(away))
     every = np.stack([_scalar(each, rays.orders, turn) for each in np.moveaxis(every, 1, 0)])
-    every[..., :-1] = _where_they_land(every[..., :-1], rays, grid, aperture_radius)
+    # The nodes of the picture, and the axis.
+    wanted = np.append(grid.nodes, [[0.0, 0.0]], axis=0)
+    away = np.hypot(*wanted.T)
+    wanted *= np.minimum(outermost / np.maximum(away, 1e-30), 1.0)[:, None]
+    focused, _ = _moves(rays, source.nodes, aperture_radius, 1.0)
+    powers = (rays.focus_vergence / largest) ** np.arange(4)
+    focused = np.einsum("tnkc,k->tnc", focused, powers)
+    every = where_they_land(every, focused, rays.orders, source, wanted)
     # Rays are followed to the last light.
-    every[0, :, :-1][:, beyond] = 0.0
+    every[0, :, :-1][:, np.minimum(away[:-1], outermost) > rays.last_seen] = 0.0
     light, rims = every[0], every[1:]
     slopes = [_rim_slope(rim, rays.orders) for rim in rims]
     # Rims that cut nothing of this picture.
@@ -332,42 +279,6 @@ def _moves(rays, nodes, aperture_radius, ratio):
     return np.moveaxis(moves, -1, 0), (chief @ powers.T)[..., None] * axes
 
 
-def _where_they_land(every, rays, grid, aperture_radius):
-    """Move functions of the field to the places of the picture that rays in focus land at.
-
-    Parameters
-    ----------
-    every : ndarray of shape (K, 2 T, nodes)
-        By the field of the points in focus.
-
-    Returns
-    -------
-    ndarray of shape (K, 2 T, nodes)
-        By the place where a ray lands: to first order in its distance from the chief ray's.
-    """
-    moves, _ = _moves(rays, grid.nodes, aperture_radius, 1.0)
-    powers = (rays.focus_vergence / rays.largest_vergence) ** np.arange(4)
-    moves = np.einsum("tnkc,k->tnc", moves, powers)
-    places = _spread_places(_FIT_PLACES)
-    terms = disc_terms(rays.orders, places).reshape(len(places), -1)
-    middle = disc_terms(rays.orders, np.zeros((1, 2))).reshape(1, -1)
-    shift = np.tensordot(terms - middle, moves, 1)
-    values = terms @ every
-    steps = (grid.high - grid.low) / (grid.columns - 1, grid.rows - 1)
-    shaped = values.reshape(*values.shape[:2], grid.rows, grid.columns)
-    by_y, by_x = np.gradient(shaped, steps[1], steps[0], axis=(2, 3))
-    gradient = np.stack([by_x, by_y], axis=-1).reshape(*values.shape, 2)
-    moved = values - (gradient * shift).sum(axis=-1)
-    return np.linalg.pinv(terms) @ moved
-
-
-def _spread_places(count):
-    """Places of the unit disc, evenly spread."""
-    turn = _GOLDEN_ANGLE * np.arange(count)
-    radius = np.sqrt((np.arange(count) + 0.5) / count)
-    return radius[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-
-
 def _polar(places):
     return np.hypot(*places.T), np.arctan2(places[:, 1], places[:, 0])
 
@@ -381,7 +292,7 @@ def _scalar(coefficients, orders, turn):
 def _rim_slope(rim, orders):
     """Return how fast a clearance changes over the iris where it is 0, for each node; its least."""
     count = _GRADIENT_PLACES
-    places = _spread_places(count)
+    places = spread_places(count)
     at, right, up = (
         disc_terms(orders, places + step).reshape(count, -1) @ rim
         for step in ((0.0, 0.0), (_NUDGE, 0.0), (0.0, _NUDGE))
