@@ -204,6 +204,7 @@ class SceneExtractor:
             world=np.take(found.world, np.array(order, np.intp), axis=0),
             cryptomatte_id=np.array([cryptomatte_id(name) for name in names], np.float32),
             names=tuple(names) if with_names else (),
+            looks=np.take(found.object_values, np.array(order, np.intp), axis=0),
         )
         if self._content is not None and same_instances(self._content.instances, table):
             return self._content.instances

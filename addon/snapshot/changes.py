@@ -106,6 +106,7 @@ def same_instances(old, new):
         and _same_array(old.cryptomatte_id.view(np.int32), new.cryptomatte_id.view(np.int32))
         and _same_array(old.previous_world, new.previous_world)
         and _same_array(old.next_world, new.next_world)
+        and _same_array(old.looks, new.looks)
         and old.names == new.names
     )
 

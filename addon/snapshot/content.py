@@ -40,8 +40,8 @@ class MeshSnapshot:
         Material slot, first triangle, number of triangles.
     attributes : dict of str to ndarray
         float32 of shape (V, k): ``"normal"`` (k = 3), ``"generated"`` (3, the generated texture
-        coordinates), ``"uv:NAME"`` (2), ``"color:NAME"`` (4, scene linear). An empty NAME is the
-        active one.
+        coordinates), ``"uv:NAME"`` (2), ``"tangent:NAME"`` (4: unit tangent of a UV map, and the
+        sign of the other one), ``"color:NAME"`` (4, scene linear). An empty NAME is the active one.
     motion : tuple of two ndarray of shape (V, 3) or None
         Positions in the previous and the next frame, where the mesh deforms.
     rest : ndarray of shape (V, 3) or None
@@ -163,6 +163,9 @@ class InstanceTable:
         float32, hash of the object's name.
     names : tuple of str
         Of the objects, one a row, for Cryptomatte's manifest; empty when that was not asked for.
+    looks : ndarray of shape (I, 6) or None
+        float32. What nodes read of an object: its colour and opacity, a random number from 0 to 1,
+        its pass index. None counts as zeros.
     """
 
     world: np.ndarray
@@ -170,6 +173,7 @@ class InstanceTable:
     previous_world: np.ndarray | None = None
     next_world: np.ndarray | None = None
     names: tuple[str, ...] = ()
+    looks: np.ndarray | None = None
 
 
 @dataclass(frozen=True)

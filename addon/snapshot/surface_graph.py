@@ -79,6 +79,10 @@ class SurfaceGraph:
 
 # Closures whose light depends on the normal.
 LIT_KINDS = frozenset({"diffuse", "glossy", "principled"})
+_NORMAL_KINDS = LIT_KINDS | {
+    *("geometry", "texture_coordinate", "fresnel", "layer_weight", "tangent", "bump", "normal_map"),
+}
+_GENERATED_KINDS = frozenset({"generated", "geometry", "tangent"})
 
 
 def attributes_read(graph):
@@ -91,17 +95,22 @@ def attributes_read(graph):
     Returns
     -------
     frozenset of str
-        ``"normal"``, ``"generated"``, ``"uv:NAME"`` and ``"color:NAME"``; an empty NAME is the
-        active one. A node that reads an attribute of any kind by its name gives both keys; meshes
+        ``"normal"``, ``"generated"``, ``"uv:NAME"``, ``"tangent:NAME"`` of a UV map, and
+        ``"color:NAME"``; an empty NAME is the active one. A node that reads an attribute of any
+        kind by its name gives both keys; meshes
         need only have those that exist.
     """
     keys = set()
     for node in graph.nodes:
         name = node.setting("name")
-        if node.kind in LIT_KINDS:
+        if node.kind in _NORMAL_KINDS:
             keys.add("normal")
-        elif node.kind == "generated":
+        if node.kind in _GENERATED_KINDS:
             keys.add("generated")
+        if (node.kind, node.setting("space")) == ("normal_map", "TANGENT") or (
+            node.kind == "tangent" and not node.setting("axis")
+        ):
+            keys.add(f"tangent:{name}")
         elif node.kind == "uv":
             keys.add(f"uv:{name}")
         elif node.kind == "color_attribute":

@@ -89,8 +89,11 @@ OTHERS = {
     "passes.nodes.input_nodes": ("makers of GLSL by kind of node", ("generates",)),
     "passes.nodes.value_nodes": ("makers of GLSL by kind of node", ("generates",)),
     "passes.nodes.vector_nodes": ("makers of GLSL by kind of node", ("generates",)),
-    "scene.nodes.material_nodes": ("readers by kind of node", ("reads",)),
+    "scene.nodes.closure_nodes": ("readers by kind of node", ("reads",)),
+    "scene.nodes.image_nodes": ("readers by kind of node", ("reads",)),
+    "scene.nodes.input_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.value_nodes": ("readers by kind of node", ("reads",)),
+    "scene.nodes.vector_nodes": ("readers by kind of node", ("reads",)),
     # Panels.
     "ui.jobs.background": (
         "work for panels, and what the user stopped of it",

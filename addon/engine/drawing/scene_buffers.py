@@ -18,6 +18,7 @@ from .occluders import ShapeCache
 
 # Must agree with lib/surface/instance_lib.glsl.
 INSTANCES_PER_ROW = 256
+INSTANCE_TEXELS = 6
 
 
 class SceneBuffers:
@@ -251,14 +252,17 @@ def instance_texels(instances, detail=None):
 
     Returns
     -------
-    ndarray of shape (rows, 1024, 4)
+    ndarray of shape (rows, 1536, 4)
         float32.
     """
     count = len(instances.world)
     rows = max(1, -(-count // INSTANCES_PER_ROW))
-    texels = np.zeros((rows * INSTANCES_PER_ROW, 4, 4), np.float32)
+    texels = np.zeros((rows * INSTANCES_PER_ROW, INSTANCE_TEXELS, 4), np.float32)
     texels[:count, :3] = instances.world[:, :3]
     texels[:count, 3, 0] = instances.cryptomatte_id
     if detail is not None:
         texels[:count, 3, 1:3] = detail
-    return texels.reshape(rows, INSTANCES_PER_ROW * 4, 4)
+    if instances.looks is not None:
+        texels[:count, 4] = instances.looks[:, :4]
+        texels[:count, 5, :2] = instances.looks[:, 4:]
+    return texels.reshape(rows, INSTANCES_PER_ROW * INSTANCE_TEXELS, 4)

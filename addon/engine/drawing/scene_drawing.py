@@ -208,6 +208,7 @@ class SceneDrawing:
                 instances,
                 world=instances.world[order],
                 cryptomatte_id=instances.cryptomatte_id[order],
+                looks=None if instances.looks is None else instances.looks[order],
             )
             self._table = texture_2d(instance_texels(ordered))
             self._place[order] = np.arange(count)

@@ -39,3 +39,104 @@ def _attribute(node, writer):
         "Fac": ("vec3", color),
         "Alpha": ("float", alpha),
     }
+
+
+_POINT = "lib/nodes/point_lib.glsl"
+_INPUT = "lib/nodes/input_nodes_lib.glsl"
+
+
+@generates("geometry", _INPUT)
+def _geometry(node, writer):
+    writer.normal()
+    outputs = {
+        "Position": ("vec3", "world_position"),
+        "Normal": ("vec3", "point_normal()"),
+        "True Normal": ("vec3", "point_true_normal()"),
+        "Incoming": ("vec3", "point_view()"),
+        "Backfacing": ("float", "point_backfacing()"),
+    }
+    if writer.uses(node, "Tangent"):
+        around = f"tangent_around({writer.attribute('generated')}, 2)"
+        outputs["Tangent"] = ("vec3", f"tangent_of({around})")
+    return _let_used(node, writer, outputs)
+
+
+@generates("texture_coordinate", _INPUT)
+def _texture_coordinate(node, writer):
+    writer.normal()
+    normal = "unit_or(normal_to_object(point_object(), point_normal()), vec3(0.0))"
+    outputs = {
+        "Normal": ("vec3", normal),
+        "Camera": ("vec3", "place_in_camera(world_position)"),
+        "Window": ("vec3", "point_window()"),
+        "Reflection": ("vec3", "-reflect(point_view(), point_normal())"),
+    }
+    if writer.uses(node, "Object"):
+        outputs["Object"] = ("vec3", writer.place())
+    return _let_used(node, writer, outputs)
+
+
+@generates("object_info", _POINT)
+def _object_info(node, writer):
+    texels = [
+        f"texelFetch(instances_tx, instance_texel(instance_row, {texel}), 0)" for texel in (4, 5)
+    ]
+    outputs = {
+        "Location": ("vec3", "point_object()[3].xyz"),
+        "Color": ("color", f"{texels[0]}.rgb"),
+        "Alpha": ("float", f"{texels[0]}.a"),
+        "Random": ("float", f"{texels[1]}.x"),
+        "Object Index": ("float", f"{texels[1]}.y"),
+    }
+    return _let_used(node, writer, outputs)
+
+
+@generates("camera_data", _POINT)
+def _camera_data(node, writer):
+    place = writer.let("vec3", "place_in_camera(world_position)")
+    outputs = {
+        "View Vector": ("vec3", f"unit_or({place}, vec3(0.0))"),
+        "View Z Depth": ("float", f"{place}.z"),
+        "View Distance": ("float", f"length({place})"),
+    }
+    return _let_used(node, writer, outputs)
+
+
+@generates("fresnel", _INPUT)
+def _fresnel(node, writer):
+    writer.normal()
+    ior, normal = writer.value(node.input("IOR"), "float"), writer.given_normal(node)
+    return {"Fac": ("float", writer.let("float", f"node_fresnel({ior}, {normal})"))}
+
+
+@generates("layer_weight", _INPUT)
+def _layer_weight(node, writer):
+    writer.normal()
+    blend, normal = writer.value(node.input("Blend"), "float"), writer.given_normal(node)
+    arguments = f"({blend}, {normal})"
+    outputs = {
+        "Fresnel": ("float", f"layer_fresnel{arguments}"),
+        "Facing": ("float", f"layer_facing{arguments}"),
+    }
+    return _let_used(node, writer, outputs)
+
+
+@generates("tangent", _INPUT)
+def _tangent(node, writer):
+    writer.normal()
+    name = node.setting("name", None)
+    if name is None:
+        axis = "XYZ".index(node.setting("axis"))
+        around = f"tangent_around({writer.attribute('generated')}, {axis})"
+    else:
+        around = f"{writer.attribute(f'tangent:{name}')}.xyz"
+    return {"Tangent": ("vec3", writer.let("vec3", f"tangent_of({around})"))}
+
+
+def _let_used(node, writer, outputs):
+    """Write a variable for each output that something reads."""
+    return {
+        name: (kind, writer.let("vec3" if kind == "color" else kind, expression))
+        for name, (kind, expression) in outputs.items()
+        if writer.uses(node, name)
+    }

@@ -92,6 +92,13 @@ class Writer:
         self.reads_place = True
         return "v_object_position"
 
+    def given_normal(self, node):
+        """Return the normal that feeds a node, or the surface's own."""
+        given = dict(node.inputs).get("Normal")
+        if given is None:
+            return "point_normal()"
+        return f"unit_or({self.value(given, 'vec3')}, vec3(0.0))"
+
     def lit_closure(self, output, kind, members):
         """Write a closure that reflects light and return it as the one output of a node.
 

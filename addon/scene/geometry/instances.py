@@ -100,6 +100,8 @@ class InstanceList:
         Of the object, one an instance.
     world : ndarray of shape (I, 4, 4)
         float32.
+    object_values : ndarray of shape (I, 6)
+        As `InstanceTable.looks`.
     places : list of tuple
         Identity of each instance across frames, see `place`; only if asked for.
     lights : list of Light
@@ -112,6 +114,7 @@ class InstanceList:
     looks: list = field(default_factory=list)
     names: list = field(default_factory=list)
     world: np.ndarray = None
+    object_values: np.ndarray = None
     places: list = field(default_factory=list)
     lights: list = field(default_factory=list)
     report: tuple = ()
@@ -138,25 +141,28 @@ def read_instances(depsgraph, space=None, with_places=False):
     """
     reader = _Reader(depsgraph, space)
     out = reader.out
-    matrices = []
+    matrices, values = [], []
     for instance in depsgraph.object_instances:
         found = reader.read(instance)
         if found is None:
             continue
-        look, name = found
+        look, name, (color, number, pass_index) = found
         out.looks.append(look)
         out.names.append(name)
+        number = instance.random_id if instance.is_instance else number
+        values.append((*color, _share(number), pass_index))
         # Blender fills the same matrix again for the next instance.
         matrices.append(instance.matrix_world.copy())
         if with_places:
             out.places.append(place(instance))
     out.world = np.array(matrices, np.float32).reshape(-1, 4, 4)
+    out.object_values = np.array(values, np.float32).reshape(-1, 6)
     finite = np.isfinite(out.world).all(axis=(1, 2))
     if not finite.all():
         for i in np.flatnonzero(~finite):
             reader.note(out.names[i], "its transform has numbers that are not finite; left out")
         chosen = np.flatnonzero(finite).tolist()
-        out.world = out.world[finite]
+        out.world, out.object_values = out.world[finite], out.object_values[finite]
         out.looks, out.names = ([column[i] for i in chosen] for column in (out.looks, out.names))
         if with_places:
             out.places = [out.places[i] for i in chosen]
@@ -181,6 +187,36 @@ def place(instance):
     return (number, instance.parent.original.session_uid, *instance.persistent_id)
 
 
+def _share(number):
+    return number / 0xFFFFFFFF
+
+
+def object_number(name):
+    """Return the number, of 32 bits, from which nodes draw the random number of an object.
+
+    As Cycles does: the characters of the name as a number to the base 37, hashed by Jenkins'
+    *lookup3* (public domain, 2006) together with 0.
+    """
+    key = 0
+    for character in name.encode():
+        # Signed characters.
+        key = (key * 37 + (character - 256 if character > 127 else character)) & 0xFFFFFFFF
+    mask = 0xFFFFFFFF
+    a = b = c = (0xDEADBEEF + (2 << 2) + 13) & mask
+    a = (a + key) & mask
+
+    def turned(x, k):
+        return ((x << k) | (x >> (32 - k))) & mask
+
+    c = ((c ^ b) - turned(b, 14)) & mask
+    a = ((a ^ c) - turned(c, 11)) & mask
+    b = ((b ^ a) - turned(a, 25)) & mask
+    c = ((c ^ b) - turned(b, 16)) & mask
+    a = ((a ^ c) - turned(c, 4)) & mask
+    b = ((b ^ a) - turned(a, 14)) & mask
+    return ((c ^ b) - turned(b, 24)) & mask
+
+
 class _Reader:
     def __init__(self, depsgraph, space):
         self.out = InstanceList()
@@ -196,7 +232,7 @@ class _Reader:
         self._counts = {}
 
     def read(self, instance):
-        """Return the `Look` and the object's name of an instance that is drawn, else None."""
+        """Return `Look`, name and values of the object of an instance that is drawn, else None."""
         obj = instance.object
         data = obj.data
         if data is None:
@@ -219,7 +255,7 @@ class _Reader:
         return drawn
 
     def _read_kind(self, obj, parent, number, show_self, show_particles):
-        """Return the `Look` and name of an instance, or None, and its warnings."""
+        """Return what `read` does, and the warnings of an instance."""
         holdout, indirect_only, parent_visible = self._flags_of_place(parent)
         visible = obj.visible_camera and parent_visible
         if not visible or (indirect_only and not holdout) or not self._is_in_view(obj):
@@ -230,7 +266,8 @@ class _Reader:
         drawn = None
         if show_self and obj.type == "MESH" and switches.use_solid:
             self._add_source(obj, parent, number)
-            drawn = Look(number, self._slots(obj), holdout), name
+            values = tuple(obj.color), object_number(name), obj.pass_index
+            drawn = Look(number, self._slots(obj), holdout), name, values
             if obj.is_shadow_catcher:
                 notes.append("a shadow catcher is drawn as any other surface")
             if _is_diced(obj):

@@ -5,22 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...snapshot.content import MeshSnapshot, next_uid
+from .mesh_attributes import (
+    find_attribute,
+    polygon_sizes,
+    read_attribute,
+    read_normals,
+    read_tangents,
+    without_infinite,
+)
 from .vertex_split import VertexSplit, split_all, split_vertices
-
-# By the attribute's type: member of its elements that holds the value, and number of components.
-_VALUE_MEMBERS = {
-    "FLOAT": ("value", 1),
-    "INT": ("value", 1),
-    "INT8": ("value", 1),
-    "BOOLEAN": ("value", 1),
-    "FLOAT2": ("vector", 2),
-    "FLOAT_VECTOR": ("vector", 3),
-    "FLOAT_COLOR": ("color", 4),
-    # "color" is scene linear; "color_srgb" would be as stored.
-    "BYTE_COLOR": ("color", 4),
-}
-_UV_TYPES = {"FLOAT2"}
-_COLOR_TYPES = set(_VALUE_MEMBERS) - _UV_TYPES
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,15 +75,19 @@ def read_mesh(mesh, keys, owner, base=None, carried=True):
         kind, _, name = key.partition(":")
         if kind == "normal":
             flat = mesh.normals_domain == "FACE"
-            values, domain = _read_normals(mesh)
+            values, domain = read_normals(mesh)
         elif kind == "generated":
             known = None if carried else base
             values, domain = _read_generated(mesh, known, positions, corner_vertices), "POINT"
+        elif kind == "tangent":
+            values, domain = read_tangents(mesh, name), "CORNER"
+            if values is None:
+                continue
         else:
-            attribute = _find_attribute(mesh, kind, name)
+            attribute = find_attribute(mesh, kind, name)
             if attribute is None:
                 continue
-            values, domain = _read_attribute(mesh, attribute, kind)
+            values, domain = read_attribute(mesh, attribute, kind)
         if not np.isfinite(values).all():
             notes.append(
                 f"object '{owner}': attribute '{key}' of mesh '{mesh.name}' has values that are"
@@ -99,7 +96,7 @@ def read_mesh(mesh, keys, owner, base=None, carried=True):
             if kind == "normal":
                 values[~np.isfinite(values)] = 0.0
             else:
-                values, domain = _without_infinite(mesh, values, domain, corner_vertices), "CORNER"
+                values, domain = without_infinite(mesh, values, domain, corner_vertices), "CORNER"
         (vertex_values if domain == "POINT" else corner_values)[key] = values
     if flat:
         split = split_all(corner_vertices)
@@ -256,82 +253,8 @@ def _read_corner_vertices(mesh):
     return corner_vertices
 
 
-def _read_normals(mesh):
-    if mesh.normals_domain == "POINT":
-        source, domain = mesh.vertex_normals, "POINT"
-    else:
-        source, domain = mesh.corner_normals, "CORNER"
-    normals = np.empty((len(source), 3), np.float32)
-    if len(normals):
-        source.foreach_get("vector", normals.reshape(-1))
-    return normals, domain
-
-
-def _find_attribute(mesh, kind, name):
-    if kind == "uv":
-        if not name:
-            layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
-            name = layer.name if layer else ""
-        types = _UV_TYPES
-    else:
-        if not name:
-            index = mesh.color_attributes.render_color_index
-            inside = 0 <= index < len(mesh.color_attributes)
-            name = mesh.color_attributes[index].name if inside else ""
-        types = _COLOR_TYPES
-    attribute = mesh.attributes.get(name) if name else None
-    if attribute is None or attribute.data_type not in types or attribute.domain == "EDGE":
-        return None
-    return attribute
-
-
-def _read_attribute(mesh, attribute, kind):
-    member, components = _VALUE_MEMBERS[attribute.data_type]
-    count = len(attribute.data)
-    # Only float32 and the stored type are copied in one piece; numpy converts the others.
-    stored = {"INT": np.int32, "INT8": np.int8, "BOOLEAN": bool}.get(attribute.data_type)
-    values = np.empty((count, components), stored or np.float32)
-    if count:
-        attribute.data.foreach_get(member, values.reshape(-1))
-    values = values.astype(np.float32, copy=False)
-    if kind == "color" and components != 4:
-        # As shader nodes see it: a number is grey, a vector is a colour.
-        opaque = np.ones((count, 4), np.float32)
-        opaque[:, :3] = values
-        values = opaque
-    domain = attribute.domain
-    if domain == "FACE":
-        values = np.repeat(values, _polygon_sizes(mesh), axis=0)
-        domain = "CORNER"
-    return values, domain
-
-
-def _without_infinite(mesh, values, domain, corner_vertices):
-    """Return corner values with 0 all over a face where a corner's value is not finite.
-
-    Each component by itself: interpolation from such a corner is not finite anywhere in the face,
-    and Cycles draws it as 0.
-    """
-    if domain == "POINT":
-        values = np.take(values, corner_vertices, axis=0)
-    sizes = _polygon_sizes(mesh)
-    polygon = np.repeat(np.arange(len(sizes)), sizes)
-    corner, component = np.nonzero(~np.isfinite(values))
-    lost = np.zeros((len(sizes), values.shape[1]), bool)
-    lost[polygon[corner], component] = True
-    values[lost[polygon]] = 0.0
-    return values
-
-
-def _polygon_sizes(mesh):
-    sizes = np.empty(len(mesh.polygons), np.int32)
-    if len(sizes):
-        mesh.polygons.foreach_get("loop_total", sizes)
-    return sizes
-
-
 def _all_triangles(mesh):
-    return len(mesh.loops) == 3 * len(mesh.polygons) and bool((_polygon_sizes(mesh) == 3).all())
+    return len(mesh.loops) == 3 * len(mesh.polygons) and bool((polygon_sizes(mesh) == 3).all())
 
 
 def _triangle_corners(mesh):

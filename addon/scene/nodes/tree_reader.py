@@ -1,6 +1,6 @@
 """Walks one of Blender's node trees and makes the nodes of a `SurfaceGraph`.
 
-A table has a reader for each kind of node (`material_nodes`, `value_nodes`). A reader
+A table has a reader for each kind of node (`all_nodes`). A reader
 takes a `TreeReader`, a node and the groups around it. It adds a `ShaderNode` and returns its index,
 or returns a constant or link for each output, or None where it cannot read the node.
 """
@@ -59,10 +59,13 @@ class TreeReader:
     images : ImageReader
     readers : dict of str to callable
         See `reader_registry`.
+    pass_index : int
+        Of the material.
     """
 
-    def __init__(self, owner, images, readers):
+    def __init__(self, owner, images, readers, pass_index=0):
         self.owner = owner
+        self.pass_index = pass_index
         self.images = images
         self._readers = readers
         self._table_rows = 0
@@ -120,6 +123,12 @@ class TreeReader:
     def values(self, node, identifiers, groups):
         """Return (identifier, input) pairs."""
         return [(name, self.value(node, name, groups)) for name in identifiers]
+
+    def normal(self, node, groups):
+        """Return the normal that feeds a node as a pair of a list; an empty list without one."""
+        if not self.linked(node, "Normal", groups):
+            return []
+        return self.values(node, ("Normal",), groups)
 
     def closure(self, node, identifier, groups):
         """Return the link of a shader input, or None where nothing feeds it."""

@@ -4,11 +4,9 @@ from ...snapshot.content import MaterialSnapshot, next_uid
 from ...snapshot.cryptomatte import cryptomatte_id
 from ...snapshot.surface_graph import DEFAULT_GRAPH, Constant, Link, ShaderNode, SurfaceGraph
 from ..images.images import ImageReader
-from ..nodes import material_nodes, value_nodes
+from ..nodes.all_nodes import READERS
 from ..nodes.node_tree import inlined
 from ..nodes.tree_reader import TreeReader
-
-_READERS = material_nodes.READERS | value_nodes.READERS
 
 _INVISIBLE_GRAPH = SurfaceGraph(
     (ShaderNode("transparent", (("Color", Constant((1.0, 1.0, 1.0))),)),), Link(0, "BSDF")
@@ -98,7 +96,8 @@ class MaterialReader:
         output, _owner = inlined(material, "EEVEE")
         if output is None:
             return SurfaceGraph()
-        reader = TreeReader(f"material '{material.name}'", self.image_reader, _READERS)
+        owner = f"material '{material.name}'"
+        reader = TreeReader(owner, self.image_reader, READERS, material.pass_index)
         graph = reader.surface(output)
         if graph.surface is None and reader.linked(output, "Volume", ()):
             # The mesh around a volume (fog, smoke) has no surface of its own.

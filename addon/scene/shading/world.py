@@ -5,10 +5,10 @@ import numpy as np
 from ...snapshot.content import World
 from ...snapshot.surface_graph import LARGEST_RADIANCE, MISSING_IMAGE_COLOR, Constant, Link
 from ..images import color_spaces
-from ..nodes import material_nodes, value_nodes
-from ..nodes.material_nodes import euler_matrix, mapping_matrix
+from ..nodes import input_nodes, value_nodes
 from ..nodes.node_tree import inlined, source_of
 from ..nodes.tree_reader import TreeReader, constant, constant_number, numbers_of
+from ..nodes.vector_nodes import euler_matrix, mapping_matrix
 
 # How far a Mapping may be from a rotation.
 _ROTATION_TOLERANCE = 1e-4
@@ -117,7 +117,7 @@ class _WorldReader:
     def _computed(self, node, groups):
         """Return the world that nodes compute from images; None without a readable image."""
         readers = {
-            **{kind: material_nodes.READERS[kind] for kind in ("RGB", "VALUE")},
+            **{kind: input_nodes.READERS[kind] for kind in ("RGB", "VALUE")},
             **value_nodes.READERS,
             "TEX_ENVIRONMENT": self._read_environment,
         }

@@ -2,6 +2,7 @@
 // Walter et al., EGSR 2007; Heitz, JCGT 3(2), 2014.
 #ifndef BSDF_LIB_GLSL
 #define BSDF_LIB_GLSL
+#include "lib/surface/fresnel_lib.glsl"
 
 #define PI 3.14159265358979
 
@@ -63,20 +64,6 @@ float fresnel_schlick(float cosine)
   float m = 1.0 - clamp(cosine, 0.0, 1.0);
   float m2 = m * m;
   return m2 * m2 * m;
-}
-
-// Unpolarised reflectance of a dielectric of relative index `eta`.
-float fresnel_dielectric(float cosine, float eta)
-{
-  float c = abs(cosine);
-  float g = eta * eta - 1.0 + c * c;
-  if (g <= 0.0) {
-    return 1.0;
-  }
-  g = sqrt(g);
-  float a = (g - c) / (g + c);
-  float b = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
-  return 0.5 * a * a * (1.0 + b * b);
 }
 
 float f0_from_ior(float ior)

@@ -5,8 +5,11 @@
 // lights_tx (light table); environment_buf, environment_tx (image), environment_levels_tx
 // (prefiltered), ggx_tx (albedo table).
 // Source: split-sum environment, Karis, SIGGRAPH 2013 course; closures as Cycles composes them.
+// Outside of conditions: nodes call these, too, and a file is included once.
+#include "lib/nodes/point_lib.glsl"
 #include "lib/surface/bsdf_inputs_lib.glsl"
 #include "lib/surface/closure_lib.glsl"
+#include "lib/surface/fresnel_lib.glsl"
 
 #if defined(LIT) && defined(SHADES)
 #include "lib/surface/bsdf_lib.glsl"
@@ -49,26 +52,9 @@ Shading surface_shading(vec3 bent)
 {
   Shading s;
   s.position = world_position;
-#ifdef OF_LAYER
-  vec2 from = eye;
-#else
-  vec2 from = lens_sample.xy;
-#endif
-  vec3 view = (view_buf.lens.y > 0.5) ? vec3(from / view_buf.lens.x, 1.0) : vec3(from, 0.0);
-  if (view_buf.lens.y > 0.5) {
-    s.view = normalize(mat3(view_buf.view_inverse) * view);
-  }
-  else {
-    s.view = normalize((view_buf.view_inverse * vec4(view, 1.0)).xyz - world_position);
-  }
+  s.view = point_view();
   // The side that is seen is a property of the triangle, not of its interpolated normal.
-  vec3 geometric = cross(dFdx(world_position), dFdy(world_position));
-  geometric = (dot(geometric, s.view) < 0.0) ? -geometric : geometric;
-#ifdef HAS_NORMAL
-  vec3 normal = (dot(world_normal, geometric) < 0.0) ? -world_normal : world_normal;
-#else
-  vec3 normal = geometric;
-#endif
+  vec3 normal = point_smooth_normal(point_geometric_normal(s.view));
   normal = (dot(bent, bent) > 0.0) ? bent : normal;
   float size = length(normal);
   s.normal = (size > 0.0) ? normal / size : s.view;

@@ -1,0 +1,144 @@
+"""Readers of Blender's closures."""
+
+import numpy as np
+
+from ...snapshot.surface_graph import Constant, Link
+from .node_tree import source_of
+from .tree_reader import constant, input_socket, is_constant, reader_registry
+
+READERS, reads = reader_registry()
+
+
+@reads("EMISSION")
+def _emission(reader, node, groups):
+    return reader.add("emission", reader.values(node, ("Color", "Strength"), groups))
+
+
+def _note_linked(reader, node, groups, *identifiers):
+    for identifier in identifiers:
+        if reader.linked(node, identifier, groups):
+            reader.note(f"'{identifier}' of node '{node.bl_label}' is not read")
+
+
+# Inputs of the Principled BSDF that are not drawn, and the value at which they have no effect.
+_PRINCIPLED_LEFT_OUT = {
+    "Transmission Weight": 0.0,
+    "Subsurface Weight": 0.0,
+    "Coat Weight": 0.0,
+    "Sheen Weight": 0.0,
+    "Anisotropic": 0.0,
+    "Diffuse Roughness": 0.0,
+    "Thin Film Thickness": 0.0,
+}
+
+
+@reads("BSDF_PRINCIPLED")
+def _principled(reader, node, groups):
+    for identifier, default in _PRINCIPLED_LEFT_OUT.items():
+        socket = input_socket(node, identifier)
+        if socket is None:
+            continue
+        source, _ = source_of(socket, groups)
+        if source.is_output or not is_constant(constant(source), default):
+            name = identifier.removesuffix(" Weight").lower()
+            reader.note(f"{name} is not drawn")
+    _note_linked(reader, node, groups, "Coat Normal", "Tangent")
+    inputs = reader.values(
+        node,
+        (
+            "Base Color",
+            "Metallic",
+            "Roughness",
+            "IOR",
+            "Specular IOR Level",
+            "Specular Tint",
+            "Emission Color",
+            "Emission Strength",
+        ),
+        groups,
+    )
+    inputs += reader.normal(node, groups)
+    alpha = reader.value(node, "Alpha", groups)
+    if not (isinstance(alpha, Constant) and alpha.value[0] >= 1.0):
+        inputs.append(("Alpha", alpha))
+    return reader.add("principled", inputs)
+
+
+# Shader nodes that are drawn as a diffuse surface, with a warning.
+_AS_DIFFUSE = {
+    "BSDF_TRANSLUCENT": "Color",
+    "SUBSURFACE_SCATTERING": "Color",
+    "BSDF_SHEEN": "Color",
+    "BSDF_TOON": "Color",
+    "BSDF_HAIR": "Color",
+}
+_AS_GLOSSY = {"BSDF_GLASS": "Color", "BSDF_REFRACTION": "Color", "BSDF_METALLIC": "Base Color"}
+
+
+@reads("BSDF_DIFFUSE", *_AS_DIFFUSE)
+def _diffuse(reader, node, groups):
+    if node.type in _AS_DIFFUSE:
+        reader.note(f"node '{node.bl_label}' is drawn as a diffuse surface")
+    elif not is_constant(reader.value(node, "Roughness", groups), 0.0):
+        reader.note("roughness of a diffuse surface is not drawn")
+    color = reader.value(node, _AS_DIFFUSE.get(node.type, "Color"), groups)
+    inputs = [("Color", color), *reader.normal(node, groups)]
+    return Link(reader.add("diffuse", inputs), "BSDF")
+
+
+@reads("BSDF_GLOSSY", *_AS_GLOSSY)
+def _glossy(reader, node, groups):
+    if node.type in _AS_GLOSSY:
+        reader.note(f"node '{node.bl_label}' is drawn as a glossy surface")
+    _note_linked(reader, node, groups, "Tangent")
+    if input_socket(node, "Anisotropy") and not is_constant(
+        reader.value(node, "Anisotropy", groups), 0.0
+    ):
+        reader.note("anisotropy is not drawn")
+    color = reader.value(node, _AS_GLOSSY.get(node.type, "Color"), groups)
+    roughness = reader.value(node, "Roughness", groups)
+    # Scattering more than once brightens rough surfaces; other distributions leave it out.
+    multiple = getattr(node, "distribution", "MULTI_GGX") == "MULTI_GGX"
+    settings = (("multiple_scattering", "1" if multiple else ""),)
+    inputs = [("Color", color), ("Roughness", roughness), *reader.normal(node, groups)]
+    return Link(reader.add("glossy", inputs, settings), "BSDF")
+
+
+@reads("BSDF_TRANSPARENT")
+def _transparent(reader, node, groups):
+    color = reader.value(node, "Color", groups)
+    if not (isinstance(color, Constant) and len(set(color.value)) == 1):
+        reader.note("light that passes a transparent surface keeps its colour, dimmed by the mean")
+    if isinstance(color, Constant) and not 0.0 <= np.mean(color.value) <= 1.0:
+        reader.note(
+            "a transparent surface whose colour is not between 0 and 1 is drawn as if it were"
+        )
+    return reader.add("transparent", [("Color", color)])
+
+
+@reads("HOLDOUT")
+def _holdout(reader, node, groups):
+    return reader.add("holdout")
+
+
+@reads("MIX_SHADER")
+def _mix_shader(reader, node, groups):
+    factor = reader.value(node, "Fac", groups)
+    if isinstance(factor, Constant) and (factor.value[0] <= 0.0 or factor.value[0] >= 1.0):
+        chosen = "Shader" if factor.value[0] <= 0.0 else "Shader_001"
+        return reader.closure(node, chosen, groups) or Link(reader.add("none"), "BSDF")
+    inputs = [("Fac", factor), *_two_closures(reader, node, groups)]
+    return reader.add("mix_shader", inputs)
+
+
+@reads("ADD_SHADER")
+def _add_shader(reader, node, groups):
+    return reader.add("add_shader", _two_closures(reader, node, groups))
+
+
+def _two_closures(reader, node, groups):
+    pairs = []
+    for identifier in ("Shader", "Shader_001"):
+        link = reader.closure(node, identifier, groups)
+        pairs.append((identifier, link or Link(reader.add("none"), "BSDF")))
+    return pairs

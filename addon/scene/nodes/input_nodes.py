@@ -1,0 +1,122 @@
+"""Readers of Blender's nodes that tell of the mesh, the object, the camera and the ray."""
+
+import numpy as np
+
+from ...snapshot.surface_graph import Constant, Link
+from .tree_reader import reader_registry
+
+READERS, reads = reader_registry()
+
+
+@reads("RGB", "VALUE")
+def _stated(reader, node, groups):
+    return {node.outputs[0].identifier: reader.constant(node.outputs[0])}
+
+
+@reads("UVMAP")
+def _uv_map(reader, node, groups):
+    return reader.add("uv", settings=(("name", node.uv_map),))
+
+
+@reads("TEX_COORD")
+def _texture_coordinate(reader, node, groups):
+    if node.from_instancer:
+        reader.note("coordinates from the instancer are not read; those of the object are used")
+    other = reader.add("texture_coordinate")
+    outputs = {name: Link(other, name) for name in ("Normal", "Camera", "Window", "Reflection")}
+    outputs["UV"] = Link(reader.add("uv"), "UV")
+    outputs["Generated"] = Link(reader.add("generated"), "Generated")
+    outputs["Object"] = Link(other, "Object")
+    if node.object is not None:
+        # The object's own space, as numbers that may change without another shader.
+        inverse = np.array(node.object.matrix_world.inverted_safe(), np.float64)
+        place = ("Vector", Link(reader.add("geometry"), "Position"))
+        rows = [(axis, Constant(tuple(row[:3]))) for axis, row in zip("XYZ", inverse, strict=False)]
+        offset = ("Offset", Constant(tuple(inverse[:3, 3])))
+        outputs["Object"] = Link(reader.add("affine", [place, *rows, offset]), "Vector")
+    return outputs
+
+
+@reads("VERTEX_COLOR")
+def _color_attribute(reader, node, groups):
+    return reader.add("color_attribute", settings=(("name", node.layer_name),))
+
+
+@reads("ATTRIBUTE")
+def _attribute(reader, node, groups):
+    if node.attribute_type != "GEOMETRY":
+        return None
+    return reader.add("attribute", settings=(("name", node.attribute_name),))
+
+
+_LEFT_OUT = {
+    "Parametric": ((0.0, 0.0, 0.0), "0 is used"),
+    "Pointiness": ((0.5,), "0.5 is used, as of a flat surface"),
+    "Random Per Island": ((0.0,), "0 is used"),
+}
+
+
+@reads("NEW_GEOMETRY")
+def _geometry(reader, node, groups):
+    index = reader.add("geometry")
+    outputs = {}
+    for socket in node.outputs:
+        outputs[socket.identifier] = Link(index, socket.identifier)
+        if socket.identifier in _LEFT_OUT:
+            value, what = _LEFT_OUT[socket.identifier]
+            outputs[socket.identifier] = Constant(value)
+            if socket.is_linked:
+                reader.note(f"'{socket.identifier}' of node '{node.bl_label}' is not read; {what}")
+    return outputs
+
+
+@reads("OBJECT_INFO")
+def _object_info(reader, node, groups):
+    index = reader.add("object_info")
+    names = ("Location", "Color", "Alpha", "Object Index", "Random")
+    outputs = {name: Link(index, name) for name in names}
+    outputs["Material Index"] = Constant((float(reader.pass_index),))
+    return outputs
+
+
+@reads("CAMERA")
+def _camera_data(reader, node, groups):
+    return reader.add("camera_data")
+
+
+@reads("FRESNEL")
+def _fresnel(reader, node, groups):
+    return reader.add(
+        "fresnel", reader.values(node, ("IOR",), groups) + reader.normal(node, groups)
+    )
+
+
+@reads("LAYER_WEIGHT")
+def _layer_weight(reader, node, groups):
+    inputs = reader.values(node, ("Blend",), groups) + reader.normal(node, groups)
+    return reader.add("layer_weight", inputs)
+
+
+@reads("LIGHT_PATH")
+def _light_path(reader, node, groups):
+    # As a ray from the camera sees it.
+    outputs = {socket.identifier: Constant((0.0,)) for socket in node.outputs}
+    outputs["Is Camera Ray"] = Constant((1.0,))
+    outputs["Ray Length"] = Link(reader.add("camera_data"), "View Distance")
+    return outputs
+
+
+@reads("TANGENT")
+def _tangent(reader, node, groups):
+    radial = node.direction_type == "RADIAL"
+    settings = (("axis", node.axis),) if radial else (("name", node.uv_map),)
+    return reader.add("tangent", settings=settings)
+
+
+@reads("HAIR_INFO", "PARTICLE_INFO", "POINT_INFO")
+def _of_other_geometry(reader, node, groups):
+    # What Cycles gives on a mesh that is none of these.
+    return {
+        socket.identifier: Constant((0.0,) * (3 if socket.type == "VECTOR" else 1))
+        for socket in node.outputs
+    }
