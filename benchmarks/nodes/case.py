@@ -16,7 +16,8 @@ class Case:
     inputs : dict of str to object
         By the socket's name or identifier: a number, a tuple, or a string that names a source of
         values: ``"uv"``, ``"object"``, ``"place"`` (world space), ``"x"`` (a number from 0 to 1
-        along the card), ``"y"``, ``"signed"`` (a vector from -2 to 2), ``"color"`` (of an image),
+        along the card), ``"y"``, ``"signed"`` (a vector from -2 to 2),
+        ``"steps"`` (the same in whole numbers), ``"color"`` (of an image),
         ``"bent"`` (a unit vector near the normal).
     settings : dict of str to object
         Properties of the node.

@@ -193,6 +193,12 @@ def _source(tree, name, image):
         unit.operation = "NORMALIZE"
         links.new(mixed.outputs[0], unit.inputs[0])
         return unit.outputs[0]
+    if name == "steps":
+        # Few digits, so that both engines have the same bits.
+        steps = nodes.new("ShaderNodeVectorMath")
+        steps.operation = "FLOOR"
+        links.new(_source(tree, "signed", image), steps.inputs[0])
+        return steps.outputs[0]
     if name == "signed":
         scaled = nodes.new("ShaderNodeVectorMath")
         scaled.operation = "MULTIPLY_ADD"

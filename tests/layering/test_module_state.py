@@ -87,11 +87,13 @@ OTHERS = {
     "passes.nodes.closure_nodes": ("makers of GLSL by kind of node", ("generates",)),
     "passes.nodes.image_nodes": ("makers of GLSL by kind of node", ("generates",)),
     "passes.nodes.input_nodes": ("makers of GLSL by kind of node", ("generates",)),
+    "passes.nodes.pattern_nodes": ("makers of GLSL by kind of node", ("generates",)),
     "passes.nodes.value_nodes": ("makers of GLSL by kind of node", ("generates",)),
     "passes.nodes.vector_nodes": ("makers of GLSL by kind of node", ("generates",)),
     "scene.nodes.closure_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.image_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.input_nodes": ("readers by kind of node", ("reads",)),
+    "scene.nodes.pattern_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.value_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.vector_nodes": ("readers by kind of node", ("reads",)),
     # Panels.

@@ -7,12 +7,13 @@ order, so graphs of one shape generate the same text and share one compiled shad
 from dataclasses import dataclass
 
 from ...snapshot.surface_graph import Link
-from . import closure_nodes, image_nodes, input_nodes, value_nodes, vector_nodes
+from . import closure_nodes, image_nodes, input_nodes, pattern_nodes, value_nodes, vector_nodes
 from .writer import Writer
 
 _GENERATORS = (
     closure_nodes.GENERATORS
     | input_nodes.GENERATORS
+    | pattern_nodes.GENERATORS
     | value_nodes.GENERATORS
     | vector_nodes.GENERATORS
     | image_nodes.GENERATORS

@@ -124,6 +124,10 @@ class TreeReader:
         """Return (identifier, input) pairs."""
         return [(name, self.value(node, name, groups)) for name in identifiers]
 
+    def number(self, value):
+        """Return a property of a node as a constant."""
+        return Constant((float(value),))
+
     def normal(self, node, groups):
         """Return the normal that feeds a node as a pair of a list; an empty list without one."""
         if not self.linked(node, "Normal", groups):

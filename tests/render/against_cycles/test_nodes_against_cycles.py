@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from benchmarks.nodes import input_cases, sheet
+from benchmarks.nodes import input_cases, pattern_cases, sheet
 from tests.pictures import render_aplanat, render_cycles, save_side_by_side
 
 # In 1/255 of the sRGB encoded picture.
 LARGEST_DIFFERENCE = 2.0
 
-SHEETS = {"inputs": input_cases.CASES}
+SHEETS = {"inputs": input_cases.CASES, "patterns": pattern_cases.CASES}
 
 
 @pytest.mark.parametrize("name", SHEETS)
