@@ -7,7 +7,7 @@ from benchmarks.bokeh.charts import FOCUS, many_highlights
 from tests import surface_scenes
 from tests.pictures import ssim
 
-SIZE, LAMPS = (160, 90), 120
+SIZE, LAMPS = (112, 63), 90
 # By name: sources, visibility, debug view, real lens (focused near, or it would blur nothing).
 MODES = {
     "raster": ("POINT", "RASTER", "NONE", ""),
@@ -67,7 +67,7 @@ def lamps_blend(aplanat_bpy, tmp_path_factory):
     surface_scenes.add_light(bpy, "POINT", (-3.0, 0.0, 4.0), energy=2000.0)
     own = scene.aplanat
     own.method, own.use_target_error = "ADAPTIVE", False
-    own.render_samples, own.subsamples = 8, 2
+    own.render_samples, own.subsamples = 4, 2
     scene.camera.data.aplanat.bokeh.use = True
     path = tmp_path_factory.mktemp("lamps") / "lamps.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)

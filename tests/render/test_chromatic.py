@@ -27,7 +27,7 @@ from benchmarks.referees.shared_scenes import shared_scene
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
-RESOLUTION = (160, 90)
+RESOLUTION = (112, 63)
 
 
 class _Quiet:
