@@ -181,10 +181,7 @@ def test_free_views_are_drawn_by_a_pinhole(stage):
 
 
 def test_camera_moves_upload_nothing_and_leak_nothing(stage):
-    stage.run(
-        "view(bare=True)\n"
-        "bpy.context.scene.aplanat.preview_samples = 2"
-    )
+    stage.run("view(bare=True)\nbpy.context.scene.aplanat.preview_samples = 2")
     wait_until_converged(stage)
     before, after, uploads, content = stage.run(
         """
