@@ -1,6 +1,11 @@
 """Fixtures of all tests: this process' Blender with Aplanat in it, and the shared material."""
 
+import os
 from pathlib import Path
+
+# Small matrices are not worth a second thread, and threads that wait for a busy core spin: with all
+# cores at work, a test that blurs tiles took four times as long. Read when numpy is imported.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest
 from hypothesis import settings

@@ -55,7 +55,7 @@ void main()
   float light = 1.0;
 #ifdef LIGHT
   vec2 place = (vec2(pixel) + 0.5) / vec2(textureSize(mattes_tx, 0) / SUBPIXELS);
-  light = light_at(light_tx, place, light_table).x;
+  light = light_at_pixel(light_tx, place, light_table, light_sets, pixel).x;
 #endif
   for (int y = 0; y < SUBPIXELS; y++) {
     for (int x = 0; x < SUBPIXELS; x++) {

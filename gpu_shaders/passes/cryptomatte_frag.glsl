@@ -20,7 +20,7 @@ void main()
 #endif
 #ifdef LIGHT
   vec2 place = gl_FragCoord.xy / vec2(textureSize(tables_tx, 0).xy);
-  float scale = 1.0 / light_at(light_tx, place, light_table).w;
+  float scale = 1.0 / light_at_pixel(light_tx, place, light_table, light_sets, pixel).w;
 #endif
   vec2 slots[2 * SLOT_PAIRS];
   for (int i = 0; i < SLOT_PAIRS; i++) {

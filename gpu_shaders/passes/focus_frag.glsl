@@ -11,6 +11,7 @@ void main()
 {
   out_share = subpixel_sum(mattes_tx, ivec2(gl_FragCoord.xy), columns, rows).w;
 #ifdef LIGHT
-  out_share *= light_at(light_tx, gl_FragCoord.xy / size, light_table).x;
+  out_share *= light_at_pixel(
+      light_tx, gl_FragCoord.xy / size, light_table, light_sets, ivec2(gl_FragCoord.xy)).x;
 #endif
 }

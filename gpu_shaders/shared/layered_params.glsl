@@ -7,4 +7,8 @@ struct LayeredParams {
                         // texels; w: side of the part of the lens that a ray stands for, m; 0: a thin ray
   vec4 eyes;            // xy: one over the distance on the lens of the places that colours are seen from
                         // beside its middle, 1/m; z: 1 if layers lie in no order; w: unused
+  vec4 vergence;        // REAL_LENS: x, y: 1 / depth, 1/m, is x + y times the depth buffer's value;
+                        // z: that of the nearest surface, the nodes' unit, 1/m; w: unused
+  vec4 nodes;           // REAL_LENS: vergences that a ray's bend is looked up for, in that unit
+  mat4 powers;          // REAL_LENS: from four bends there to the powers of a cubic
 };

@@ -66,6 +66,7 @@ class SceneDrawing:
     ----------
     counts : DrawingCounts
         Since the frame began.
+    target : passes.surface.surface_target.SurfaceTarget
     nearest, farthest : float
         Least and largest depth of any visible instance, m; inf and 0 where there is none.
     levels : ndarray of shape (I,)
@@ -77,6 +78,7 @@ class SceneDrawing:
     def __init__(self, content, buffers, target, graded):
         self._content = content
         self._buffers = buffers
+        self.target = target
         self._draws = surface.build_draws(content, buffers, target)
         self._glows = surface.build_glow_draws(content, buffers, target)
         self.full_detail = sum(
@@ -320,6 +322,11 @@ class SceneDrawing:
             lens_sample = self._plan.lens_sample(index)
             resources = {"highlights": self._highlights, "optics": self._optics(index)}
             surface.draw_glows(listed, view, self._table, lens_sample, **resources)
+
+    @property
+    def has_chance(self):
+        """Whether any surface may let light through, or add some to what is behind it."""
+        return bool(self._glows) or any(draw.transparent for draw in self._draws)
 
     @property
     def content(self):

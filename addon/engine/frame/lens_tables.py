@@ -8,8 +8,8 @@ from ...passes.surface import real_lens
 from ...passes.tile_scales import CORNERS
 from ...sampling.tile_control import TILE
 
-# Samples whose tables are uploaded together, and how many such parts are kept: 8 MB, and as much
-# for the slopes of subsamples.
+# Tables that are uploaded together, and how many such parts are kept: 8 MB, and as much for the
+# slopes of subsamples.
 _TOGETHER, _KEPT = 32, 4
 # Share of the brightest place's light that counts as none.
 _LEAST = 1e-5
@@ -28,12 +28,14 @@ class LensTables:
 
     def __init__(self, plan):
         self._parts = OrderedDict()
-        self._sums = np.zeros((plan.real_lens.grid.rows, plan.real_lens.grid.columns, 4))
+        self._sets = len(plan.lens_places)
+        self._together = max(_TOGETHER // self._sets, 1)
+        grid = plan.real_lens.grid
+        self._sums = np.zeros((self._sets, grid.rows, grid.columns, 4))
         self._textures = None
         self.follow(plan)
-        grid = self._lens.grid
         falloff = real_lens.light_texture(self._lens.falloff[None])
-        light = real_lens.SampleLight(falloff, (float(grid.columns), float(grid.rows), 1.0, 0.0))
+        light = real_lens.SampleLight(falloff, self._table(1))
         self._middle = real_lens.LensSample(0, self._upload(np.zeros((1, 2))), light)
 
     def follow(self, plan):
@@ -48,16 +50,17 @@ class LensTables:
         """
         if index is None:
             return self._middle
-        moves, light, tables, turns = self._part(index // _TOGETHER)
-        grid, slot = self._lens.grid, index % _TOGETHER
-        table = (float(grid.columns), float(grid.rows), float(len(tables)), float(slot))
-        return real_lens.LensSample(slot, moves, real_lens.SampleLight(light, table), turns)
+        moves, light, tables, turns = self._part(index // self._together)
+        slot = index % self._together * self._sets
+        light = real_lens.SampleLight(light, self._table(len(tables), slot), self._sets)
+        return real_lens.LensSample(slot, moves, light, turns, self._sets)
 
     def add(self, index):
         """Note that a sample was added to the picture."""
         weights = self._plan.sample_weights(index, index + 1)[0]
-        tables = self._part(index // _TOGETHER)[2]
-        self._sums += tables[index % _TOGETHER][..., None] * weights
+        tables = self._part(index // self._together)[2]
+        first = index % self._together * self._sets
+        self._sums += tables[first : first + self._sets, ..., None] * weights
         self._textures = None
 
     @property
@@ -66,10 +69,11 @@ class LensTables:
         if self._textures is None:
             sums = self._divisors()
             mean = np.repeat(sums[..., 3:], 4, axis=-1)
-            self._textures = [real_lens.light_texture(each[None]) for each in (sums, mean)]
-        grid = self._lens.grid
-        table = (float(grid.columns), float(grid.rows), 1.0, 0.0)
-        return tuple(real_lens.SampleLight(texture, table) for texture in self._textures)
+            self._textures = [real_lens.light_texture(each) for each in (sums, mean)]
+        table = self._table(self._sets)
+        return tuple(
+            real_lens.SampleLight(texture, table, self._sets) for texture in self._textures
+        )
 
     @property
     def corners(self):
@@ -98,7 +102,8 @@ class LensTables:
         y, x = ((TILE * np.arange(n)[:, None] + steps).ravel() for n in shape)
         places = np.stack(np.meshgrid(x, y), axis=-1) / size
         index, weights = grid.taps(grid.low + places * (grid.high - grid.low))
-        found = np.einsum("yxt,yxtc->yxc", weights, self._divisors().reshape(-1, 4)[index])
+        # Tiles are never those of several sets.
+        found = np.einsum("yxt,yxtc->yxc", weights, self._divisors()[0].reshape(-1, 4)[index])
         rows, columns = shape
         return found.reshape(rows, count, columns, count, 4).swapaxes(1, 2)
 
@@ -109,9 +114,16 @@ class LensTables:
         sums[..., :3] /= np.maximum(self._lens.falloff, _LEAST)[..., None]
         return np.maximum(sums, _LEAST * max(float(self._sums.max()), 1e-30))
 
+    def _table(self, count, first=0):
+        grid = self._lens.grid
+        return (float(grid.columns), float(grid.rows), float(count), float(first))
+
     def _part(self, number):
         if number not in self._parts:
-            places = self._plan.lens_positions[number * _TOGETHER : (number + 1) * _TOGETHER]
+            count = self._together
+            places = self._plan.lens_places[:, number * count : (number + 1) * count]
+            # The sets of a sample one after the other.
+            places = places.swapaxes(0, 1).reshape(-1, 2)
             light = self._lens.light(places)
             turns = self._turns(places) if self._plan.blurs else None
             texture = real_lens.light_texture(light)

@@ -16,7 +16,7 @@ from ...snapshot.render_passes import cryptomatte_kinds
 from ..bokeh.stage import BokehStage, highlight_buffer
 from ..drawing.scene_drawing import DrawingCounts, SceneDrawing
 from ..drawing.view_resources import chromatic_resources, view_params
-from ..layered.layered_drawing import LayeredDrawing
+from ..layered.layered_drawing import LayeredDrawing, in_step
 from ..visibility.stage import SceneOccluders
 from . import sample_sums
 from .frame_bokeh import FrameBokeh
@@ -73,13 +73,9 @@ class FrameRenderer(ReadableFrame):
         """
         keeping.let_go()
         self._bokeh.stop()
-        self.plan = plan
         self.samples_done = 0
         self._stopped = False
         self._earlier_rounds = DrawingCounts()
-        self._lens = LensTables(plan) if plan.real_lens else None
-        tiles = (plan, self._fullscreen, leader, self._lens)
-        self._tiles = TileSampling(*tiles) if plan.automatic else None
         self._cryptomattes = cryptomatte_kinds(plan.passes)
         self._mattes = needs_mattes(plan)
         target = surface_target.COLOR_AND_MATTES if self._mattes else surface_target.COLOR
@@ -89,6 +85,7 @@ class FrameRenderer(ReadableFrame):
             self._highlights = highlight_buffer(plan.bokeh)
         if plan.chromatic:
             target = surface_target.in_wavelengths(target)
+        layers_target = target
         if plan.real_lens:
             target = surface_target.through_lens(target)
         levels = self._buffers.levels_version
@@ -96,20 +93,25 @@ class FrameRenderer(ReadableFrame):
             self._content, self._target, self._levels = snapshot.content, target, levels
             self._drawing = SceneDrawing(snapshot.content, self._buffers, target, self._graded)
             self._occluders = SceneOccluders(snapshot.content, self._buffers)
+        world = snapshot.content.world
+        self._background = (0.0,) * 4 if snapshot.film.transparent else (*world.color, 1.0)
+        self._shows_image = bool(world.image) and not snapshot.film.transparent
+        self.plan = plan = in_step(plan, self._shows_image or self._drawing.has_chance)
+        self._lens = LensTables(plan) if plan.real_lens else None
+        tiles = (plan, self._fullscreen, leader, self._lens)
+        self._tiles = TileSampling(*tiles) if plan.automatic else None
         self._field = chromatic_resources(plan.chromatic) if plan.chromatic else None
         wavelengths = self._wavelength if plan.chromatic else None
         self._drawing.aim(plan, self._optics, self._highlights)
         self._view = uniform_buffer(view_params(plan))
         self._pixels = uniform_buffer(view_params(replace(plan, subpixels=1)))
-        world = snapshot.content.world
-        self._background = (0.0,) * 4 if snapshot.film.transparent else (*world.color, 1.0)
-        self._shows_image = bool(world.image) and not snapshot.film.transparent
         if self._layers:
             self._layers.release()
         self._layers = None
         if plan.layered:
-            resources = (self._wavelength, self._highlights, self._background)
-            self._layers = LayeredDrawing(plan, self._drawing, self._buffers, target, *resources)
+            resources = (self._optics, self._highlights, self._background)
+            content = (self._drawing, self._buffers, layers_target)
+            self._layers = LayeredDrawing(plan, *content, *resources)
         self._blur = None
         if plan.blurs:
             self._blur = SubsampleBlur(plan, self._drawing.nearest, wavelengths, self._lens)

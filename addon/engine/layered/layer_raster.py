@@ -64,6 +64,9 @@ def plan_reach(plan, nearest, farthest):
     for sweep in sweeps:
         for depth in (window_depth(plan, nearest), window_depth(plan, farthest)):
             moved = np.maximum(moved, np.abs(plan.lens_extent * (sweep[:2] + sweep[2:] * depth)))
+    if plan.real_lens is not None:
+        scale = np.abs(np.diag(plan.projection)[:2]) * (plan.width, plan.height) / 2.0
+        moved += plan.real_lens.bound(nearest) * scale
     return moved
 
 
@@ -119,6 +122,8 @@ class DeviceLayers:
     raster : LayerRaster
     count : int
         Layers.
+    nearest : float
+        Depth of the nearest surface, m.
     filtered : bool
         Colours are filtered pictures: alpha is the share of a texel that is covered, and they are
         mixed between texels; else a texel is one place of one surface.
@@ -127,4 +132,5 @@ class DeviceLayers:
     textures: object
     raster: LayerRaster
     count: int
+    nearest: float
     filtered: bool

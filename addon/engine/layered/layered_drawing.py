@@ -9,6 +9,8 @@ References
 Lee, Eisemann and Seidel, SIGGRAPH Asia 2009.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...device import state
@@ -34,24 +36,25 @@ class LayeredDrawing:
         Aimed at the frame.
     buffers : SceneBuffers
     target : passes.surface.surface_target.SurfaceTarget
-        That the surfaces are drawn into.
-    wavelengths : callable
-        From a sample, or None for the reference wavelength, to its `ChromaticSample` or None.
+        That the surfaces are drawn into, seen from the middle of the lens.
+    optics : callable
+        From a sample, or None for the lens' middle at the reference wavelength, to its
+        `passes.surface.real_lens.SampleOptics`.
     highlights : GPUUniformBuf or None
     surroundings : tuple of 4 float
         Colour where nothing is, premultiplied.
     """
 
-    def __init__(self, plan, drawing, buffers, target, wavelengths, highlights, surroundings):
+    def __init__(self, plan, drawing, buffers, target, optics, highlights, surroundings):
         self._plan = plan
         self._drawing = drawing
         self._buffers = buffers
         self._target = target
-        self._wavelengths = wavelengths
+        self._optics = optics
         self._highlights = highlights
         self._surroundings = surroundings
         self._made = None
-        draws = drawing.full_detail_draws(target)
+        draws = drawing.full_detail_draws(drawing.target)
         self._by_chance = [draw for draw in draws if draw.transparent]
         self._places = texture_2d(_folded(plan.layered.places))
         self._nothing = texture_2d(np.array([[surroundings]], np.float32))
@@ -72,11 +75,11 @@ class LayeredDrawing:
         plan = self._plan
         if plan.layered.stack is not None:
             # They outlive the frame.
-            reference = self._wavelengths(None)
+            reference = self._optics(None).wavelength
             field = reference and reference.resources
             made = self._buffers.captured.prepare(plan, self._highlights, field)
         else:
-            resources = {"highlights": self._highlights, "optics": self._wavelengths(None)}
+            resources = {"highlights": self._highlights, "optics": self._optics(None).wavelength}
             target = surface_target.of_layers(self._target)
             solid = self._drawing.full_detail_draws(target)
             made = draw_scene_layers(
@@ -108,6 +111,7 @@ class LayeredDrawing:
                     float(plan.layered.peeled and not made.filtered),
                     0.0,
                 ),
+                **bend_lookups(plan, made.nearest),
             )
         )
 
@@ -157,7 +161,7 @@ class LayeredDrawing:
             See `passes.layered.cast.cast`.
         """
         plan = self._plan
-        sharp = plan.sharp_radius
+        sharp, optics = plan.sharp_radius, self._optics(index)
         cast.cast(
             fullscreen,
             self._made.textures,
@@ -169,7 +173,8 @@ class LayeredDrawing:
             index=index,
             empty_focus=(sharp / max(abs(plan.empty_coc), sharp)) ** 2,
             gain=self._gain,
-            wavelength=self._wavelengths(index),
+            wavelength=optics.wavelength,
+            lens=optics.lens,
             eyes=len(plan.layered.eyes) > 1,
             culls=plan.layered.culls,
             counts=counts,
@@ -196,7 +201,7 @@ class LayeredDrawing:
                 self._plan.lens_sample(index),
                 index,
                 highlights=self._highlights,
-                optics=self._wavelengths(index),
+                optics=self._optics(index),
             )
         counts = self._drawing.counts
         counts.draw_calls += len(self._by_chance)
@@ -207,6 +212,54 @@ class LayeredDrawing:
         if self._made is not None and self._plan.layered.stack is None:
             self._made.textures.release()
         self._made = None
+
+
+def in_step(plan, mixed):
+    """Return a plan whose pixels all see through the same places on the lens, where they must.
+
+    A real lens weighs each pixel's light by the places that its layers are seen through; what is
+    drawn anew for every sample is seen through the first set of places.
+
+    Parameters
+    ----------
+    plan : FramePlan
+    mixed : bool
+        Something is drawn anew for every sample.
+
+    Returns
+    -------
+    FramePlan
+    """
+    if not mixed or plan.layered is None or plan.real_lens is None:
+        return plan
+    places = np.repeat(plan.layered.places[:1], len(plan.layered.places), axis=0)
+    return replace(plan, layered=replace(plan.layered, places=places, in_step=True))
+
+
+def bend_lookups(plan, nearest):
+    """Return what of `LayeredParams` bends the rays of a real lens.
+
+    Parameters
+    ----------
+    plan : FramePlan
+    nearest : float
+        Depth of the nearest surface, m.
+
+    Returns
+    -------
+    dict of str to sequence
+    """
+    if plan.real_lens is None:
+        return {"vergence": (0.0,) * 4, "nodes": (0.0,) * 4, "powers": np.zeros((4, 4))}
+    slope, offset = plan.projection[2, 2:]
+    end = min(1.0 / nearest, plan.real_lens.tables.largest_vergence)
+    # Chebyshev's: a cubic through them is as good as any.
+    nodes = 0.5 - 0.5 * np.cos((np.arange(4) + 0.5) / 4 * np.pi)
+    return {
+        "vergence": ((slope - 1.0) / offset, 2.0 / offset, end, 0.0),
+        "nodes": nodes,
+        "powers": np.linalg.inv(nodes[:, None] ** np.arange(4)),
+    }
 
 
 def _folded(places, across=MOST_ACROSS):

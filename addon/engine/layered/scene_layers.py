@@ -63,7 +63,7 @@ def draw_scene_layers(plan, drawing, draws, instances, mattes, resources):
     drawing.counts.draw_calls += drawn.times * len(draws)
     drawing.counts.triangles += drawn.times * sum(d.triangles * d.count for d in draws)
     layers.build_pyramids(textures, *sides, len(planes), False, len(eyes))
-    return DeviceLayers(textures, raster, len(planes), filtered=False)
+    return DeviceLayers(textures, raster, len(planes), nearest, filtered=False)
 
 
 def _depths(plan, drawing, drawn):

@@ -224,7 +224,8 @@ def _upload(depths, stack):
     textures.textures["colors"] = _texels(colors, layers.COLOR_FORMAT)
     textures.textures["depths"] = _texels(depths[..., None], layers.DEPTH_FORMAT)
     raster = LayerRaster(width, height, 1, stack.overscan)
-    return DeviceLayers(textures, raster, count, filtered=True)
+    nearest = max(stack.depth_range[0], 1e-6)
+    return DeviceLayers(textures, raster, count, nearest, filtered=True)
 
 
 def _texels(array, texel_format):

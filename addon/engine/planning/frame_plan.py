@@ -214,6 +214,13 @@ class FramePlan:
         return (*self.lens_positions[index].tolist(), *self.jitter[index].tolist())
 
     @property
+    def lens_places(self):
+        """Places on the lens of the samples of all sets, in m, shape (sets, N, 2)."""
+        if self.layered is None:
+            return self.lens_positions[None]
+        return self.layered.places[: 1 if self.layered.in_step else None]
+
+    @property
     def blurs(self):
         """Whether any lens sample is blurred over subsamples."""
         return bool(self.subsample_counts.any())

@@ -37,6 +37,8 @@ class LayeredPlan:
         places round it, right, left, up and down.
     origin : tuple of 2 int
         Of a captured picture: pixels of its layers on the left of and below what is drawn.
+    in_step : bool
+        All sets of places are the first one.
     """
 
     count: int
@@ -48,6 +50,7 @@ class LayeredPlan:
     peeled: bool = False
     eyes: np.ndarray = field(default_factory=lambda: np.zeros((1, 2)))
     origin: tuple[int, int] = (0, 0)
+    in_step: bool = False
 
 
 def plan_layered(sampling, source, stack=None, projection=None):

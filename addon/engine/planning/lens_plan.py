@@ -86,6 +86,13 @@ class RealLensPlan:
         """The `FieldGrid` of the light."""
         return self.tables.light_grid
 
+    def bound(self, nearest):
+        """Bound of what the lens adds to the displacement of points from a depth (m) on."""
+        tables = self.tables
+        beyond = 1.0 / max(nearest, 1e-9) - tables.focus_vergence
+        reach = tables.largest_vergence - tables.focus_vergence
+        return self.most_moved * max(beyond / reach, 1.0)
+
     def growth(self, farthest):
         """Return how much farther points move than those of a thin lens.
 

@@ -4,11 +4,9 @@ from ...device import shader_source, state
 from ...device.shader_variants import variants
 from ...device.shaders import ShaderInfo, compile_shader
 from ...device.uniform_block import UniformStruct
-from ..surface import chromatic
+from ..surface import chromatic, real_lens
 
 LAYERED_PARAMS = UniformStruct("shared/layered_params.glsl", "LayeredParams")
-# Sets of places on the lens, one for each pixel of a square of 4 x 4.
-SETS = 16
 
 _SAMPLERS = (
     *(("FLOAT_2D_ARRAY", f"{name}_tx") for name in ("colors", "depths", "means", "ranges")),
@@ -18,13 +16,14 @@ _SAMPLERS = (
 
 
 @variants(
-    allowed=lambda mattes, colored, eyes, counted: not (counted and mattes),
+    allowed=lambda mattes, colored, eyes, counted, through_lens: not (counted and mattes),
     mattes=(False, True),
     colored=(False, True),
     eyes=(False, True),
     counted=(False, True),
+    through_lens=(False, True),
 )
-def _info(mattes=False, colored=False, eyes=False, counted=False):
+def _info(mattes=False, colored=False, eyes=False, counted=False, through_lens=False):
     info = ShaderInfo(
         name="aplanat_layered",
         vertex=shader_source.load("passes/fullscreen_vert.glsl"),
@@ -40,6 +39,7 @@ def _info(mattes=False, colored=False, eyes=False, counted=False):
             ("INT", "sample_index"),
             ("INT", "culls"),
             *[("FLOAT", "empty_focus")] * mattes,
+            *[("INT", "lens_sets")] * through_lens,
         ),
         defines=(
             *(("MATTES", "1"),) * mattes,
@@ -48,7 +48,8 @@ def _info(mattes=False, colored=False, eyes=False, counted=False):
         ),
         writes_depth=True,
     )
-    return chromatic.declared(info, (("VEC4", "gain"),)) if colored else info
+    info = chromatic.declared(info, (("VEC4", "gain"),)) if colored else info
+    return real_lens.declared(info) if through_lens else info
 
 
 def cast(
@@ -64,6 +65,7 @@ def cast(
     empty_focus,
     gain=None,
     wavelength=None,
+    lens=None,
     eyes=False,
     culls=True,
     counts=False,
@@ -91,6 +93,8 @@ def cast(
     gain : sequence of 4 float, optional
         With chromatic aberration: of the sweep, by the inverse of the focus distance.
     wavelength : chromatic.ChromaticSample, optional
+    lens : real_lens.LensSample, optional
+        What bends the rays.
     eyes : bool
         Layers have colours from five places on the lens, whose first is the middle.
     culls : bool
@@ -100,7 +104,8 @@ def cast(
     """
     state.always()
     mattes = "mattes" in layers and not counts
-    shader = compile_shader(_info(mattes, wavelength is not None, eyes, counts))
+    variant = (mattes, wavelength is not None, eyes, counts, lens is not None)
+    shader = compile_shader(_info(*variant))
     shader.bind()
     for name in ("colors", "depths", "means", "ranges"):
         shader.uniform_sampler(f"{name}_tx", layers[name])
@@ -117,4 +122,7 @@ def cast(
     if wavelength is not None:
         wavelength.bind(shader)
         shader.uniform_float("gain", tuple(gain))
+    if lens is not None:
+        lens.bind(shader)
+        shader.uniform_int("lens_sets", lens.sets)
     shader.draw(fullscreen)

@@ -18,7 +18,7 @@ PUSH_CONSTANTS = (("INT", "lens_slot"),)
 DEFINES = (("REAL_LENS", "1"),)
 # Of passes that weigh samples, or divide by their weights, over the picture.
 LIGHT_SAMPLERS = (("FLOAT_2D", "light_tx"),)
-LIGHT_CONSTANTS = (("VEC4", "light_table"),)
+LIGHT_CONSTANTS = (("VEC4", "light_table"), ("INT", "light_sets"))
 LIGHT_DEFINES = (("LIGHT", "1"),)
 
 
@@ -36,12 +36,15 @@ class LensSample:
         None: the light is not weighted.
     turns : GPUTexture or None
         Of `turns_texture`, for subsamples.
+    sets : int
+        Places in the tables from that one on that pixels have in turn; see `SampleLight`.
     """
 
     slot: int
     resources: tuple
     light: "SampleLight | None" = None
     turns: object = None
+    sets: int = 1
 
     def bind(self, shader):
         """Set what `declared` has declared in a bound shader."""
@@ -61,15 +64,20 @@ class SampleLight:
         filtering.
     table : tuple of 4 float
         Columns and rows of a table, number of tables, and which is the sample's.
+    sets : int
+        Tables from that one on that pixels have in turn, as places on the lens (see
+        `engine.planning.layered_plan`); 1: all pixels have the same.
     """
 
     texture: object
     table: tuple[float, float, float, float]
+    sets: int = 1
 
     def bind(self, shader):
-        """Set ``light_tx`` and ``light_table`` in a bound shader."""
+        """Set ``light_tx``, ``light_table`` and ``light_sets`` in a bound shader."""
         shader.uniform_sampler("light_tx", self.texture)
         shader.uniform_float("light_table", self.table)
+        shader.uniform_int("light_sets", self.sets)
 
 
 @dataclass(frozen=True)

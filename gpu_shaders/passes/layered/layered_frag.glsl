@@ -1,6 +1,7 @@
 // One lens sample of a picture that is kept as depth layers: from each pixel a ray goes to the sample's
 // place on the lens, and meets the layers front to back. In the raster and its depth buffer's values
-// the ray is a straight line, so that each layer is a height field over its texels.
+// the ray of a thin lens is a straight line, so that each layer is a height field over its texels; a real
+// lens bends it.
 // Inputs: colors_tx, depths_tx (the layers), means_tx, ranges_tx (their pyramids, in an atlas);
 // MATTES: mattes_tx; behind_tx (what surrounds the scene, of one texel where it is one colour);
 // places_tx (row: one of 16 sets of places on the lens, m; column: sample; what is beyond the last
@@ -8,19 +9,20 @@
 // layered_buf; sweep (texels of the sample's raster a metre).
 // EYES: colours as they are seen from the middle of the lens, and from four places round it.
 // CHROMATIC: as in surface_vert, and gain (of the sweep, by 1 / focus distance).
+// REAL_LENS: as in surface_vert, and lens_sets (tables of the sample from lens_slot on: one, or one a set).
 // Outputs: the sample's colour, premultiplied; MATTES: what the first surface met has; the depth
 // buffer's value of the first surface that hides what is behind it.
 // COUNTED: instead, how many layers there were to look into (x), how many were looked into (y), and
 // how often a depth was read on the way of a ray (z).
 // Source: methods 7 (LES09 sections 4 and 5).
+#include "lib/lens_sets_lib.glsl"
 #include "lib/pyramid_atlas_lib.glsl"
 #include "lib/bokeh/sweep_lib.glsl"
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
 #endif
+#include "passes/layered/layer_ray.glsl"
 
-// Sets of places on the lens, one for each pixel of a square of 4 x 4.
-#define SETS 16
 // A texel without a surface.
 #define EMPTY 1.5
 // Least share of the light that is followed further.
@@ -37,8 +39,6 @@
 // Texels show one surface to a part of the lens if they move alike across it, in texels.
 #define MOVES_ALIKE 1.0
 
-// The ray: its place in a layer's raster is start - along * depth.
-vec2 ray_start, ray_along;
 ivec2 size;
 int reads = 0, layers;
 bool unordered;
@@ -46,11 +46,6 @@ bool unordered;
 // Where the sample is on the lens, as a share of the way to the places that colours are seen from.
 vec2 seen_from;
 #endif
-
-vec2 ray_place(float depth)
-{
-  return ray_start - ray_along * depth;
-}
 
 ivec2 texel_at(vec2 place)
 {
@@ -76,9 +71,11 @@ vec4 range_of(ivec2 square, int level, int layer)
 }
 
 // Least and largest depth over the texels that a part of the ray passes, and what shares squares.
-vec2 depths_between(vec2 a, vec2 b, int layer)
+vec2 depths_between(vec2 between, int layer)
 {
-  ivec2 low = texel_at(min(a, b)), high = texel_at(max(a, b));
+  vec2 a, b;
+  ray_bounds(between, a, b);
+  ivec2 low = texel_at(a), high = texel_at(b);
   int span = max(high.x - low.x, high.y - low.y);
   int level = min(span == 0 ? 0 : findMSB(span) + 1, int(layered_buf.sampling.y));
   ivec2 c = low >> level, d = high >> level;
@@ -106,21 +103,33 @@ bool in_front(float ahead, float pace)
   return ahead > EMPTY || ahead * pace > 0.5;
 }
 
+// Where the ray is on its way from one depth to another.
+#ifdef REAL_LENS
+#define ON_WAY(part) ray_place(between.x + extent * (part))
+#else
+#define ON_WAY(part) (from + way * (part))
+#endif
+
 // The first crossing of a thin ray with a layer's height field, between two depths.
 Hit meet(vec2 between, int layer)
 {
-  vec2 from = ray_place(between.x), way = ray_place(between.y) - from;
   float extent = between.y - between.x;
+#ifdef REAL_LENS
+  vec2 low, high;
+  ray_bounds(between, low, high);
+  float texels = max(high.x - low.x, high.y - low.y);
+#else
+  vec2 from = ray_place(between.x), way = ray_place(between.y) - from;
   float texels = max(abs(way.x), abs(way.y));
+#endif
   int steps = clamp(int(ceil(texels)), 1, unordered ? MOST_STEPS_UNORDERED : MOST_STEPS);
-  // Texels that the ray passes while its depth changes by one.
-  float pace = max(abs(ray_along.x), abs(ray_along.y));
+  float pace = pace_at(0.5 * (between.x + between.y));
   float stretch = max(SURFACE_STRETCH, texels / float(steps * (1 << FALSE_POSITIONS)));
-  Hit hit = Hit(from, between.x, false);
+  Hit hit = Hit(vec2(0.0), between.x, false);
   float before = 1.0, at_before = 0.0;
   for (int i = 0; i <= steps; i++) {
     float at = float(i) / float(steps);
-    float ahead = depth_at(from + way * at, layer) - (between.x + extent * at);
+    float ahead = depth_at(ON_WAY(at), layer) - (between.x + extent * at);
     if (in_front(ahead, pace)) {
       before = ahead;
       at_before = at;
@@ -134,7 +143,7 @@ Hit meet(vec2 between, int layer)
         // Where the one in front is over nothing, the secant says nothing.
         float part = (f_low > EMPTY) ? 0.5 : clamp(f_low / (f_low - f_high), 0.1, 0.9);
         float middle = mix(low, high, part);
-        float f = depth_at(from + way * middle, layer) - (between.x + extent * middle);
+        float f = depth_at(ON_WAY(middle), layer) - (between.x + extent * middle);
         if (in_front(f, pace)) {
           low = middle;
           f_low = f;
@@ -148,7 +157,7 @@ Hit meet(vec2 between, int layer)
       ahead = f_high;
     }
     if (-ahead * pace <= stretch) {
-      return Hit(from + way * at, between.x + extent * at + ahead, true);
+      return Hit(ON_WAY(at), between.x + extent * at + ahead, true);
     }
     // It has passed behind the edge of something nearer, and goes on there.
     before = ahead;
@@ -261,7 +270,7 @@ void main()
 {
   size = textureSize(depths_tx, 0).xy;
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  int set = (pixel.x & 3) | ((pixel.y & 3) << 2);
+  int set = lens_set(pixel);
   int across = textureSize(places_tx, 0).x;
   ivec2 entry = ivec2(sample_index % across, set + SETS * (sample_index / across));
   vec2 lens = texelFetch(places_tx, entry, 0).xy;
@@ -279,6 +288,9 @@ void main()
 #endif
   ray_start = (axis + (place - axis - lens * moves.xy) / scale) * fine + layered_buf.raster.zw;
   ray_along = lens * moves.zw / scale * fine;
+#ifdef REAL_LENS
+  bend_ray(place, axis, lens, moves, scale, lens_slot + (lens_sets > 1 ? set : 0));
+#endif
   // Texels that a ray's part of the lens moves a surface by: constant, and by the depth.
   vec2 wide = layered_buf.sampling.w * max(fine.x, fine.y) * vec2(moves.x, moves.z);
 #ifdef MATTES
@@ -300,7 +312,7 @@ void main()
     }
     bool possible = true;
     for (int i = 0; i < APPROACHES && possible; i++) {
-      vec2 seen = depths_between(ray_place(between.x), ray_place(between.y), layer);
+      vec2 seen = depths_between(between, layer);
       vec2 narrowed = vec2(max(between.x, seen.x), min(between.y, seen.y));
       possible = narrowed.x <= narrowed.y;
       if (narrowed == between) {
