@@ -74,6 +74,27 @@ def lens_facts(prescription, label=None):
     )
 
 
+def squeeze(prescription, label=None):
+    """Return how much narrower an anamorphic lens draws than it is high.
+
+    Its opening is seen narrower by the same number.
+
+    Parameters
+    ----------
+    prescription : Prescription
+    label : str or None
+        Of the zoom position.
+
+    Returns
+    -------
+    float
+        Focal length along the picture's height over that along its width; 1 for other lenses.
+    """
+    configuration = prescription.configuration(label)
+    wide = _horizontal(configuration)
+    return abs(first_order(configuration).efl / wide) if wide else 1.0
+
+
 def _horizontal(configuration):
     if configuration.of_revolution:
         return None

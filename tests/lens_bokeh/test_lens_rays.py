@@ -5,10 +5,13 @@ import pytest
 
 from addon.errors import FocusError, PrescriptionError
 from addon.lens_bokeh.samples.field_grid import field_grid
+from addon.lens_bokeh.samples.landing import spread_places
 from addon.lens_bokeh.samples.lens_rays import lens_rays, undistorted
 from addon.lens_bokeh.samples.sample_tables import sample_tables
+from addon.lens_bokeh.samples.stop_rays import StopAim
 from addon.lens_bokeh.samples.stop_shapes import paraxial_pupil, stop_shapes
 from addon.lens_io.lens_shelf import LensShelf
+from addon.optics.lens_facts import squeeze
 from addon.optics.rays.aiming import aim
 from addon.optics.rays.beam import Beam
 from addon.optics.rays.trace import Rays, trace
@@ -160,9 +163,66 @@ def test_an_even_world_is_as_bright_as_traced_from_the_sensor(name, f_number):
     assert ours / ours[0] == pytest.approx(np.array(theirs) / theirs[0], abs=near)
 
 
-def test_a_lens_with_cylinders_and_a_focus_inside_the_lens_are_refused():
-    with pytest.raises(PrescriptionError, match="cylinder"):
-        lens_rays(_prescription("anamorphic-60mm-f2"), None, FOCUS, 2.0, 0.3)
+def test_points_land_where_rays_traced_through_cylinders_do():
+    prescription = _prescription("anamorphic-60mm-f2")
+    lens = osl_lens(prescription, None, FOCUS, 2.0)
+    half = np.array([0.24, 0.13])
+    rays = lens_rays(prescription, None, FOCUS, 2.0, 0.3, True, LINE, tuple(1.3 * half))
+    # Twice as narrow as high, and as much as focal lengths are apart but for the near focus.
+    assert squeeze(prescription) == pytest.approx(60.555 / 31.5, rel=0.01)
+    assert rays.stretch == pytest.approx(squeeze(prescription), rel=0.05)
+    radius = lens.pupil_radius / 1000.0
+    grids = field_grid(-half, half), field_grid(-half, half, 0.1)
+    tables = sample_tables(rays, *grids, radius, rays.stretch)
+    aimed = StopAim(lens.configuration, lens.pupil, lens.pupil_radius, LINE)
+    rng = np.random.default_rng(1)
+    compared = 0
+    for _ in range(40):
+        seen = rng.uniform(-1.0, 1.0, 2) * half
+        vergence = rng.uniform(0.02, rays.largest_vergence)
+        q = rng.uniform(-0.7, 0.7, 2)
+        start = q * [lens.pupil_radius / rays.stretch, lens.pupil_radius]
+        traced = aimed.rays(seen, np.array([vergence / 1000.0]), q[None], start[None])
+        if not traced.found[0] or traced.rims[:, 0].min() < 0.0:
+            continue
+        place = rays.distortion.undone(traced.landing / rays.scale)[0]
+        position = q * tables.aperture_radius / [rays.stretch, 1.0]
+        eye = np.array([[*(seen / vergence), -1.0 / vergence]])
+        moved = tables.displaced(eye, tables.moves(position[None])[0], position)[0]
+        error = np.linalg.norm(moved[:2] * vergence - place) * WIDTH / (2.0 * half[0])
+        assert error < 0.1, (seen, vergence, q)
+        compared += 1
+    assert compared > 25
+
+
+def test_an_even_world_through_cylinders_is_as_bright_as_traced_from_the_sensor():
+    prescription = _prescription("anamorphic-60mm-f2")
+    lens = osl_lens(prescription, None, FOCUS, 2.0)
+    half = np.array([0.24, 0.13])
+    rays = lens_rays(prescription, None, FOCUS, 2.0, 0.3, True, LINE, tuple(1.3 * half))
+    grids = field_grid(-half, half), field_grid(-half, half, 0.1)
+    tables = sample_tables(rays, *grids, 0.01, rays.stretch)
+    positions = spread_places(1000) * 0.01 / [rays.stretch, 1.0]
+    light = tables.light(positions, np.sqrt(np.pi / 1000)).mean(axis=0).ravel()
+    seen = np.array([[0.0, 0.0], [0.5, 0.0], [0.9, 0.0], [0.0, 0.9], [0.7, -0.7]]) * half
+    index, weights = tables.light_grid.taps(seen)
+    ours = (light[index] * weights).sum(axis=1)
+    axis = (np.arange(160) + 0.5) / 80.0 - 1.0
+    aimed = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2) * lens.aim_radius
+    theirs = []
+    for place in seen:
+        # The field that is shown there lands, distorted, at:
+        sensor = place.copy()
+        for _ in range(20):
+            sensor += place - rays.distortion.undone(sensor[None])[0]
+        start = np.broadcast_to(sensor * rays.scale, aimed.shape)
+        bundle = rays_from_sensor(start, aimed, lens.configuration.sensor, lens.aim)
+        passed = trace(lens.configuration, bundle, LINE, backwards=True).passed
+        theirs.append((bundle.directions[:, 2] ** 4)[passed].sum())
+    assert ours / ours[0] == pytest.approx(np.array(theirs) / theirs[0], abs=0.01)
+
+
+def test_a_focus_inside_the_lens_is_refused():
     with pytest.raises((FocusError, PrescriptionError)):
         lens_rays(_prescription("double-gauss-50mm-f2"), None, 0.01, 2.0, 0.3)
 

@@ -161,6 +161,15 @@ def test_the_iris_of_the_lens_is_taken_over(camera, aplanat_bpy, own_folder):
     assert camera.aplanat.bokeh.blade_curvature == pytest.approx(0.4)
 
 
+def test_the_iris_of_an_anamorphic_lens_has_its_squeeze(camera, aplanat_bpy):
+    camera.aplanat.lens = "anamorphic-60mm-f2"
+    assert aplanat_bpy.ops.camera.aplanat_use_iris() == {"FINISHED"}
+    assert camera.dof.aperture_ratio == pytest.approx(60.555 / 31.5, rel=0.01)
+    camera.aplanat.lens = TESSAR
+    assert aplanat_bpy.ops.camera.aplanat_use_iris() == {"FINISHED"}
+    assert camera.dof.aperture_ratio == 1.0
+
+
 def test_a_lens_file_is_imported_and_used(camera, aplanat_bpy, own_folder, shared):
     samples = shared / "lenses" / "import-samples"
     run = aplanat_bpy.ops.camera.aplanat_import_lens

@@ -189,12 +189,16 @@ def plan_bokeh(snapshot, plan):
     Returns
     -------
     BokehPlan or None
-        None where nothing is splatted: bokeh is off, or everything is sharp.
+        None where nothing is splatted: bokeh is off, everything is sharp, or lens samples see
+        through a lens that shapes no discs.
     """
     settings, lens = snapshot.camera.bokeh, snapshot.camera.lens
     sampling = snapshot.sampling
     wanted = sampling.method != "REFERENCE" or sampling.reference_bokeh
     if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
+        return None
+    if plan.real_lens is not None and shaping_lens(snapshot.camera) is None:
+        # No discs are traced for it, and those of a thin lens would not be where the samples are.
         return None
     least = least_splatted(plan)
     bright = _shining(snapshot.content, settings.threshold)

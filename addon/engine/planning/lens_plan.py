@@ -139,9 +139,6 @@ def plan_real_lens(camera, film, lens):
     high = low + np.array([scale_x, scale_y]) * film.region[2:]
     low, high = np.minimum(low, high), np.maximum(low, high)
     name = camera.real_lens.prescription.name
-    if not camera.real_lens.shapes_bokeh and camera.bokeh is not None:
-        # Its cylinders are told by the camera's report.
-        return None, ()
     try:
         corners = (*low.tolist(), *high.tolist())
         made = _plan(_Lens(camera.real_lens), _Thin(lens), corners, _outermost(camera))
@@ -164,7 +161,10 @@ def plan_real_lens(camera, film, lens):
 def _plan(key, thin, corners, outermost):
     settings, lens = key.settings, thin.lens
     low, high = np.array(corners[:2]), np.array(corners[2:])
-    rays = _rays(key, lens.focus_distance, _reach(outermost))
+    sides = None
+    if not key.settings.shapes_bokeh:
+        sides = tuple(_reach(each) for each in np.maximum(np.abs(low), np.abs(high)))
+    rays = _rays(key, lens.focus_distance, _reach(outermost), sides)
     grids = field_grid(low, high), field_grid(low, high, _MARGIN)
     tables = sample_tables(rays, *grids, lens.aperture_radius, lens.iris.ratio, outermost)
     places = lens_samples(0, _MANY, lens.iris) * lens.aperture_radius
@@ -231,8 +231,13 @@ class _Thin:
 
 # Memo of its arguments alone: as of `_plan`, whatever part of the field is shown.
 @lru_cache(maxsize=4)
-def _rays(lens, focus_distance, tangent):
+def _rays(lens, focus_distance, tangent, sides):
     settings = lens.settings
     return lens_rays(
-        settings.prescription, settings.label, focus_distance, settings.f_number, tangent
+        settings.prescription,
+        settings.label,
+        focus_distance,
+        settings.f_number,
+        tangent,
+        sides=sides,
     )

@@ -29,6 +29,7 @@ from ...optics.focus import focused
 from ...optics.glass import REFERENCE_WAVELENGTH_NM
 from ...optics.paraxial import first_order
 from ..tables.spline import spline_matrix
+from .cylinder_rays import cylinder_rays
 from .ray_fan import RayFan, undistorted
 from .stop_rays import StopAim
 from .stop_shapes import paraxial_pupil, stop_shapes
@@ -138,6 +139,60 @@ class LensRays:
         """
         return tangents if self.flat else undistorted(self.distorted, tangents)
 
+    # Height of the pupil over its width.
+    stretch = 1.0
+
+    def moves(self, nodes):
+        """Lay out the aberrations over places of the field.
+
+        Parameters
+        ----------
+        nodes : ndarray of shape (P, 2)
+
+        Returns
+        -------
+        moves : ndarray of shape (2 T, P, 4, 2)
+            Coefficients of the terms in the picture's frame, for each power of the vergence over
+            the largest, x and y, over the radius of the pupil.
+        chief : ndarray of shape (P, 4, 2)
+            Of the rays through the middle of the iris.
+        """
+        away, turn = _polar(nodes)
+        # Seen from the other side of the axis, both directions of the picture are turned round.
+        aberrations = self.of_fields(self.aberrations, self.orders[:, 1] % 2 == 0, away)
+        chief = self.of_fields(self.chief, True, away)
+        powers = np.linalg.inv((self.vergences / self.largest_vergence)[:, None] ** np.arange(4))
+        aberrations = np.einsum("jk,nkct->njct", powers, aberrations)
+        angle = turn[:, None] * self.orders[:, 1]
+        cos, sin = np.cos(angle)[:, None], np.sin(angle)[:, None]
+        along, across = aberrations[:, :, 0], aberrations[:, :, 1]
+        first, second = np.cos(turn)[:, None, None], np.sin(turn)[:, None, None]
+        # The cosine and the sine term of each angle from e1 in terms of those from the x axis.
+        one = np.concatenate([along * cos, along * sin], axis=-1)
+        other = np.concatenate([-across * sin, across * cos], axis=-1)
+        moves = np.stack([one * first - other * second, one * second + other * first], axis=-2)
+        axes = np.concatenate([first, second], axis=-1)
+        return np.moveaxis(moves, -1, 0), (chief @ powers.T)[..., None] * axes
+
+    def light_and_rims(self, nodes):
+        """Lay out the light, then the clearances of the rims, over places of the picture.
+
+        Parameters
+        ----------
+        nodes : ndarray of shape (P, 2)
+
+        Returns
+        -------
+        ndarray of shape (1 + S, 2 T, P)
+            Coefficients of the terms, by the place where points in focus are shown.
+        """
+        away, turn = _polar(nodes)
+        every = np.concatenate([self.light[:, None], self.rims], axis=1)
+        every = self.of_fields(every, self.orders[:, 1] % 2 == 1, self.field_shown(away))
+        angle = turn[:, None, None] * self.orders[:, 1]
+        turned = np.concatenate([every * np.cos(angle), every * np.sin(angle)], axis=-1)
+        return np.moveaxis(turned, 0, -1)
+
 
 def lens_rays(
     prescription,
@@ -147,6 +202,7 @@ def lens_rays(
     largest_tangent,
     flat=True,
     wavelength_nm=REFERENCE_WAVELENGTH_NM,
+    sides=None,
 ):
     """Trace a lens for lens samples.
 
@@ -163,15 +219,17 @@ def lens_rays(
     flat : bool
         Without distortion.
     wavelength_nm : float
+    sides : tuple of 2 float or None
+        Largest tangents along x and y, of which a lens with cylinders makes use.
 
     Returns
     -------
-    LensRays
+    LensRays or CylinderRays
 
     Raises
     ------
     FocusError, PrescriptionError
-        If the lens cannot be focused there, has cylinders, or no ray comes through.
+        If the lens cannot be focused there, or no ray comes through.
     """
     configuration, order = _focused(prescription, label, focus_distance)
     focus = 1.0 / (focus_distance * _MM)
@@ -185,6 +243,9 @@ def lens_rays(
     turn = (np.arange(VERGENCES) + 0.5) / VERGENCES * np.pi
     vergences = nearest * 0.5 * (1.0 - np.cos(turn))
     lens = configuration.stopped_down(max(f_number, configuration.f_number))
+    if not lens.of_revolution:
+        sides = sides or (largest_tangent, largest_tangent)
+        return cylinder_rays(lens, order.enp_z, focus, vergences, sides, flat, wavelength_nm)
     scale, radius = paraxial_pupil(lens, order.enp_z, focus, wavelength_nm)
     for stopped, places in stop_shapes(lens, order.enp_z, radius, focus, wavelength_nm):
         aim = StopAim(stopped, order.enp_z, radius * places, wavelength_nm)
@@ -232,10 +293,6 @@ def _followed(fan, half_field_deg, largest_tangent):
 def _focused(prescription, label, focus_distance):
     """Return the lens focused at a distance from its entrance pupil, and its first order."""
     wide = lens = prescription.configuration(label)
-    if not wide.of_revolution:
-        raise PrescriptionError(
-            "lens samples are traced through lenses of revolution; this lens has a cylinder"
-        )
     for _ in range(_FOCUS_STEPS):
         distance = focus_distance * _MM - first_order(lens).enp_z
         try:
@@ -243,3 +300,7 @@ def _focused(prescription, label, focus_distance):
         except PrescriptionError as error:
             raise FocusError(f"{error}; focus farther away") from error
     return lens, first_order(lens)
+
+
+def _polar(places):
+    return np.hypot(*places.T), np.arctan2(places[:, 1], places[:, 0])

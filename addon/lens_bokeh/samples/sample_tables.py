@@ -211,17 +211,13 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=n
     """
     largest = float(rays.largest_vergence)
     moves, chief = _moves(rays, wide_grid.nodes, aperture_radius, ratio)
-    odd = rays.orders[:, 1] % 2 == 1
     source = grid.padded(_PADDING)
-    away, turn = _polar(source.nodes)
-    every = np.concatenate([rays.light[:, None], rays.rims], axis=1)
-    every = rays.of_fields(every, odd, rays.field_shown(away))
-    every = np.stack([_scalar(each, rays.orders, turn) for each in np.moveaxis(every, 1, 0)])
+    every = rays.light_and_rims(source.nodes)
     # The nodes of the picture, and the axis.
     wanted = np.append(grid.nodes, [[0.0, 0.0]], axis=0)
     away = np.hypot(*wanted.T)
     wanted *= np.minimum(outermost / np.maximum(away, 1e-30), 1.0)[:, None]
-    focused, _ = _moves(rays, source.nodes, aperture_radius, 1.0)
+    focused, _ = _moves(rays, source.nodes, aperture_radius, rays.stretch)
     powers = (rays.focus_vergence / largest) ** np.arange(4)
     focused = np.einsum("tnkc,k->tnc", focused, powers)
     every = where_they_land(every, focused, rays.orders, source, wanted)
@@ -249,44 +245,11 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=n
 
 
 def _moves(rays, nodes, aperture_radius, ratio):
-    """Lay out the aberrations over nodes of a field.
-
-    Returns
-    -------
-    moves : ndarray of shape (2 T, P, 4, 2)
-        Coefficients of the terms in the picture's frame, for each power of the vergence over the
-        largest, x and y.
-    chief : ndarray of shape (P, 4, 2)
-        Of the rays through the middle of the iris.
-    """
-    away, turn = _polar(nodes)
-    # Seen from the other side of the axis, both directions of the picture are turned round.
-    aberrations = rays.of_fields(rays.aberrations, rays.orders[:, 1] % 2 == 0, away)
-    chief = rays.of_fields(rays.chief, True, away)
-    powers = np.linalg.inv((rays.vergences / rays.largest_vergence)[:, None] ** np.arange(4))
-    aberrations = np.einsum("jk,nkct->njct", powers, aberrations) * aperture_radius
-    angle = turn[:, None] * rays.orders[:, 1]
-    cos, sin = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    along, across = aberrations[:, :, 0], aberrations[:, :, 1]
-    first, second = np.cos(turn)[:, None, None], np.sin(turn)[:, None, None]
-    # The cosine and the sine term of each angle from e1 in terms of those from the x axis.
-    one = np.concatenate([along * cos, along * sin], axis=-1)
-    other = np.concatenate([-across * sin, across * cos], axis=-1)
-    moves = np.stack(
-        [(one * first - other * second) / ratio, one * second + other * first], axis=-2
-    )
-    axes = np.concatenate([first, second], axis=-1)
-    return np.moveaxis(moves, -1, 0), (chief @ powers.T)[..., None] * axes
-
-
-def _polar(places):
-    return np.hypot(*places.T), np.arctan2(places[:, 1], places[:, 0])
-
-
-def _scalar(coefficients, orders, turn):
-    """Turn cosine terms about each node; shape (2 T, nodes)."""
-    angle = turn[:, None] * orders[:, 1]
-    return np.concatenate([coefficients * np.cos(angle), coefficients * np.sin(angle)], axis=1).T
+    """Return movements of the rays of a camera's own opening, as `LensRays.moves`."""
+    moves, chief = rays.moves(nodes)
+    moves = moves * aperture_radius
+    moves[..., 0] *= rays.stretch / ratio
+    return moves, chief
 
 
 def _rim_slope(rim, orders):

@@ -4,7 +4,7 @@ A point is given by its field h, the tangent of its angle to the axis, and its v
 its distance from the plane of the entrance pupil: it lies at ``h / V`` above the axis. The ray from
 it through a place x of that plane has the slope ``x V - h``, at infinity, too. The place for which
 the ray passes the stop at a target is found by Newton's method, field by field, each beginning
-where the last one ended. Lens of revolution: points lie in the yz plane. Lengths in mm.
+where the last one ended. A field that is one number lies in the yz plane. Lengths in mm.
 """
 
 from dataclasses import dataclass, replace
@@ -47,7 +47,7 @@ class StopAim:
     Parameters
     ----------
     configuration : Configuration
-        A focused lens of revolution, its stop as far open as it is used.
+        A focused lens, its stop as far open as it is used.
     pupil : float
         z of the paraxial entrance pupil.
     pupil_radius : float
@@ -69,7 +69,7 @@ class StopAim:
 
         Parameters
         ----------
-        field : float
+        field : float or ndarray of shape (2,)
         vergences : ndarray of shape (N,)
             1/mm.
         targets : ndarray of shape (N, 2)
@@ -90,7 +90,7 @@ class StopAim:
 
         Parameters
         ----------
-        field : float
+        field : float or ndarray of shape (2,)
         vergences : ndarray of shape (N,)
         places : ndarray of shape (N, 2)
             mm.
@@ -99,7 +99,7 @@ class StopAim:
         -------
         StopRays
         """
-        traced = self._traced((0.0, field), vergences, places, record=True)
+        traced = self._traced(_seen(field), vergences, places, record=True)
         rims = 1.0 - np.sum(traced.hits[..., :2] ** 2, axis=-1) / self._radii[:, None] ** 2
         landing = traced.at_plane(self._configuration.sensor)
         return StopRays(places, landing, rims, traced.reached)
@@ -109,7 +109,7 @@ class StopAim:
 
         Parameters
         ----------
-        field : float
+        field : float or ndarray of shape (2,)
         vergences : ndarray of shape (N,)
         places : ndarray of shape (N, 2)
             mm.
@@ -119,7 +119,7 @@ class StopAim:
         stops, landing : ndarray of shape (N, 2)
             In units of the stop's radius, and mm on the sensor; 0 where a ray fails.
         """
-        traced = self._traced((0.0, field), vergences, places, record=True)
+        traced = self._traced(_seen(field), vergences, places, record=True)
         stops = traced.hits[self.stop, :, :2] / self._radii[self.stop]
         landing = traced.at_plane(self._configuration.sensor)
         return np.where(traced.reached[:, None], stops, 0.0), landing
@@ -134,7 +134,7 @@ class StopAim:
 
         Parameters
         ----------
-        field : float
+        field : float or ndarray of shape (2,)
         vergences : ndarray of shape (N,)
         places : ndarray of shape (N, 2)
             As `rays` found them.
@@ -154,7 +154,7 @@ class StopAim:
             follow = -_inverse(stop_x) @ stop_h
             opened = 1.0 / _determinant(stop_x)
             total = land_h + land_x @ follow
-            slopes = places * vergences[:, None] - (0.0, field)
+            slopes = places * vergences[:, None] - _seen(field)
             cosine2 = 1.0 / (1.0 + np.sum(slopes**2, axis=-1))
             return cosine2**2 * np.abs(opened / _determinant(total))
 
@@ -164,7 +164,7 @@ class StopAim:
         step[axis] = _NUDGE * (abs(self.pupil_radius) if moved == "place" else 1.0)
         ends = []
         for sign in (1.0, -1.0):
-            at, seen = places, np.array([0.0, field])
+            at, seen = places, _seen(field)
             if moved == "place":
                 at = places + sign * step
             else:
@@ -180,7 +180,7 @@ class StopAim:
 
     def _solve(self, field, vergences, targets, start):
         places, step = start.copy(), np.zeros_like(start)
-        seen = np.array([0.0, field])
+        seen = _seen(field)
         stops, valid = self._at_stop(seen, vergences, places)
         error = np.where(valid, np.linalg.norm(stops - targets, axis=1), np.inf)
         going = np.flatnonzero(valid)
@@ -237,6 +237,10 @@ class StopAim:
         return trace(
             self._configuration, Rays(origins, directions), self._wavelength, clip=False, **options
         )
+
+
+def _seen(field):
+    return np.array([0.0, field]) if np.ndim(field) == 0 else np.asarray(field, float)
 
 
 def _determinant(matrices):

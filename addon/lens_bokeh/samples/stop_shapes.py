@@ -21,7 +21,7 @@ _PARAXIAL = 1e-4
 _RAYS, _FARTHEST = 4001, 2.0
 
 
-def paraxial_pupil(configuration, pupil, focus, wavelength_nm):
+def paraxial_pupil(configuration, pupil, focus, wavelength_nm, along=(0.0, 1.0)):
     """Return the scale of the picture and the size of the stop's image in front of the lens.
 
     Parameters
@@ -33,6 +33,8 @@ def paraxial_pupil(configuration, pupil, focus, wavelength_nm):
     focus : float
         Vergence of the focus, 1/mm.
     wavelength_nm : float
+    along : tuple of 2 float
+        The meridian: (0, 1), or (1, 0), which is another one if the lens has cylinders.
 
     Returns
     -------
@@ -48,11 +50,13 @@ def paraxial_pupil(configuration, pupil, focus, wavelength_nm):
     """
     aim = StopAim(configuration, pupil, 1.0, wavelength_nm)
     focus = np.array([focus])
-    stops, _ = aim.through(0.0, focus, np.array([[0.0, _PARAXIAL]]))
-    _, landing = aim.through(_PARAXIAL, focus, np.zeros((1, 2)))
-    if not (stops[0, 1] != 0.0 and landing[0, 1] != 0.0):
+    along = np.array(along)
+    stops, _ = aim.through(np.zeros(2), focus, _PARAXIAL * along[None])
+    _, landing = aim.through(_PARAXIAL * along, focus, np.zeros((1, 2)))
+    stop, land = float(stops[0] @ along), float(landing[0] @ along)
+    if stop == 0.0 or land == 0.0:
         raise PrescriptionError("rays near the axis do not get through the lens")
-    return landing[0, 1] / _PARAXIAL, _PARAXIAL / stops[0, 1]
+    return land / _PARAXIAL, _PARAXIAL / stop
 
 
 def stop_shapes(configuration, pupil, radius, focus, wavelength_nm):

@@ -63,8 +63,8 @@ def _describe(camera, real_lens, corner, opening):
     appearance, problems = _read_appearance(camera, shaping, corner, opening)
     if shaping is None and real_lens and camera.dof.use_dof:
         problems += (
-            f"lens '{real_lens.prescription.name}' shapes no bokeh, a thin lens does: it has"
-            " cylinders, and discs are traced for lenses of revolution",
+            f"lens '{real_lens.prescription.name}' shapes no bokeh, for it has cylinders:"
+            " highlights are left to the lens samples, in layered pictures to a thin lens",
         )
     vignetting = settings.vignetting
     if vignetting == "LENS" and shaping is None:

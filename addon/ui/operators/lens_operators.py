@@ -8,7 +8,7 @@ from bpy.props import BoolProperty, StringProperty
 from ...engine.shared_resources import real_lens_of, shelf
 from ...errors import AplanatError
 from ...lens_io import user_lenses
-from ...optics.lens_facts import lens_facts
+from ...optics.lens_facts import lens_facts, squeeze
 from ...scene.camera.lenses import user_folder
 from ..jobs import background
 from .text_editor import show_text
@@ -154,18 +154,20 @@ class APLANAT_OT_use_iris(_LensOperator, bpy.types.Operator):
     bl_idname = "camera.aplanat_use_iris"
     bl_label = "Use Lens Iris"
     bl_description = (
-        "Set blades of the camera's iris, their curvature and rotation to those of its real lens"
+        "Set blades of the camera's iris, their curvature, rotation and ratio to those of its real"
+        " lens"
     )
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context):
-        """Set blades, curvature and rotation."""
+        """Set blades, curvature, rotation and ratio."""
         camera = camera_of(context)
         lens = real_lens_of(camera)
         iris = lens.prescription.diaphragm
         dof = camera.dof
         dof.aperture_blades = min(iris.blades, _MOST_BLADES)
         dof.aperture_rotation = math.remainder(math.radians(iris.rotation_deg), math.tau)
+        dof.aperture_ratio = squeeze(lens.prescription, lens.label)
         camera.aplanat.bokeh.blade_curvature = iris.blade_curvature
         if iris.blades > _MOST_BLADES:
             self.report({"INFO"}, f"The iris has {iris.blades} blades; Blender allows 16")

@@ -5,7 +5,7 @@ import math
 import bpy
 
 from ...engine.shared_resources import real_lens_of, resources, shelf
-from ...optics.lens_facts import lens_facts
+from ...optics.lens_facts import lens_facts, squeeze
 from ...scene.camera.bokeh import corner_tangent
 from ...scene.camera.camera import sensor_diagonal
 from ...scene.camera.distortion import read_distortion
@@ -232,7 +232,7 @@ class APLANAT_CAMERA_PT_lens_facts(_KnownLensPanel, bpy.types.Panel):
         for name, value in _facts(lens, camera, context.scene):
             _draw_fact(column, name, value, letters)
         iris = lens.prescription.diaphragm
-        if _differs_from_iris(camera, iris):
+        if _differs_from_iris(camera, iris, squeeze(lens.prescription, lens.label)):
             self.layout.operator(APLANAT_OT_use_iris.bl_idname)
         found = shelf().find(lens.id)
         if found is not None and found.lens is not None and found.lens.warnings:
@@ -261,6 +261,8 @@ def _facts(lens, camera, scene):
     if facts.horizontal_focal_length is not None:
         length += f" high, {facts.horizontal_focal_length:.4g} mm wide"
     yield "Focal Length", length
+    if facts.horizontal_focal_length is not None:
+        yield "Squeeze", f"{squeeze(prescription, lens.label):.3g}"
     yield "Opens to", f"f/{facts.f_number:.3g}"
     yield "Covers", f"{2.0 * math.degrees(facts.half_field):.3g}\N{DEGREE SIGN}"
     yield "Image Circle", _circle(facts.image_circle_diameter, sensor_diagonal(camera, scene))
@@ -285,9 +287,9 @@ def _circle(diameter, diagonal):
     return f"{diameter:.3g} mm, {verdict} the sensor's {diagonal:.3g} mm"
 
 
-def _differs_from_iris(camera, iris):
+def _differs_from_iris(camera, iris, ratio):
     dof = camera.dof
-    if dof.aperture_blades != min(iris.blades, 16):
+    if dof.aperture_blades != min(iris.blades, 16) or abs(dof.aperture_ratio - ratio) > 1e-3:
         return True
     turn = math.remainder(dof.aperture_rotation - math.radians(iris.rotation_deg), math.tau)
     bend = camera.aplanat.bokeh.blade_curvature - iris.blade_curvature

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from addon.lens_io.lens_shelf import LensShelf
 from benchmarks.bokeh.lens import has_osl
 from benchmarks.referees.osl_lens import osl_lens, shader_source
 from tests.pictures import (
@@ -18,12 +19,12 @@ from tests.pictures import (
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
 FOCUS = 2.0
+# A picture that is distorted afterwards is traced larger.
+_LARGER = 1.05
 
 
 def use_lens(data, name, sensor_width, distortion="NONE", exposure="EVEN"):
     """Give a camera a lens wide open, with its focal length; return it as the OSL camera has it."""
-    from addon.lens_io.lens_shelf import LensShelf
-
     prescription = LensShelf([]).find(name).lens.prescription
     f_number = prescription.configuration(None).f_number
     lens = osl_lens(prescription, None, FOCUS, f_number)
@@ -86,11 +87,12 @@ def wall(scene, side):
     bpy.context.object.data.materials.append(material)
 
 
-def traced(scene, data, lens, samples, folder):
+def traced(scene, data, lens, samples, folder, sides=None):
+    """Render the traced lens; `sides` are those of the sensor that the picture shows, mm."""
     import _cycles
 
     height = data.sensor_width * scene.render.resolution_y / scene.render.resolution_x
-    source = shader_source(lens, (data.sensor_width, height), data.lens)
+    source = shader_source(lens, (data.sensor_width, height) if sides is None else sides, data.lens)
     (folder / "lens.osl").write_text(source)
     assert _cycles.osl_compile(str(folder / "lens.osl"), str(folder / "lens.oso"))
     data.type, data.custom_bytecode = "CUSTOM", (folder / "lens.oso").read_text()
@@ -98,6 +100,18 @@ def traced(scene, data, lens, samples, folder):
     picture = render_cycles(scene, samples)
     data.type = "PERSP"
     return picture
+
+
+def _bilinear(picture, at):
+    """Sample a picture at places in pixels, x and y, pixel centres at whole numbers."""
+    size = np.array([picture.shape[1], picture.shape[0]])
+    at = np.clip(at, 0.0, size - 1.001)
+    low = at.astype(int)
+    x, y = (at - low).T[..., None]
+    column, row = low.T
+    bottom = picture[row, column] * (1.0 - x) + picture[row, column + 1] * x
+    top = picture[row + 1, column] * (1.0 - x) + picture[row + 1, column + 1] * x
+    return bottom * (1.0 - y) + top * y
 
 
 @pytest.mark.skipif(not has_osl(), reason="this Blender's Cycles comes without OSL")
@@ -124,6 +138,43 @@ def test_a_wall_of_two_triangles_is_blurred_by_the_curved_field(empty_scene, cam
     save_side_by_side(tmp_path / "ours.png", ours, theirs)
     # Without dividing the triangles 0.8.
     assert ssim(ours, theirs) > 0.97, tmp_path
+
+
+@pytest.mark.skipif(not has_osl(), reason="this Blender's Cycles comes without OSL")
+def test_a_picture_through_cylinders_is_that_of_the_traced_lens(empty_scene, camera, tmp_path):
+    from addon.lens_bokeh.samples.lens_rays import lens_rays
+    from addon.optics.lens_facts import squeeze
+
+    lens = use_lens(camera, "anamorphic-60mm-f2", 22.0, "NONE", "LENS")
+    prescription = LensShelf([]).find("anamorphic-60mm-f2").lens.prescription
+    camera.dof.aperture_ratio = squeeze(prescription)
+    world(empty_scene, (0.05, 0.08, 0.15))
+    balls(empty_scene)
+    ours = render_aplanat(empty_scene, 128)
+    render = empty_scene.render
+    width, height = render.resolution_x, render.resolution_y
+    # The sensor's picture is narrower than what is projected, and distorted: finer, and a little
+    # larger, it is stretched and laid where our picture has it.
+    sides = np.array([camera.sensor_width, camera.sensor_width * height / width])
+    half = 0.5 * sides / camera.lens
+    rays = lens_rays(prescription, None, FOCUS, 2.0, 0.3, sides=tuple(1.3 * half))
+    render.resolution_x, render.resolution_y = 2 * width, 2 * height
+    theirs = traced(
+        empty_scene, camera, lens, 512, tmp_path, sides * rays.scale / rays.scale[1] * _LARGER
+    )
+    y, x = np.mgrid[:height, :width] + 0.5
+    places = (np.stack([x / width, y / height], axis=-1).reshape(-1, 2) * 2.0 - 1.0) * half
+    landing = places.copy()
+    for _ in range(20):
+        landing += places - rays.distortion.undone(landing)
+    at = (landing / half / _LARGER + 1.0) * np.array([width, height]) - 0.5
+    theirs = _bilinear(theirs, at).reshape(height, width, -1)
+    save_side_by_side(tmp_path / "ours.png", ours, theirs)
+    render.resolution_x, render.resolution_y = width, height
+    camera.aplanat.lens = ""
+    thin = render_aplanat(empty_scene, 128)
+    assert ssim(ours, theirs) > 0.97, tmp_path
+    assert 1.0 - ssim(thin, theirs) > 2.0 * (1.0 - ssim(ours, theirs))
 
 
 def test_an_even_exposure_is_flat_and_that_of_the_lens_darkens_corners(empty_scene, camera):
