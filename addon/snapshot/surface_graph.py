@@ -103,7 +103,7 @@ def attributes_read(graph):
     keys = set()
     for node in graph.nodes:
         name = node.setting("name")
-        if node.kind in _NORMAL_KINDS:
+        if node.kind in _NORMAL_KINDS or node.setting("projection") == "BOX":
             keys.add("normal")
         if node.kind in _GENERATED_KINDS:
             keys.add("generated")

@@ -15,9 +15,43 @@ def _environment_texture(node, writer):
     return {"Color": ("color", color)}
 
 
-@generates("image_texture")
+_PROJECTION = "lib/nodes/projection_lib.glsl"
+# Places in an image, of a vector.
+_FLAT = {
+    "FLAT": "({}).xy",
+    "SPHERE": "project_sphere({})",
+    "TUBE": "project_tube({})",
+    "EQUIRECTANGULAR": "project_equirectangular({})",
+    "MIRROR_BALL": "project_mirror_ball({})",
+}
+
+
+@generates("image_texture", _PROJECTION)
 def _image_texture(node, writer):
-    uv = f"({writer.value(node.input('Vector'), 'vec3')}).xy"
+    vector = writer.value(node.input("Vector"), "vec3")
+    projection = node.setting("projection", "FLAT")
+    if projection == "BOX":
+        texel = _box(node, writer, writer.let("vec3", vector))
+    else:
+        texel = _texel(node, writer, _FLAT[projection].format(vector))
+    return {"Color": ("color", f"{texel}.rgb"), "Alpha": ("float", f"{texel}.a")}
+
+
+def _box(node, writer, vector):
+    """Write the look-ups of the sides of a box, weighed."""
+    writer.normal()
+    blend = writer.value(node.input("Blend"), "float")
+    normal = writer.let("vec3", "box_normal()")
+    weights = writer.let("vec3", f"box_weights({normal}, {blend})")
+    sides = [
+        f"{weights}.{axis} * {_texel(node, writer, f'box_uv({vector}, {normal}, {number})')}"
+        for number, axis in enumerate("xyz")
+    ]
+    return writer.let("vec4", " + ".join(sides))
+
+
+def _texel(node, writer, uv):
+    """Write a look-up and return the colour, scene linear, and alpha."""
     function = f"image_{node.setting('interpolation', 'Linear').lower()}"
     extension = f"EXTENSION_{node.setting('extension', 'REPEAT')}"
     expression = f"{function}({writer.image(node.image)}, {uv}, {extension})"
@@ -27,4 +61,4 @@ def _image_texture(node, writer):
     texel = writer.let("vec4", expression)
     if node.setting("encoding") == "srgb":
         texel = writer.let("vec4", f"vec4(srgb_to_linear({texel}.rgb), {texel}.a)")
-    return {"Color": ("color", f"{texel}.rgb"), "Alpha": ("float", f"{texel}.a")}
+    return texel

@@ -58,6 +58,31 @@ vec4 image_linear(sampler2D tx, vec2 uv, int extension)
   return mix(mix(a, b, t.x), mix(c, d, t.x), t.y);
 }
 
+// Weights of a uniform cubic B-spline.
+vec4 cubic_weights(float t)
+{
+  float r = 1.0 - t;
+  return vec4(r * r * r,
+              3.0 * t * t * t - 6.0 * t * t + 4.0,
+              3.0 * r * r * r - 6.0 * r * r + 4.0,
+              t * t * t) / 6.0;
+}
+
+vec4 image_cubic(sampler2D tx, vec2 uv, int extension)
+{
+  ivec2 size = textureSize(tx, 0);
+  vec2 place = uv * vec2(size) - 0.5;
+  vec2 corner = floor(place);
+  ivec2 texel = ivec2(corner) - 1;
+  vec4 x = cubic_weights(place.x - corner.x), y = cubic_weights(place.y - corner.y);
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < 16; i++) {
+    ivec2 step = ivec2(i & 3, i >> 2);
+    sum += x[step.x] * y[step.y] * image_texel(tx, texel + step, size, extension);
+  }
+  return sum;
+}
+
 // Colour that was multiplied by alpha before interpolation.
 vec4 image_unassociate(vec4 texel)
 {

@@ -1,0 +1,67 @@
+"""Images in every projection, interpolation and extension."""
+
+import numpy as np
+
+from .case import Case
+
+
+def _picture(width, height, alpha=False, is_float=True, space="Non-Color"):
+    def prepare(bpy, node):
+        pixels = np.random.default_rng(width + height).random((height, width, 4))
+        if not alpha:
+            pixels[..., 3] = 1.0
+        image = bpy.data.images.new("image", width, height, alpha=True, float_buffer=is_float)
+        image.colorspace_settings.name = space
+        image.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).reshape(-1))
+        image.update()
+        image.pack()
+        node.image = image
+
+    return prepare
+
+
+# Few texels, so that a pixel's footprint is small: Cycles reads coarser pictures where it is not.
+_SMALL = _picture(4, 3)
+
+CASES = [
+    *(
+        Case(
+            "TexImage",
+            "Color",
+            {"Vector": "signed"},
+            {"extension": e, "interpolation": i},
+            _picture(2, 2),
+        )
+        for e in ("REPEAT", "EXTEND", "CLIP", "MIRROR")
+        for i in ("Linear", "Closest", "Cubic", "Smart")
+    ),
+    *(
+        Case("TexImage", "Color", {"Vector": "generated"}, {"projection": p}, _SMALL, "dome")
+        for p in ("FLAT", "BOX", "SPHERE", "TUBE")
+    ),
+    *(
+        Case(
+            "TexImage",
+            "Color",
+            {"Vector": "object"},
+            {"projection": "BOX", "projection_blend": b},
+            _SMALL,
+            "dome",
+        )
+        for b in (0.1, 0.6, 1.0)
+    ),
+    Case("TexImage", "Alpha", {"Vector": "uv"}, {}, _picture(4, 3, alpha=True)),
+    Case("TexImage", "Color", {"Vector": "uv"}, {}, _picture(4, 3, is_float=False, space="sRGB")),
+    Case(
+        "TexImage",
+        "Color",
+        {"Vector": "uv"},
+        {},
+        _picture(4, 3, is_float=False, space="Linear Rec.2020"),
+    ),
+    *(
+        Case("TexEnvironment", "Color", {"Vector": "signed"}, {"projection": p}, _SMALL)
+        for p in ("EQUIRECTANGULAR", "MIRROR_BALL")
+    ),
+    Case("TexEnvironment", "Color", {}, {}, _SMALL, "dome"),
+]
