@@ -81,6 +81,7 @@ class SurfaceGraph:
 LIT_KINDS = frozenset({"diffuse", "glossy", "principled"})
 _NORMAL_KINDS = LIT_KINDS | {
     *("geometry", "texture_coordinate", "fresnel", "layer_weight", "tangent", "bump", "normal_map"),
+    "displacement",
 }
 _GENERATED_KINDS = frozenset({"generated", "geometry", "tangent"})
 

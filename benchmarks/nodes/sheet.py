@@ -155,6 +155,10 @@ def _fill(bpy, tree, case, image):
         else:
             socket.default_value = value
     shown = _socket(node.outputs, case.output)
+    if case.output == "Displacement":
+        # What it does is shown, to the normal.
+        links.new(shown, output.inputs["Displacement"])
+        shown = nodes.new("ShaderNodeNewGeometry").outputs["Normal"]
     if shown.type == "VECTOR":
         half = nodes.new("ShaderNodeVectorMath")
         half.operation = "MULTIPLY_ADD"

@@ -62,7 +62,7 @@ ROOMS = {
     "passes": ("device", "sampling", "passes.surface", "passes.bokeh"),
     # Blender's data read into a snapshot.
     "scene.images": ("snapshot",),
-    "scene.nodes": ("snapshot", "scene.images"),
+    "scene.nodes": ("sampling", "snapshot", "scene.images"),
     "scene.camera": (
         *("optics", "optics.rays", "sampling", "lens_bokeh.openings", "lens_bokeh.look"),
         *("lens_io", "lens_io.glasses", "settings", "snapshot", "scene.images"),

@@ -43,6 +43,7 @@ MEMOS = {
     "snapshot.cryptomatte": ("cryptomatte_hash",),
     "ui.previews.bokeh_previews": ("_speckles", "disc_pictures"),
     "ui.previews.chromatic_previews": ("shown_range",),
+    "scene.nodes.value_nodes": ("_black_body_table", "_wavelength_table"),
 }
 
 # By module: why it remembers, and what.

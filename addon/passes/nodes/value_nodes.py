@@ -303,3 +303,37 @@ def _interpolated(writer, first, count, place):
     index = writer.let("int", f"int(clamp(floor({at}), 0.0, {float(count - 2)}))")
     ends = [f"material_buf.constants[{first + i} + {index}]" for i in range(2)]
     return writer.let("vec4", f"mix({ends[0]}, {ends[1]}, {at} - float({index}))")
+
+
+@generates("black_body", "lib/finite_lib.glsl")
+def _black_body(node, writer):
+    temperature, coldest, hottest = (
+        writer.value(node.input(name), "float") for name in ("Temperature", "Coldest", "Hottest")
+    )
+    clamped = f"clamp({temperature}, {coldest}, {hottest})"
+    place = f"(1.0 / {clamped} - 1.0 / {hottest}) / (1.0 / {coldest} - 1.0 / {hottest})"
+    return {"Color": ("color", f"{_look_up(writer, node.table, place, False)}.rgb")}
+
+
+@generates("wavelength", "lib/finite_lib.glsl")
+def _wavelength(node, writer):
+    wavelength = writer.let("float", writer.value(node.input("Wavelength"), "float"))
+    place = f"clamp(({wavelength} - 380.0) / 400.0, 0.0, 1.0)"
+    found = _look_up(writer, node.table, place, False)
+    seen = f"(({wavelength} < 380.0 || {wavelength} > 780.0) ? vec3(0.0) : {found}.rgb)"
+    return {"Color": ("color", writer.let("vec3", seen))}
+
+
+@generates("light_falloff", _MATH)
+def _light_falloff(node, writer):
+    strength, smooth, length = (
+        writer.value(node.input(name), "float") for name in ("Strength", "Smooth", "Length")
+    )
+    far = writer.let("float", length)
+    softened = f"({smooth} > 0.0 ? {far} * {far} / ({smooth} + {far} * {far}) : 1.0)"
+    falling = writer.let("float", f"{strength} * {softened}")
+    return {
+        "Quadratic": ("float", falling),
+        "Linear": ("float", f"({falling} * {far})"),
+        "Constant": ("float", f"({falling} * {far} * {far})"),
+    }

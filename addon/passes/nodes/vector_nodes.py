@@ -99,3 +99,27 @@ def _vector_transform(node, writer):
         what = "place" if kind == "POINT" else "direction"
         turned = f"{what}_from_world({what}_to_world({vector}, {start}), {end})"
     return {"Vector": ("vec3", writer.let("vec3", turned))}
+
+
+@generates("displacement", _NORMALS)
+def _displacement(node, writer):
+    writer.normal()
+    middle, scale = (writer.value(node.input(name), "float") for name in ("Midlevel", "Scale"))
+    space = node.setting("space")
+    if node.setting("kind") == "HEIGHT":
+        height = f"({writer.value(node.input('Height'), 'float')} - {middle}) * {scale}"
+    else:
+        moved = writer.let(
+            "vec3", f"({writer.value(node.input('Vector'), 'vec3')} - {middle}) * {scale}"
+        )
+        # In tangent space y is along the normal.
+        along = "point_normal()"
+        if space == "OBJECT":
+            along = "unit_or(normal_to_object(point_object(), point_normal()), vec3(0.0))"
+        height = f"{moved}.y" if space == "TANGENT" else f"dot({moved}, {along})"
+    name = writer.let("float", height)
+    bent = f"bump_normal({name}, 1.0, 1.0, point_normal())"
+    if space != "WORLD":
+        bent = f"bump_normal_of_object({name}, point_normal())"
+    writer.lines.append(f"  point_bent = {bent};")
+    return {}

@@ -113,10 +113,45 @@ def _tangent(reader, node, groups):
     return reader.add("tangent", settings=settings)
 
 
+# Jenkins' hash of twice 0, as a share.
+_RANDOM_OF_NO_PARTICLE = 0.8603128
+
+
 @reads("HAIR_INFO", "PARTICLE_INFO", "POINT_INFO")
 def _of_other_geometry(reader, node, groups):
     # What Cycles gives on a mesh that is none of these.
-    return {
+    outputs = {
         socket.identifier: Constant((0.0,) * (3 if socket.type == "VECTOR" else 1))
+        for socket in node.outputs
+    }
+    if node.type == "PARTICLE_INFO":
+        outputs["Random"] = Constant((_RANDOM_OF_NO_PARTICLE,))
+    return outputs
+
+
+@reads("AMBIENT_OCCLUSION")
+def _ambient_occlusion(reader, node, groups):
+    reader.note(f"node '{node.bl_label}' sees nothing near; its colour is used, and 1")
+    return {"Color": reader.value(node, "Color", groups), "AO": Constant((1.0,))}
+
+
+@reads("BEVEL")
+def _bevel(reader, node, groups):
+    reader.note(f"node '{node.bl_label}' rounds nothing; the normal is used as it is")
+    normal = reader.normal(node, groups)
+    return {"Normal": normal[0][1] if normal else Link(reader.add("geometry"), "Normal")}
+
+
+@reads("WIREFRAME")
+def _wireframe(reader, node, groups):
+    reader.note(f"node '{node.bl_label}' draws no lines; 0 is used")
+    return {"Fac": Constant((0.0,))}
+
+
+@reads("VOLUME_INFO")
+def _volume_info(reader, node, groups):
+    # What Cycles gives on a surface.
+    return {
+        socket.identifier: Constant((0.0,) * (3 if socket.type == "RGBA" else 1))
         for socket in node.outputs
     }

@@ -1,6 +1,12 @@
 """From Blender's nodes that compute numbers, vectors and colours to those of a `SurfaceGraph`."""
 
+from functools import cache
+
+import numpy as np
+
+from ...sampling.spectrum import color_matching
 from ...snapshot.surface_graph import Constant, Link
+from ..images import color_spaces
 from .tree_reader import reader_registry
 
 READERS, reads = reader_registry()
@@ -191,3 +197,69 @@ def _curves(reader, node, groups):
         ("extrapolated", _flag(mapping.extend == "EXTRAPOLATED")),
     )
     return _as(reader, node, "curves", inputs, settings, {"Result": output}, tuple(table))
+
+
+# From CIE 1931 XYZ (white of D65) to linear Rec.709.
+_XYZ_TO_REC709 = (
+    (3.2404542, -1.5371385, -0.4985314),
+    (-0.9692660, 1.8760108, 0.0415560),
+    (0.0556434, -0.2040259, 1.0572252),
+)
+# Between these temperatures, in K, Cycles' black bodies change.
+_COLDEST, _HOTTEST = 800.0, 12000.0
+# What Cycles divides the colours of wavelengths by.
+_WAVELENGTH_SCALE = 2.52
+
+
+# Memo of its arguments alone.
+@cache
+def _black_body_table(space, count=129):
+    """Return colours of black bodies of luminance 1, evenly spaced in 1 / temperature."""
+    wavelengths = np.arange(360.0, 831.0)
+    metres = wavelengths * 1e-9
+    temperature = 1.0 / np.linspace(1.0 / _HOTTEST, 1.0 / _COLDEST, count)[:, None]
+    # Planck's law; hc / k in m K.
+    light = 1.0 / (metres**5 * np.expm1(1.4387769e-2 / (metres * temperature)))
+    xyz = light @ color_matching(wavelengths)
+    return _rows(xyz / xyz[:, 1:2], space)
+
+
+# Memo of its arguments alone.
+@cache
+def _wavelength_table(space):
+    """Return colours of wavelengths from 380 to 780 nm, 5 nm apart."""
+    return _rows(color_matching(np.arange(380.0, 785.0, 5.0)) / _WAVELENGTH_SCALE, space)
+
+
+def _rows(xyz, space):
+    rgb = xyz @ np.array(_XYZ_TO_REC709).T
+    pixels = np.concatenate([rgb, np.ones((len(rgb), 1))], axis=1).astype(np.float32)[None]
+    if space != color_spaces.REC709:
+        converted = color_spaces.convert(pixels, color_spaces.REC709, space)
+        pixels = pixels if converted is None else converted
+    return tuple(tuple(float(max(v, 0.0)) for v in row) for row in pixels[0])
+
+
+@reads("BLACKBODY")
+def _black_body(reader, node, groups):
+    table = _black_body_table(color_spaces.working_space())
+    if not reader.has_room(len(table)):
+        return None
+    ends = [("Coldest", Constant((_COLDEST,))), ("Hottest", Constant((_HOTTEST,)))]
+    inputs = [*reader.values(node, ("Temperature",), groups), *ends]
+    return reader.add("black_body", inputs, table=table)
+
+
+@reads("WAVELENGTH")
+def _wavelength(reader, node, groups):
+    table = _wavelength_table(color_spaces.working_space())
+    if not reader.has_room(len(table)):
+        return None
+    return reader.add("wavelength", reader.values(node, ("Wavelength",), groups), table=table)
+
+
+@reads("LIGHT_FALLOFF")
+def _light_falloff(reader, node, groups):
+    inputs = reader.values(node, ("Strength", "Smooth"), groups)
+    inputs.append(("Length", Link(reader.add("camera_data"), "View Distance")))
+    return reader.add("light_falloff", inputs)

@@ -3,7 +3,8 @@
 import numpy as np
 
 from ...snapshot.surface_graph import Constant, Link
-from .tree_reader import reader_registry
+from .node_tree import source_of
+from .tree_reader import input_socket, reader_registry
 
 READERS, reads = reader_registry()
 
@@ -104,3 +105,29 @@ def _vector_transform(reader, node, groups):
         ("to", node.convert_to),
     )
     return reader.add("vector_transform", reader.values(node, ("Vector",), groups), settings)
+
+
+def read_displacement(reader, output):
+    """Add a node that bends the surface's normal as its displacement does; none without one.
+
+    Parameters
+    ----------
+    reader : TreeReader
+    output : bpy.types.Node
+        Of the material.
+    """
+    source, groups = source_of(input_socket(output, "Displacement"), ())
+    if not source.is_output:
+        return
+    node = source.node
+    kind, space = "VECTOR", "WORLD"
+    if node.type == "DISPLACEMENT":
+        kind, space = "HEIGHT", node.space
+        inputs = reader.values(node, ("Height", "Midlevel", "Scale"), groups)
+    elif node.type == "VECTOR_DISPLACEMENT":
+        space = node.space
+        inputs = reader.values(node, ("Vector", "Midlevel", "Scale"), groups)
+    else:
+        inputs = [("Vector", reader.value(output, "Displacement", ()))]
+        inputs += [("Midlevel", Constant((0.0,))), ("Scale", Constant((1.0,)))]
+    reader.add("displacement", inputs, (("kind", kind), ("space", space)))

@@ -7,6 +7,7 @@ from ..images.images import ImageReader
 from ..nodes.all_nodes import READERS
 from ..nodes.node_tree import inlined
 from ..nodes.tree_reader import TreeReader
+from ..nodes.vector_nodes import read_displacement
 
 _INVISIBLE_GRAPH = SurfaceGraph(
     (ShaderNode("transparent", (("Color", Constant((1.0, 1.0, 1.0))),)),), Link(0, "BSDF")
@@ -98,13 +99,16 @@ class MaterialReader:
             return SurfaceGraph()
         owner = f"material '{material.name}'"
         reader = TreeReader(owner, self.image_reader, READERS, material.pass_index)
+        # First, so that all that follows has the normal that it bends.
+        read_displacement(reader, output)
         graph = reader.surface(output)
         if graph.surface is None and reader.linked(output, "Volume", ()):
             # The mesh around a volume (fog, smoke) has no surface of its own.
             graph = _INVISIBLE_GRAPH
-        for socket, what in (("Volume", "volume"), ("Displacement", "displacement")):
-            if reader.linked(output, socket, ()):
-                reader.note(f"{what} is not drawn")
+        if reader.linked(output, "Volume", ()):
+            reader.note("volume is not drawn")
+        if reader.linked(output, "Displacement", ()) and material.displacement_method != "BUMP":
+            reader.note("displacement is drawn as bump")
         if material.use_backface_culling:
             reader.note("backface culling is not done; both sides are drawn, as in Cycles")
         self._report += reader.report

@@ -8,16 +8,36 @@
 #define SPACE_OBJECT 1
 #define SPACE_CAMERA 2
 
-// Change of a height over a pixel gives the slope; `height` must be read in uniform control flow.
+// A normal bent by the slope of a height: `across` and `up` are the changes of the place over a pixel,
+// `slopes` those of the height.
+vec3 bend_normal(
+    vec3 normal, vec3 across, vec3 up, vec2 slopes, float strength, float distance)
+{
+  vec3 rx = cross(up, normal), ry = cross(normal, across);
+  float det = dot(across, rx);
+  vec3 slope = slopes.x * rx + slopes.y * ry;
+  vec3 bent = abs(det) * normal - distance * sign(det) * slope;
+  return unit_or(mix(normal, unit_or(bent, normal), max(strength, 0.0)), normal);
+}
+
+// `height` must be read in uniform control flow.
 vec3 bump_normal(float height, float strength, float distance, vec3 normal)
 {
   vec3 across = dFdx(world_position), up = dFdy(world_position);
-  vec3 rx = cross(up, normal), ry = cross(normal, across);
-  float det = dot(across, rx);
-  vec3 slope = dFdx(height) * rx + dFdy(height) * ry;
-  vec3 bent = abs(det) * normal - distance * sign(det) * slope;
-  float t = max(strength, 0.0);
-  return unit_or(mix(normal, unit_or(bent, normal), t), normal);
+  vec2 slopes = vec2(dFdx(height), dFdy(height));
+  return bend_normal(normal, across, up, slopes, strength, distance);
+}
+
+// The same with a height in units of object space.
+vec3 bump_normal_of_object(float height, vec3 normal)
+{
+  mat4 object = point_object();
+  mat3 to_object = inverse(mat3(object));
+  vec3 own = unit_or(normal_to_object(object, normal), vec3(0.0));
+  vec3 across = to_object * dFdx(world_position), up = to_object * dFdy(world_position);
+  vec2 slopes = vec2(dFdx(height), dFdy(height));
+  vec3 bent = bend_normal(own, across, up, slopes, 1.0, 1.0);
+  return unit_or(normal_to_world(object, bent), normal);
 }
 
 // A normal map in tangent space. `tangent`: object space, w: handedness; `smooth_normal`: object space.

@@ -13,6 +13,9 @@
 #define POINT_PROJECTION visibility_buf.projection
 #endif
 
+// The normal that displacement has bent; 0 without.
+vec3 point_bent = vec3(0.0);
+
 // Towards the eye: the place on the lens that the sample looks from.
 vec3 point_view()
 {
@@ -43,9 +46,12 @@ vec3 point_geometric_normal(vec3 view)
   return (dot(geometric, view) < 0.0) ? -geometric : geometric;
 }
 
-// The interpolated normal on the side that is seen; of any length.
+// The interpolated or bent normal on the side that is seen; of any length.
 vec3 point_smooth_normal(vec3 geometric)
 {
+  if (dot(point_bent, point_bent) > 0.0) {
+    return point_bent;
+  }
 #ifdef HAS_NORMAL
   return (dot(world_normal, geometric) < 0.0) ? -world_normal : world_normal;
 #else

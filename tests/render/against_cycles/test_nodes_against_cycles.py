@@ -3,13 +3,18 @@
 import numpy as np
 import pytest
 
-from benchmarks.nodes import input_cases, pattern_cases, sheet
+from benchmarks.nodes import image_cases, input_cases, pattern_cases, sheet, value_cases
 from tests.pictures import render_aplanat, render_cycles, save_side_by_side
 
 # In 1/255 of the sRGB encoded picture.
 LARGEST_DIFFERENCE = 2.0
 
-SHEETS = {"inputs": input_cases.CASES, "patterns": pattern_cases.CASES}
+SHEETS = {
+    "inputs": input_cases.CASES,
+    "values": value_cases.CASES,
+    "images": image_cases.CASES,
+    "patterns": pattern_cases.CASES,
+}
 
 
 @pytest.mark.parametrize("name", SHEETS)
@@ -31,7 +36,7 @@ def test_nodes_agree_with_cycles(aplanat_bpy, tmp_path, name):
 
 def test_a_wrong_number_is_found(aplanat_bpy):
     """The comparison is able to fail."""
-    cases = input_cases.CASES[:4]
+    cases = value_cases.CASES[:4]
     scene = sheet.build_sheet(aplanat_bpy, cases)
     cycles = render_cycles(scene, 1, "BLACKMAN_HARRIS", sheet.TINY_FILTER)
     wrong = cycles.copy()
