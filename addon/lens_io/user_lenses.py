@@ -87,6 +87,36 @@ def import_into(folder, path, used_ids, options=None):
     return AddedLens(added.stem, added, prescription.name, tuple(ignored), tuple(warnings))
 
 
+def keep_recorded(folder, wanted, text, used_ids):
+    """Add a lens that another file kept to the user's folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is not there.
+    wanted : str
+        Its id where it was recorded.
+    text : str
+        Of a lens file.
+    used_ids : collection of str
+        Ids that other lenses have.
+
+    Returns
+    -------
+    AddedLens
+
+    Raises
+    ------
+    LensFileError
+        If the text cannot be used.
+    OutputError
+        If the folder cannot be written to.
+    """
+    read = parse_lens(text.encode("utf-8"), "recorded lens")
+    added = _store(folder, id_for(wanted), text.encode("utf-8"), used_ids)
+    return AddedLens(added.stem, added, read.prescription.name, (), tuple(read.warnings))
+
+
 def copy_into(folder, path, used_ids):
     """Copy a lens file to the user's folder under a name and an id of its own.
 

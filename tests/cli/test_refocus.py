@@ -111,6 +111,39 @@ def test_without_a_scene_the_lens_is_the_captured_one(aplanat, aplanat_bpy, stac
     )
 
 
+def test_the_captured_lens_is_the_one_that_was_recorded_whatever_the_library_has(
+    aplanat, aplanat_bpy, stack, tmp_path
+):
+    from addon.engine.shared_resources import shelf
+    from addon.lens_io.recorded_lens import text_of
+    from addon.scene.camera.lens_record import record_lens
+
+    data = aplanat_bpy.data.cameras.new("Camera")
+    data.aplanat.lens = "tessar-50mm-f2.8"
+    told = record_lens(data)
+    other = text_of(shelf(), "petzval-51mm-f1.4")
+    words = ("refocus", tmp_path / "a.exr", "-o", tmp_path / "b.exr", "--samples", "1", "--json")
+    # On a machine without it, and on one where its name is another lens'.
+    for lens, text, warned in (
+        ("tessar-50mm-f2.8", told["lens_file"], 0),
+        ("of-another-machine", other, 0),
+        ("tessar-50mm-f2.8", other, 1),
+        ("tessar-50mm-f2.8", "no lens", 1),
+    ):
+        settings = {**told, "lens": lens, "lens_file": text}
+        camera = replace(stack.camera, lens_settings=settings)
+        save_layers(tmp_path / "a.exr", replace(stack, camera=camera))
+        done = aplanat(*words)
+        assert done.code == 0, done.err
+        lines = [line for line in done.answer["warnings"] if "recorded" in line]
+        assert len(lines) == warned, lines
+        (frame,) = done.answer["frames"]
+        # As far as the lens opens.
+        assert frame["lens"] == lens
+        wide = 1.4 if text == other else 2.8
+        assert frame["fstop"] == pytest.approx(max(wide, stack.camera.f_stop), rel=0.05)
+
+
 def test_a_lens_file_that_is_edited_meanwhile_stays_what_it_was(
     aplanat, captured, tmp_path, monkeypatch
 ):

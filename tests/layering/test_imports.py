@@ -99,6 +99,7 @@ ROOMS = {
         *(
             "files",
             "layers",
+            "lens_io",
             "device",
             "sampling",
             "settings",
@@ -147,7 +148,8 @@ ROOMS = {
         *("cli.words", "cli.render"),
     ),
     "cli.refocus": (
-        *("files", "device", "layers", "scene.camera", "settings", "engine", "engine.refocus"),
+        *("files", "device", "layers", "lens_io", "scene.camera", "settings"),
+        *("engine", "engine.refocus"),
         *("cli.words", "cli.render"),
     ),
     "cli": (

@@ -31,6 +31,7 @@ MEMOS = {
     "lens_io.importers.draft.media": (
         *("_catalog_values", "_maker_glasses", "_names_without_hyphens", "_old_glasses"),
     ),
+    "lens_io.recorded_lens": ("parse",),
     "optics.media": ("_index",),
     "passes.surface.environment": ("ggx_table",),
     "sampling.spectrum": ("_colour", "_matrix", "_observer"),

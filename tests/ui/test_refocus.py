@@ -13,9 +13,10 @@ from addon.engine.refocus.scene_refocus import as_sequence, flat_options, read_r
 from addon.engine.refocus.settings import RefocusSettings
 from addon.engine.shared_resources import resources
 from addon.layers.layer_file import load_layers, save_layers
+from addon.lens_io.lens_shelf import LensShelf
 from addon.scene.camera.lens_record import record_lens
 from addon.ui.jobs.live_refocus import LiveRefocus
-from addon.ui.operators.refocus_operators import restore_lens
+from addon.ui.operators.restored_lens import restore_lens
 from addon.ui.panels.bokeh_panel import APLANAT_CAMERA_PT_bokeh
 from addon.ui.panels.lens_panel import APLANAT_CAMERA_PT_lens
 from tests.engine.test_refocus import stack
@@ -166,6 +167,37 @@ def test_a_camera_gets_the_captured_lens_back(scene, own, camera, stack):
     assert (before.iris.blades, after.iris.blades) == (0, 7)
     assert after == replace(before, iris=after.iris, bokeh=after.bokeh)
     assert after.bokeh.gain == 4.0
+
+
+def test_a_captured_lens_that_the_library_has_not_is_added_to_it(
+    scene, own, camera, stack, tmp_path, monkeypatch
+):
+    from addon.engine.shared_resources import shelf
+    from addon.lens_io.recorded_lens import text_of
+    from addon.ui.operators import restored_lens
+
+    class Shelf:
+        """A library of one folder and of what was shipped, without the lens that was recorded."""
+
+        def __init__(self):
+            self.folder = LensShelf([tmp_path])
+
+        def __call__(self):
+            return self.folder
+
+    monkeypatch.setattr(restored_lens, "shelf", Shelf())
+    monkeypatch.setattr(restored_lens, "user_folder", lambda: tmp_path)
+    data = scene.camera.data
+    data.aplanat.lens = "tessar-50mm-f2.8"
+    told = record_lens(data)
+    # The same lens there: nothing is added.
+    assert restore_lens(replace(stack.camera, lens_settings=told), data) is None
+    text = text_of(shelf(), "petzval-51mm-f1.4")
+    for name, wanted in (("my own", "my-own"), ("tessar-50mm-f2.8", "tessar-50mm-f2.8-2")):
+        told = {**told, "lens": name, "lens_file": text}
+        assert restore_lens(replace(stack.camera, lens_settings=told), data) == wanted
+        assert data.aplanat.lens == wanted
+        assert (tmp_path / f"{wanted}.toml").read_text() == text
 
 
 def work_on(live, scene):

@@ -6,8 +6,9 @@ from dataclasses import replace
 import bpy
 
 from ...engine.refocus.camera_settings import camera_settings
+from ...lens_io.recorded_lens import RecordedShelf
 from ...scene.camera.camera import evaluated_camera
-from ...scene.camera.lens_record import apply_lens
+from ...scene.camera.lens_record import apply_lens, recorded_file
 from ..render.scene_setup import (
     check_camera,
     find_lens,
@@ -70,14 +71,24 @@ class LensSource:
             self._scene.frame_set(frame)
             check_camera(self._scene)
             return self._read(stack, self._scene.camera)
+        sources, of_record = self._recorded(stack)
         with _captured_camera(stack) as camera:
-            found, problems = self._read(stack, camera)
+            found, problems = self._read(stack, camera, sources)
         # With all digits.
         iris = found.iris if self._arguments.blades is not None or found.iris.opening else None
         values = {"focus_distance": None, "f_stop": None, "iris": iris}
-        return self._with_numbers(replace(found, **values)), problems
+        return self._with_numbers(replace(found, **values)), (*of_record, *problems)
 
-    def _read(self, stack, camera):
+    def _recorded(self, stack):
+        """Return the library with the lens that was captured with, and warnings about it."""
+        recorded = recorded_file(stack.camera.lens_settings)
+        if recorded is None or self._lens_id is not None:
+            return self._sources, ()
+        shelf = RecordedShelf(self._sources.shelf, *recorded)
+        problems = (f"{shelf.problem}; --lens takes one of the library",) if shelf.problem else ()
+        return replace(self._sources, shelf=shelf), problems
+
+    def _read(self, stack, camera, sources=None):
         asked = self._arguments
         if self._lens_id is not None:
             use_lens(camera, self._lens_id, asked.lens)
@@ -89,7 +100,8 @@ class LensSource:
         depsgraph = bpy.context.evaluated_depsgraph_get()
         seen = evaluated_camera(depsgraph, camera)
         numbers = (asked.samples, asked.seed)
-        found, problems = camera_settings(stack, depsgraph, seen, self._sources, *numbers)
+        sources = sources or self._sources
+        found, problems = camera_settings(stack, depsgraph, seen, sources, *numbers)
         if asked.no_bokeh:
             found = replace(found, bokeh=None)
         if asked.no_chromatic:

@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from ...lens_bokeh.openings.shapes import iris_of
+from ...lens_io.recorded_lens import differs
 from ...scene.camera.bokeh import read_bokeh
 from ...scene.camera.camera import CameraSources, focus_distance
 from ...scene.camera.chromatic import read_chromatic
 from ...scene.camera.distortion import read_distortion
 from ...scene.camera.irises import read_opening
+from ...scene.camera.lens_record import recorded_file
 from ...scene.camera.lenses import read_real_lens
 from ..planning.field_table import picture_radius
 from .settings import RefocusSettings
@@ -47,6 +49,9 @@ def camera_settings(
     sources = sources or CameraSources()
     data, captured = camera.data, stack.camera
     real_lens, of_lens = read_real_lens(data, sources.shelf)
+    recorded = recorded_file(captured.lens_settings)
+    if recorded and data.aplanat.lens == recorded[0]:
+        of_lens += _against(recorded, sources.shelf, real_lens is not None)
     focus = focus_distance(depsgraph, camera)
     chromatic, of_chromatic = read_chromatic(data, real_lens, focus)
     corner = 0.0
@@ -74,3 +79,16 @@ def camera_settings(
     )
     problems = (*of_lens, *of_iris, *of_chromatic, *of_bokeh, *of_distortion)
     return settings, tuple(f"camera '{camera.name}': {line}" for line in problems)
+
+
+def _against(recorded, shelf, found):
+    """Return a warning if a library's lens is not the one that was captured with."""
+    restore = "Refocus > Restore as Captured adds the capture's to the library"
+    if not found and shelf.find(recorded[0]) is None:
+        return (restore,)
+    if differs(shelf, *recorded):
+        return (
+            f"lens '{recorded[0]}' of the library is not the one of that name that the layers were"
+            f" captured with; {restore}",
+        )
+    return ()

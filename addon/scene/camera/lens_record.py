@@ -14,11 +14,14 @@ import numpy as np
 from ...errors import InputError
 from ...lens_bokeh.openings.blades import BladedIris
 from ...lens_bokeh.openings.pictures import PictureIris
+from ...lens_io.lens_shelf import LensShelf
+from ...lens_io.recorded_lens import text_of
 from ...settings.bokeh_settings import BOKEH, DEBUG
 from ...settings.chromatic_settings import CHROMATIC
 from ...settings.scene_part_settings import DISTORTION, LENS
 from ...settings.setting import settings_of
 from .irises import IrisReader
+from .lenses import user_folder
 
 _LEVELS = 65535.0
 # Properties of the groups, the drawn curves last: into a group that then exists.
@@ -30,25 +33,30 @@ _BOKEH = tuple(
 _CHROMATIC = (*settings_of(*CHROMATIC), "curve_text")
 
 
-def record_lens(camera):
+def record_lens(camera, shelf=None):
     """Return the settings of a camera.
 
     Parameters
     ----------
     camera : bpy.types.Camera
         Evaluated.
+    shelf : LensShelf, optional
+        The library that its lens is of; None: it is read anew.
 
     Returns
     -------
     dict
         For JSON: ``lens``, ``zoom_label``, ``distortion`` and ``distortion_k``; ``bokeh`` and
-        ``chromatic`` by the names of their properties; ``iris``, the picture of the opening, if
-        any.
+        ``chromatic`` by the names of their properties; ``lens_file``, the text of the lens, and
+        ``iris``, the picture of the opening, if any.
     """
     own = camera.aplanat
     told = {name: getattr(own, name) for name in settings_of(LENS, DISTORTION)}
     told["bokeh"] = {name: getattr(own.bokeh, name) for name in _BOKEH}
     told["chromatic"] = {name: getattr(own.chromatic, name) for name in _CHROMATIC}
+    text = own.lens and text_of(shelf or LensShelf([user_folder()]), own.lens)
+    if text:
+        told["lens_file"] = text
     image = own.bokeh.iris_image
     if image is not None:
         # One that cannot be read is none: the blades are drawn then, here as there.
@@ -62,6 +70,24 @@ def record_lens(camera):
                 "texels": base64.b64encode(packed).decode("ascii"),
             }
     return told
+
+
+def recorded_file(told):
+    """Return the id and the text of the lens of settings that were recorded, or None.
+
+    Parameters
+    ----------
+    told : dict or None
+        Of `record_lens`.
+
+    Returns
+    -------
+    tuple of 2 str, or None
+        None for no lens, and where an older version recorded its id alone.
+    """
+    told = told or {}
+    found = told.get("lens"), told.get("lens_file")
+    return found if all(part and isinstance(part, str) for part in found) else None
 
 
 def recorded_opening(told, blades, rotation):

@@ -9,8 +9,8 @@ from ...engine.refocus.scene_refocus import as_sequence, flat_options, refocus_c
 from ...errors import AplanatError
 from ...files.frame_path import frame_path
 from ...layers.picking import depth_at
-from ...scene.camera.lens_record import apply_lens
 from ..jobs import live_refocus
+from .restored_lens import restore_lens
 
 # What the command line calls a setting, and what the panel does.
 _WORDS = (
@@ -293,24 +293,15 @@ class APLANAT_OT_refocus_restore(bpy.types.Operator):
         own.focus_distance, own.fstop = captured.focus_distance, captured.f_stop
         camera = refocus_camera(scene)
         if own.use_camera_lens and camera is not None:
-            restore_lens(captured, camera.data)
+            try:
+                added = restore_lens(captured, camera.data)
+            except AplanatError as error:
+                self.report({"WARNING"}, str(error))
+            else:
+                if added:
+                    self.report({"INFO"}, f"Lens '{added}' is in your library now")
         live_refocus.wake()
         return {"FINISHED"}
-
-
-def restore_lens(captured, camera):
-    """Give a camera the lens that it had when layers were captured.
-
-    Parameters
-    ----------
-    captured : LayerCamera
-        What it does not tell stays as it is.
-    camera : bpy.types.Camera
-    """
-    dof = camera.dof
-    dof.aperture_blades, dof.aperture_rotation = captured.blades, captured.blade_rotation
-    dof.aperture_ratio = captured.aperture_ratio
-    apply_lens(captured.lens_settings or {}, camera)
 
 
 def depth_under(context, mouse_x, mouse_y):
