@@ -43,3 +43,17 @@ def test_a_wrong_number_is_found(aplanat_bpy):
     # Of the second card, second from the left in the lowest row.
     wrong[-4, 11, :3] += 0.1
     assert [d > LARGEST_DIFFERENCE for d in sheet.compare(cases, wrong, cycles)] == [0, 1, 0, 0]
+
+
+def test_the_docs_have_a_line_for_each_node(aplanat_bpy):
+    from benchmarks.nodes.stated import STATED
+    from benchmarks.tools.node_table import FIRST, LAST, PAGE, menu_nodes
+
+    text = PAGE.read_text(encoding="utf-8").split(FIRST)[1].split(LAST)[0]
+    lines = [line.split(" | ") for line in text.splitlines() if line.startswith("| ")][2:]
+    nodes = menu_nodes(aplanat_bpy)
+    labels = {n: getattr(aplanat_bpy.types, f"ShaderNode{n}").bl_rna.name for n in nodes}
+    assert sorted(line[0].removeprefix("| ") for line in lines) == sorted(labels.values())
+    tried = {case.node for cases in SHEETS.values() for case in cases}
+    assert set(nodes) - {"MixRGB"} <= tried | set(STATED)
+    assert not tried & set(STATED)

@@ -1,0 +1,74 @@
+"""What is drawn of nodes that give light instead of numbers, and of those that are not drawn."""
+
+EXACT, APPROXIMATE, FALLBACK = "exact", "approximate", "fallback"
+
+# By Blender's type without ``ShaderNode``. Closures are compared with Cycles on lit spheres, in
+# tests/render/against_cycles/test_surfaces_against_cycles.py.
+STATED = {
+    "AddShader": (EXACT, ""),
+    "MixShader": (EXACT, ""),
+    "Emission": (EXACT, ""),
+    "Background": (EXACT, "of a world; see below"),
+    "Holdout": (EXACT, ""),
+    "OutputMaterial": (EXACT, "Surface; Displacement as bump; no Volume"),
+    "OutputWorld": (EXACT, "Surface; no Volume"),
+    "OutputLight": (APPROXIMATE, "one Emission of constant inputs"),
+    "BsdfTransparent": (APPROXIMATE, "light that passes keeps its colour, dimmed by the mean"),
+    "BsdfDiffuse": (APPROXIMATE, "no shadows, no light from other surfaces; no roughness"),
+    "BsdfAnisotropic": (APPROXIMATE, "mirrors lights and the world; no anisotropy"),
+    "BsdfPrincipled": (
+        APPROXIMATE,
+        "base, metal, specular, emission, alpha, normal; no coat, sheen, transmission, subsurface,"
+        " anisotropy, thin film",
+    ),
+    "BsdfTranslucent": (FALLBACK, "a diffuse surface"),
+    "SubsurfaceScattering": (FALLBACK, "a diffuse surface"),
+    "BsdfSheen": (FALLBACK, "a diffuse surface"),
+    "BsdfToon": (FALLBACK, "a diffuse surface"),
+    "BsdfHair": (FALLBACK, "a diffuse surface"),
+    "BsdfGlass": (FALLBACK, "a glossy surface"),
+    "BsdfRefraction": (FALLBACK, "a glossy surface"),
+    "BsdfMetallic": (FALLBACK, "a glossy surface"),
+    "BsdfHairPrincipled": (FALLBACK, "magenta"),
+    "BsdfRayPortal": (FALLBACK, "magenta"),
+    "EeveeSpecular": (FALLBACK, "magenta; Cycles does not draw it, either"),
+    "AmbientOcclusion": (FALLBACK, "its colour; AO is 1"),
+    "Bevel": (FALLBACK, "the normal as it is"),
+    "Wireframe": (FALLBACK, "0"),
+    "Raycast": (FALLBACK, "the value of the socket that it feeds"),
+    "TexSky": (FALLBACK, "the value of the socket that it feeds"),
+    "TexIES": (FALLBACK, "the value of the socket that it feeds"),
+    "TexGabor": (FALLBACK, "the value of the socket that it feeds"),
+    "RadialTiling": (FALLBACK, "the value of the socket that it feeds"),
+    "ShaderToRGB": (FALLBACK, "the value of the socket that it feeds; Cycles has none"),
+    "Script": (FALLBACK, "the value of the socket that it feeds"),
+    "OutputAOV": (FALLBACK, "no such pass"),
+    "VolumeAbsorption": (FALLBACK, "not drawn"),
+    "VolumeCoefficients": (FALLBACK, "not drawn"),
+    "VolumePrincipled": (FALLBACK, "not drawn"),
+    "VolumeScatter": (FALLBACK, "not drawn"),
+}
+
+# Reasons and limits of nodes that are measured.
+LIMITS = {
+    "NewGeometry": "not Parametric, Pointiness (0.5), Random Per Island (0)",
+    "TexCoord": "Window of the drawn region; not from an instancer",
+    "LightPath": "as a ray from the camera sees it",
+    "Attribute": "of the mesh; not of objects, instancers and view layers",
+    "Bump": "slopes from pixel to pixel",
+    "Displacement": "as bump; vertices stay",
+    "VectorDisplacement": "as bump; vertices stay",
+    "NormalMap": "in tangent space of meshes of triangles and quads",
+    "TexImage": "no mipmaps; of UDIM tiles the first",
+    "Mix": "not of rotations",
+    "HairInfo": "of meshes",
+    "ParticleInfo": "of meshes that are no particles",
+    "PointInfo": "of meshes",
+    "VolumeInfo": "of surfaces",
+    "LightFalloff": "of materials",
+}
+# No nodes of materials and worlds that an artist adds: bases, groups, Freestyle, and old ones that
+# Blender makes into others.
+NOT_IN_THE_MENU = {
+    *("", "Tree", "CustomGroup", "Group", "OutputLineStyle", "UVAlongStroke", "Squeeze"),
+}
