@@ -92,9 +92,10 @@ def _is_zero(source):
 
 def _brightest_reflection(content):
     """Return the largest radiance that a white surface may reflect of lights and world."""
-    if content.world.image or any(light.highlights for light in content.lights):
+    world = content.world.lighting or content.world
+    if world.image or any(light.highlights for light in content.lights):
         return np.inf
-    return _REFLECTANCE * max(map(abs, content.world.color))
+    return _REFLECTANCE * max(map(abs, world.color))
 
 
 def _bound(content, known, reflected, group, slot):

@@ -263,6 +263,8 @@ class World:
     graph : SurfaceGraph or None
         Nodes that compute the background from one or several images, of which `image` is one.
         None: the image is used as it is.
+    lighting : World or None
+        What surfaces are lit by and mirror where that is another world than the camera sees.
     """
 
     color: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -271,6 +273,7 @@ class World:
     amplification: float = 0.0
     luminance: tuple[float, float, float] = REC709_LUMINANCE
     graph: SurfaceGraph | None = None
+    lighting: "World | None" = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -68,16 +68,14 @@ class SceneBuffers:
         self.captured = None
         self.instances = None
         self.lighting = ()
-        self.environment_buffer = None
-        self.environment_image = None
+        self._shown = _Environment()
+        self._lit_by = _Environment()
         self.uploads = dict.fromkeys(
             ("meshes", "images", "materials", "instance_tables", "light_tables", "environments"), 0
         )
         self._level_meshes = {}
         self._merge_trees = {}
         self._lights = None
-        self._world = None
-        self._levels = None
         self._fixed = None
         self._materials = {}
         self._instance_table = None
@@ -128,40 +126,31 @@ class SceneBuffers:
             table = light_table.light_texture(content.lights)
             self._lights = content.lights
             self.uploads["light_tables"] += 1
-        world = content.world
-        known = self._world and (self._world.image, self._world.amplification, self._world.graph)
-        if known != (world.image, world.amplification, world.graph):
-            self._levels = self.environment_image = None
-            if world.image:
-                self._compute_environment(content.images, world)
+        shown = content.world
+        # One that lights the scene, too, is prefiltered; another is made for that alone.
+        lit_by = self._shown if shown.lighting is None else self._lit_by
+        for found, world in ((self._shown, shown), (lit_by, shown.lighting or shown)):
+            if found.update(world, content.images, self.images, found is lit_by):
+                self.uploads["environments"] += 1
                 yield
-        if self._world != world:
-            self.environment_buffer = environment.environment_buffer(world)
-            self._world = world
         table_of_ggx, empty = self._fixed
         self.lighting = (
-            ("environment_buf", self.environment_buffer),
+            ("environment_buf", lit_by.buffer),
             ("lights_tx", table),
-            ("environment_tx", self.environment_image or empty),
-            ("environment_levels_tx", self._levels or empty),
+            ("environment_tx", lit_by.image or empty),
+            ("environment_levels_tx", lit_by.levels or empty),
             ("ggx_tx", table_of_ggx),
         )
 
-    def _compute_environment(self, images, world):
-        image = images[world.image]
-        if world.graph is None:
-            pixels = image.linear_colors()
-        else:
-            pixels = environment_bake.bake(world.graph, images, self.images)
-        pixels = environment.world_pixels(pixels, world)
-        self._levels = environment.prefilter(pixels)
-        changed = world.graph is not None or world.amplification
-        if image.srgb or image.pixels.dtype == np.uint8 or changed:
-            opaque = np.ones((*pixels.shape[:2], 1), np.float32)
-            self.environment_image = texture_2d(np.concatenate([pixels, opaque], axis=2))
-        else:
-            self.environment_image = self.images[image.uid]
-        self.uploads["environments"] += 1
+    @property
+    def environment_buffer(self):
+        """The world behind all surfaces."""
+        return self._shown.buffer
+
+    @property
+    def environment_image(self):
+        """Its image; None where it is one colour."""
+        return self._shown.image
 
     def mesh_levels(self, uid):
         """Return the buffers of a mesh at each uploaded level of detail, from 0 up."""
@@ -239,6 +228,44 @@ class SceneBuffers:
             self._materials[key] = buffer
             self.uploads["materials"] += 1
         return buffer
+
+
+class _Environment:
+    """A world on the device: its block, its image, and its levels for lighting."""
+
+    def __init__(self):
+        self.buffer = self.image = self.levels = None
+        self._world = None
+
+    def update(self, world, images, textures, lights):
+        """Take a world; `lights` prefilters its image. Returns whether something was computed."""
+        known = self._world and (self._world.image, self._world.amplification, self._world.graph)
+        same_image = known == (world.image, world.amplification, world.graph)
+        computes = bool(world.image) and (not same_image or (lights and self.levels is None))
+        if not same_image:
+            self.image = self.levels = None
+        if computes:
+            self._compute(world, images, textures, lights)
+        if self._world != world:
+            self.buffer = environment.environment_buffer(world)
+            self._world = world
+        return computes
+
+    def _compute(self, world, images, textures, lights):
+        image = images[world.image]
+        if world.graph is None:
+            pixels = image.linear_colors()
+        else:
+            pixels = environment_bake.bake(world.graph, images, textures)
+        pixels = environment.world_pixels(pixels, world)
+        if lights:
+            self.levels = environment.prefilter(pixels)
+        changed = world.graph is not None or world.amplification
+        if image.srgb or image.pixels.dtype == np.uint8 or changed:
+            opaque = np.ones((*pixels.shape[:2], 1), np.float32)
+            self.image = texture_2d(np.concatenate([pixels, opaque], axis=2))
+        else:
+            self.image = textures[image.uid]
 
 
 def instance_texels(instances, detail=None):

@@ -1,4 +1,10 @@
-"""Reads Blender's world into `World`: one Background with a colour or an equirectangular image."""
+"""Reads Blender's world into `World`: one Background with a colour or an equirectangular image.
+
+Where nodes tell rays of the camera from others, it is read twice: as the camera sees it, and as it
+lights the scene.
+"""
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -42,8 +48,29 @@ def read_world(world, images):
     return reader.read(output, world.aplanat.amplification), notes
 
 
+# What a Light Path node gives, as the camera sees the world and as a diffuse surface does.
+_CAMERA = {"Is Camera Ray": 1.0}
+_LIGHTING = {
+    **{"Is Diffuse Ray": 1.0, "Is Reflection Ray": 1.0},
+    **{"Ray Depth": 1.0, "Diffuse Depth": 1.0},
+}
+# Operations of Math nodes, each with how many inputs it has.
+_OPERATIONS = {
+    "ADD": (2, lambda a, b: a + b),
+    "SUBTRACT": (2, lambda a, b: a - b),
+    "MULTIPLY": (2, lambda a, b: a * b),
+    "DIVIDE": (2, lambda a, b: a / b if b else 0.0),
+    "MULTIPLY_ADD": (3, lambda a, b, c: a * b + c),
+    "MAXIMUM": (2, max),
+    "MINIMUM": (2, min),
+    "GREATER_THAN": (2, lambda a, b: float(a > b)),
+    "LESS_THAN": (2, lambda a, b: float(a < b)),
+}
+
+
 class _WorldReader:
     def __init__(self, name, images, notes):
+        self._ray, self._tells_rays = _CAMERA, False
         self._name = name
         self._images = images
         self._notes = notes
@@ -52,8 +79,16 @@ class _WorldReader:
         self._notes.append(f"world '{self._name}': {text}")
 
     def read(self, output, amplification):
+        shown = self._read(output, amplification)
+        if not self._tells_rays:
+            return shown
+        self._ray = _LIGHTING
+        lighting = self._read(output, amplification)
+        return shown if lighting == shown else replace(shown, lighting=lighting)
+
+    def _read(self, output, amplification):
         surface = next(s for s in output.inputs if s.identifier == "Surface")
-        socket, groups = source_of(surface, ())
+        socket, groups = self._chosen(*source_of(surface, ()))
         if not socket.is_output:
             return World()
         node = socket.node
@@ -74,11 +109,55 @@ class _WorldReader:
         luminance = color_spaces.luminance_weights()
         return World(light, image, rotation, amplification, luminance, graph)
 
+    def _chosen(self, socket, groups):
+        """Follow mixes whose factor is 0 or 1 for this kind of ray."""
+        names = {"MIX_SHADER": ("Fac", "Shader", "Shader_001")}
+        names["MIX"] = ("Factor_Float", "A_Color", "B_Color")
+        while socket.is_output and socket.node.type in names:
+            inputs = {s.identifier: s for s in socket.node.inputs}
+            factor, first, second = (inputs[name] for name in names[socket.node.type])
+            if socket.type not in {"SHADER", "RGBA"}:
+                break
+            if socket.type == "RGBA" and socket.node.blend_type != "MIX":
+                break
+            share = self._for_ray(factor, groups)
+            if share is None or 0.0 < share < 1.0:
+                break
+            socket, groups = source_of(first if share <= 0.0 else second, groups)
+        return socket, groups
+
+    def _for_ray(self, socket, groups):
+        """Return the number that nodes compute for this kind of ray, or None."""
+        source, inner = source_of(socket, groups)
+        node = source.node
+        if not source.is_output or node.type == "VALUE":
+            return constant_number(source)
+        if node.type == "LIGHT_PATH":
+            self._tells_rays = True
+            return self._ray.get(source.identifier, 0.0)
+        if node.type == "MATH" and node.operation in _OPERATIONS:
+            count, operation = _OPERATIONS[node.operation]
+            values = [self._for_ray(s, inner) for s in node.inputs[:count]]
+            if None not in values:
+                value = operation(*values)
+                return min(max(value, 0.0), 1.0) if node.use_clamp else value
+        if node.type == "MIX" and node.data_type == "FLOAT":
+            inputs = {s.identifier: s for s in node.inputs}
+            names = ("Factor_Float", "A_Float", "B_Float")
+            share, first, second = (self._for_ray(inputs[name], inner) for name in names)
+            if None not in (share, first, second):
+                share = min(max(share, 0.0), 1.0) if node.clamp_factor else share
+                return first + (second - first) * share
+        return None
+
     def _number(self, socket, groups):
         source, _ = source_of(socket, groups)
         if source.is_output:
             if source.node.type in {"VALUE", "RGB"}:
                 return self._constant_number(source)
+            number = self._for_ray(socket, groups)
+            if number is not None:
+                return number
             self.note(f"node '{source.node.bl_label}' is not read; its socket's value is used")
             source = socket
         return self._constant_number(source)
@@ -95,7 +174,7 @@ class _WorldReader:
 
     def _color(self, node, groups):
         socket = node.inputs["Color"]
-        source, inner = source_of(socket, groups)
+        source, inner = self._chosen(*source_of(socket, groups))
         nothing = World()
         if not source.is_output:
             self._note_nan(source)
@@ -120,6 +199,7 @@ class _WorldReader:
             **{kind: input_nodes.READERS[kind] for kind in ("RGB", "VALUE")},
             **value_nodes.READERS,
             "TEX_ENVIRONMENT": self._read_environment,
+            "LIGHT_PATH": self._read_light_path,
         }
         reader = TreeReader(f"world '{self._name}'", self._images, readers)
         color = reader.value(node, "Color", groups)
@@ -140,6 +220,11 @@ class _WorldReader:
         inputs = [(axis, Constant(row)) for axis, row in rows]
         settings = (("encoding", "srgb" if use.srgb else ""),)
         return reader.add("environment_texture", inputs, settings, use.uid)
+
+    def _read_light_path(self, reader, node, groups):
+        self._tells_rays = True
+        names = [socket.identifier for socket in node.outputs]
+        return {name: Constant((self._ray.get(name, 0.0),)) for name in names}
 
     def _environment(self, node, groups):
         rotation = World().rotation

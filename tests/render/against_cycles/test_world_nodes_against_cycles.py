@@ -98,3 +98,30 @@ def test_a_changed_node_is_a_changed_world(aplanat_bpy):
     tree.tree.links.new(bevel.outputs[0], gamma.inputs["Gamma"])
     _, notes = read_world(aplanat_bpy.context.scene.world, reader)
     assert notes == ["world 'world': node 'Bevel' is not read; its socket's value is used"]
+
+
+@pytest.mark.parametrize("how", ["mix of shaders", "mix of colours", "strength"])
+def test_a_world_may_light_otherwise_than_the_camera_sees_it(aplanat_bpy, scene, how):
+    tree, node = background(aplanat_bpy)
+    picture = looked_up(tree, sky(aplanat_bpy, 3))
+    ray = tree.node("LightPath").outputs["Is Camera Ray"]
+    if how == "mix of shaders":
+        seen = tree.node("Background", {"Color": (0.1, 0.2, 0.7)}).outputs[0]
+        lighting = tree.node("Background", {"Color": picture}).outputs[0]
+        inputs = {"Fac": ray, "Shader": lighting, "Shader_001": seen}
+        tree.surface(tree.node("MixShader", inputs).outputs[0])
+    elif how == "mix of colours":
+        inputs = {"Factor_Float": ray, "A_Color": (0.6, 0.3, 0.1), "B_Color": picture}
+        mixed = tree.node("Mix", inputs, data_type="RGBA")
+        color = next(s for s in mixed.outputs if s.identifier == "Result_Color")
+        tree.surface(tree.node("Background", {"Color": color}).outputs[0])
+    else:
+        inputs = {"Value": ray, "Value_001": -0.7, "Value_002": 0.9}
+        strength = tree.node("Math", inputs, operation="MULTIPLY_ADD").outputs[0]
+        inputs = {"Color": picture, "Strength": strength}
+        tree.surface(tree.node("Background", inputs).outputs[0])
+    assert_like_cycles(scene)
+
+
+def looked_up(tree, made):
+    return tree.node("TexEnvironment", image=made).outputs[0]
