@@ -8,7 +8,7 @@ With the focal length `F(lambda)`, that of the reference wavelength `F_hat`, and
 which is `1/d_f = 1/d_hat + 1/F(lambda) - 1/F_hat`. Over the field, `F(lambda)` becomes
 `lerp(F(lambda), F_hat, A(t, theta))` (4.7), and objects are scaled about the axis by
 `m = 1 + k_l (lambda_hat - lambda) L(t, theta)` (4.8), here with the wavelengths in micrometres.
-The reference is the longest wavelength in use. Wavelengths are in nm, lengths in m.
+The reference is the longest wavelength in use or `focus_nm`. Wavelengths are in nm, lengths in m.
 """
 
 from dataclasses import dataclass, field
@@ -23,8 +23,6 @@ RGB_WAVELENGTHS_NM = (650.0, 510.0, 475.0)
 SPECTRAL_RANGE_NM = (380.0, 780.0)
 # Range of the colour-matching functions, nm; the settings' range is clamped to it.
 WIDEST_RANGE_NM = (360.0, 830.0)
-# No focus plane is farther away than this many focus distances: as good as infinitely far.
-FARTHEST_FOCUS = 1.0e6
 # No focal length shrinks below this share, and no object either: they would turn inside out.
 LEAST_FOCAL_SHARE = 0.05
 LEAST_SCALE = 0.05
@@ -169,6 +167,11 @@ class ChromaticAberration:
         Of the spectral mode.
     primaries : str
         Working space of the picture: a name of colour-science; see `spectrum.primaries_of`.
+    focus_nm : float or None
+        The reference wavelength; None: the longest in use.
+    of_lens : bool
+        The dispersion is the camera's real lens'. Samples that see through it have its traced
+        colours, without maps; `axial` and `lateral` are factors of what wavelengths differ by.
     """
 
     mode: str
@@ -181,6 +184,8 @@ class ChromaticAberration:
     wavelength_range: tuple[float, float] = SPECTRAL_RANGE_NM
     equalizer: SpectralEqualizer = field(default=FLAT)
     primaries: str = "ITU-R BT.709"
+    focus_nm: float | None = None
+    of_lens: bool = False
 
     def __post_init__(self):
         """Check that the parameters can form a picture."""
@@ -202,8 +207,17 @@ class ChromaticAberration:
 
     @property
     def reference_nm(self):
-        """`lambda_hat`, the longest wavelength in use."""
+        """`lambda_hat`: that of the focus, else the longest wavelength in use."""
+        if self.focus_nm is not None:
+            return self.focus_nm
         return max(RGB_WAVELENGTHS_NM) if self.mode == "RGB" else self.wavelength_range[1]
+
+    @property
+    def extremes_nm(self):
+        """The shortest and the longest wavelength in use."""
+        if self.mode == "RGB":
+            return min(RGB_WAVELENGTHS_NM), max(RGB_WAVELENGTHS_NM)
+        return self.wavelength_range
 
     def focal_errors(self, wavelengths_nm):
         """Return the relative differences of focal lengths on the axis from `F_hat`.
@@ -223,14 +237,7 @@ class ChromaticAberration:
     def lateral_strengths(self, wavelengths_nm):
         """Return the relative magnification of objects where the lateral map is 1.
 
-        Parameters
-        ----------
-        wavelengths_nm : array_like of shape (...)
-
-        Returns
-        -------
-        ndarray of shape (...)
-            `k_l (lambda_hat - lambda)`.
+        `wavelengths_nm` has any shape, and so has `k_l (lambda_hat - lambda)`.
         """
         return self.lateral * (self.reference_nm - np.asarray(wavelengths_nm, np.float64)) * 1.0e-3
 
@@ -264,7 +271,7 @@ class ChromaticAberration:
         Returns
         -------
         ndarray
-            In m.
+            In m; as `chromatic_focus`.
         """
         at = self.focal_lengths(wavelengths_nm, t, theta)
         return chromatic_focus(focus, self.focal_length, at)
@@ -283,13 +290,8 @@ class ChromaticAberration:
         field_value = self.lateral_map(t, theta)
         return lateral_scale(wavelengths_nm, self.reference_nm, self.lateral, field_value)
 
-    def problems(self, focus=None):
+    def problems(self):
         """Return warnings about strengths that cannot be met everywhere in the picture.
-
-        Parameters
-        ----------
-        focus : float or None
-            Focus distance in m; None where nothing is out of focus.
 
         Returns
         -------
@@ -301,13 +303,6 @@ class ChromaticAberration:
         wavelengths = np.array(RGB_WAVELENGTHS_NM) if self.mode == "RGB" else spectral
         t, theta = np.linspace(0.0, 1.0, 33)[:, None], np.linspace(-np.pi, np.pi, 9)
         places = (wavelengths[:, None, None], t, theta)
-        if focus is not None:
-            lengths = self.focal_lengths(*places)
-            if beyond_infinity(focus, self.focal_length, lengths).any():
-                found.append(
-                    "its axial strength would focus some colors beyond infinity; they are focused"
-                    " at infinity"
-                )
         if np.any(self.lateral_scales(*places) <= LEAST_SCALE):
             found.append(
                 "its lateral strength would turn some colors inside out; they are drawn at"
@@ -331,8 +326,8 @@ def chromatic_focus(focus, focal_length, focal_length_at):
     Returns
     -------
     ndarray
-        In m. Where nothing in front of the lens is in focus (the condition of equation 4.6), it
-        is `FARTHEST_FOCUS` times the focus distance; `beyond_infinity` tells where.
+        In m. Negative where nothing in front of the lens is in focus (the condition of equation
+        4.6): as of a lens that is focused beyond infinity, the blur goes on as it went.
 
     References
     ----------
@@ -341,26 +336,8 @@ def chromatic_focus(focus, focal_length, focal_length_at):
     focus, longest, here = np.broadcast_arrays(
         *(np.asarray(value, np.float64) for value in (focus, focal_length, focal_length_at))
     )
-    numerator = longest * focus * here
-    divisor = longest * focus - here * focus + here * longest
-    return numerator / np.maximum(divisor, numerator / (FARTHEST_FOCUS * focus))
-
-
-def beyond_infinity(focus, focal_length, focal_length_at):
-    """Return where equation (4.5) has no positive solution, and `chromatic_focus` is clamped.
-
-    Parameters
-    ----------
-    focus, focal_length, focal_length_at : array_like, broadcast
-        As of `chromatic_focus`.
-
-    Returns
-    -------
-    ndarray
-        bool.
-    """
-    distance = chromatic_focus(focus, focal_length, focal_length_at)
-    return distance >= FARTHEST_FOCUS * np.asarray(focus, np.float64) * (1.0 - 1e-9)
+    with np.errstate(divide="ignore"):
+        return longest * focus * here / (longest * focus - here * focus + here * longest)
 
 
 def lateral_scale(wavelengths_nm, reference_nm, strength, field_value):

@@ -26,6 +26,8 @@ _SAME_RIM = 0.05
 # Distance between the rims of neighbouring bands, px; each is blurred over that much. With 16
 # bands, the summed light inside any radius is within 2 %, however far the colours spread.
 _STEP = 1.5
+# Wavelengths among which the middle one is found.
+_AMONG = 512
 
 
 @dataclass(frozen=True)
@@ -109,11 +111,35 @@ def spectral_bands(aberration, axial_px, lateral_px, count):
     tuple of SpectralBand
     """
     light, places = _lines(aberration)
-    if len(light) <= count:
-        return _joined(light, places, np.arange(len(light)))
-    share = _dense(light, places, axial_px, lateral_px)
-    middle = (np.cumsum(share) - 0.5 * share) / max(share.sum(), 1e-300)
-    return _joined(light, places, np.minimum((middle * count).astype(int), count - 1))
+    return _joined(light, places, _numbers(light, places, axial_px, lateral_px, count))
+
+
+def bands_needed(light, places, axial_px, lateral_px, most):
+    """Divide light into as many bands as its colours spread, and at most so many.
+
+    Parameters
+    ----------
+    light : ndarray of shape (M, 3)
+        As of `light_lines`.
+    places : ndarray of shape (M, 2)
+        Axial and lateral differences of the lines, in any unit.
+    axial_px, lateral_px : float
+        Pixels of a unit.
+    most : int
+
+    Returns
+    -------
+    ndarray of int, shape (M,)
+        The band of each line, from 0, without gaps.
+    """
+    length = float(_dense(light, places, axial_px, lateral_px).sum() ** 1.5)
+    count = 1 if length < _SAME_RIM else min(max(2, int(np.ceil(length / _STEP))), most)
+    if count > 1 and len(light) <= len(RGB_WAVELENGTHS_NM):
+        count = len(light)
+    _, numbers = np.unique(
+        _numbers(light, places, axial_px, lateral_px, count), return_inverse=True
+    )
+    return numbers
 
 
 def band_levels(aberration, axial_px, lateral_px, most):
@@ -147,18 +173,63 @@ def band_levels(aberration, axial_px, lateral_px, most):
     )
 
 
-def _lines(aberration):
-    """Return spectral lines: weights (M, 3), and focal errors and lateral strengths (M, 2)."""
+def middle_wavelength(aberration):
+    """Return the wavelength whose focus is the mean of all the light's: 1/F is their mean.
+
+    Parameters
+    ----------
+    aberration : ChromaticAberration
+        Of a glass, whose focal length rises with the wavelength.
+
+    Returns
+    -------
+    float
+        In nm.
+    """
+    wavelengths, light = light_lines(aberration)
+    ratio = aberration.dispersion.ratio
+    mean = float(light.mean(axis=1) @ (1.0 / ratio(wavelengths)))
+    among = np.linspace(*aberration.extremes_nm, _AMONG)[::-1]
+    return float(np.interp(mean, 1.0 / ratio(among), among))
+
+
+def light_lines(aberration):
+    """Return the spectral lines of an aberration.
+
+    Parameters
+    ----------
+    aberration : ChromaticAberration
+
+    Returns
+    -------
+    wavelengths_nm : ndarray of shape (M,)
+        Rising.
+    light : ndarray of shape (M, 3)
+        Share of red, green and blue of each; each column sums to 1.
+    """
     if aberration.mode == "RGB":
         order = np.argsort(RGB_WAVELENGTHS_NM)
-        wavelengths, light = np.array(RGB_WAVELENGTHS_NM)[order], np.eye(3)[order]
-    else:
-        density = channel_density(
-            aberration.wavelength_range, aberration.equalizer, aberration.primaries
-        )
-        wavelengths, light = 0.5 * (density.edges_nm[1:] + density.edges_nm[:-1]), density.channels
+        return np.array(RGB_WAVELENGTHS_NM)[order], np.eye(3)[order]
+    density = channel_density(
+        aberration.wavelength_range, aberration.equalizer, aberration.primaries
+    )
+    return 0.5 * (density.edges_nm[1:] + density.edges_nm[:-1]), density.channels
+
+
+def _lines(aberration):
+    """Return spectral lines: weights (M, 3), and focal errors and lateral strengths (M, 2)."""
+    wavelengths, light = light_lines(aberration)
     places = aberration.focal_errors(wavelengths), aberration.lateral_strengths(wavelengths)
     return light, np.stack(places, axis=1)
+
+
+def _numbers(light, places, axial_px, lateral_px, count):
+    """Return the number of each line's band; with gaps where lines are far apart."""
+    if len(light) <= count:
+        return np.arange(len(light))
+    share = _dense(light, places, axial_px, lateral_px)
+    middle = (np.cumsum(share) - 0.5 * share) / max(share.sum(), 1e-300)
+    return np.minimum((middle * count).astype(int), count - 1)
 
 
 def _dense(light, places, axial_px, lateral_px):

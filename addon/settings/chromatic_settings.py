@@ -43,8 +43,16 @@ STRENGTH = Section("Strength and glass", _PLACE, (
     Setting("dispersion", "GLASS", "Dispersion", "What says how strongly each wavelength is bent",
             told="chromatic.focal_ratio", kept=True, items=(
             Item(0, "GLASS", "Glass", "A simple lens of one glass"),
-            Item(1, "LENS", "Real Lens", "The focal shift of the camera's real lens over"
-                 " wavelength"),
+            Item(1, "LENS", "Real Lens", "The camera's real lens: rays of all wavelengths are"
+                 " traced through it, so that the picture has its own axial and lateral color."
+                 " Its d line (587.6 nm) is in focus"),
+    )),
+    Setting("focus_light", "MIDDLE", "Focus", "Which light the focus distance is meant for",
+            told="chromatic.reference_nm", kept=True, items=(
+            Item(0, "LONGEST", "Longest Wavelength", "The reddest light that is drawn; all other"
+                 " colors are in focus nearer to the camera"),
+            Item(1, "MIDDLE", "Middle", "The mean of all the light: what is at the focus distance"
+                 " looks as sharp as it can"),
     )),
     Setting("glass", "N-BK7", "Glass", "Glass of the catalog. Flint (F2, N-SF11) parts the"
             " colors two to three times as much as crown (N-BK7)",
@@ -54,7 +62,7 @@ STRENGTH = Section("Strength and glass", _PLACE, (
             limits=WIDEST_RANGE_NM, soft=SPECTRAL_RANGE_NM, step=100, precision=0,
             told="chromatic.wavelengths_nm", kept=True),
     Setting("wavelength_max", SPECTRAL_RANGE_NM[1], "To", "Longest wavelength that is drawn, in"
-            " nm; the focus distance is meant for it", limits=WIDEST_RANGE_NM,
+            " nm", limits=WIDEST_RANGE_NM,
             soft=SPECTRAL_RANGE_NM, step=100, precision=0,
             told="chromatic.wavelengths_nm", kept=True),
 ))

@@ -172,7 +172,15 @@ def pinhole_offset(lens, point, focal_length):
     return landing * (focal_length / lens.scale) - np.array([x, y]) / depth * focal_length
 
 
-def shader_source(lens, sensor_size, focal_length, offset=(0.0, 0.0), table=None, region=None):
+def shader_source(
+    lens,
+    sensor_size,
+    focal_length,
+    offset=(0.0, 0.0),
+    table=None,
+    region=None,
+    wavelength_nm=REFERENCE_WAVELENGTH_NM,
+):
     """Write the shader.
 
     Parameters
@@ -190,6 +198,8 @@ def shader_source(lens, sensor_size, focal_length, offset=(0.0, 0.0), table=None
         `aim_radius`; None: rays go through all of it.
     region : tuple of 4 float
         x0, x1, y0, y1: what the table covers of the picture, 0 to 1.
+    wavelength_nm : float
+        Of the light; the lens is focused at the reference wavelength.
 
     Returns
     -------
@@ -198,7 +208,7 @@ def shader_source(lens, sensor_size, focal_length, offset=(0.0, 0.0), table=None
     """
     configuration = lens.configuration
     surfaces = configuration.surfaces[::-1]
-    media = indices(configuration, REFERENCE_WAVELENGTH_NM)[::-1]
+    media = indices(configuration, wavelength_nm)[::-1]
     powers = np.zeros((len(surfaces), _POWERS))
     for row, surface in zip(powers, surfaces, strict=True):
         for order, coefficient in surface.asphere:

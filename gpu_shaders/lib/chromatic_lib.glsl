@@ -47,11 +47,11 @@ vec2 field_place(vec3 eye, ChromaticParams params)
 }
 
 // One over the focus distance, 1/m, of a wavelength whose focal length differs by `change` relative to
-// the reference wavelength's; `axial`: value of the axial field map, 0 the whole difference, 1 none.
+// the reference wavelength's; below 0 beyond infinity. `axial`: value of the axial field map, 0 the whole difference, 1 none.
 float chromatic_focus(float change, float axial, ChromaticParams params)
 {
   float ratio = max(1.0 + change * (1.0 - axial), LEAST_FOCAL_SHARE);
-  return max(params.focus.x + (1.0 / ratio - 1.0) * params.focus.y, params.focus.z);
+  return params.focus.x + (1.0 / ratio - 1.0) * params.focus.y;
 }
 
 float lateral_scale(float lateral, float strength, ChromaticParams params)

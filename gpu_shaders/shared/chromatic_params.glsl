@@ -4,7 +4,7 @@ struct ChromaticParams {
                         // (parallel projection: m); y: 1 for a parallel projection; z, w: last column
                         // and number of rows of the field table
   vec4 focus;           // x: 1 / focus distance of the reference wavelength, 1/m; y: 1 / its focal
-                        // length, 1/m; z: least 1 / focus distance, 1/m; w: least lateral scale
+                        // length, 1/m; z unused; w: least lateral scale
   vec4 raster;          // from pixels of the region to the field: scale (xy) and offset (zw)
   vec4 extremes;        // x, y: least and largest change of the focal length of any wavelength;
                         // z: largest lateral strength; w unused

@@ -196,8 +196,10 @@ def _chromatic(data, lens):
         "lateral_map": found.lateral_map.text,
         "wavelengths_nm": RGB_WAVELENGTHS_NM if found.mode == "RGB" else [shortest, longest],
         "focal_length_m": found.focal_length,
-        # Of the shortest wavelength over the longest's, before the strength.
+        # Of the shortest wavelength over the reference's, before the strength.
         "focal_ratio": float(found.dispersion.ratio(shortest, found.reference_nm)),
+        "reference_nm": found.reference_nm,
+        "of_lens": found.of_lens,
         "equalizer": (
             None
             if found.mode == "RGB" or found.equalizer.is_flat

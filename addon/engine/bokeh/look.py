@@ -65,7 +65,8 @@ class BokehLook:
     report : tuple of str
         Warnings: settings of the camera that cannot be met, one sentence each.
     lens : passes.surface.real_lens.LensSample or None
-        The middle of the real lens that the samples see through, with its falloff.
+        The middle of the real lens that the samples see through, with its falloff; with its colours
+        the first of a table for each of the `blocks`.
     """
 
     variants: tuple[str, ...]
@@ -107,7 +108,7 @@ def describe_look(plan):
     lens = bokeh.real_lens and _Lens(bokeh.real_lens)
     tangent = _largest_tangent(plan)
     params = {
-        "opening": (bokeh.iris.ratio, bokeh.filter_width, 1.0, np.sqrt(len(bokeh.lens_views))),
+        "opening": _opening_params(plan, bokeh.filter_width),
         "rows": (-1.0, 0.5, 0.0, settings.profile_strength),
         "field": (1.0 / tangent, 0.0, 1.0, 0.0),
         "rims": np.zeros((MOST_RIMS, 4)),
@@ -139,6 +140,11 @@ def describe_look(plan):
         params["field"] = (1.0 / tangent, len(rims), len(left) / LAYERS, 0.0)
         params["rims"][: len(rims), :3] = [(r.radius, r.shift, r.members) for r in rims]
     return variants, arrays, params
+
+
+def _opening_params(plan, blur):
+    bokeh = plan.bokeh
+    return bokeh.iris.ratio, blur, 1.0, float(np.sqrt(len(bokeh.lens_views)))
 
 
 def make_look(plan, textures, field=None, lens=None):
@@ -173,7 +179,10 @@ def make_look(plan, textures, field=None, lens=None):
             replace(plan, bokeh=replace(plan.bokeh, real_lens=None))
         )
     uploaded = tuple((name, textures.texture(array, _texture)) for name, array in arrays.items())
-    blocks = tuple(uniform_buffer(SPLAT_PARAMS.pack(**params, **band)) for band in _bands(plan))
+    blocks = tuple(uniform_buffer(SPLAT_PARAMS.pack(**params | band)) for band in _bands(plan))
+    if plan.chromatic and plan.chromatic.traced:
+        # Bands have the focus and the tables of their own wavelengths: no map over the field.
+        field = ()
     return BokehLook(variants, uploaded, blocks, tuple(field or ()), report, lens)
 
 
@@ -183,6 +192,14 @@ def _bands(plan):
         nothing = (0.0, 0.0, 0.0, 0.0)
         yield {"wavelength": (1.0, 1.0, 1.0, focus), "dispersion": nothing, "spread": nothing}
         return
+    for band in colors.traced:
+        blur = np.hypot(plan.bokeh.filter_width, band.width_px)
+        yield {
+            "opening": _opening_params(plan, float(blur)),
+            "wavelength": (*band.weights, focus + band.focus_change),
+            "dispersion": (0.0,) * 4,
+            "spread": (0.0,) * 4,
+        }
     for level in colors.levels:
         for band in level.bands:
             yield {

@@ -13,12 +13,7 @@ def chromatic_resources(plan):
         table=plan.table,
         radius=plan.radius,
         parallel=plan.parallel,
-        focus=(
-            plan.inverse_focus,
-            1.0 / plan.focal_length,
-            plan.least_inverse_focus,
-            LEAST_SCALE,
-        ),
+        focus=(plan.inverse_focus, 1.0 / plan.focal_length, 0.0, LEAST_SCALE),
         raster=plan.raster,
         extremes=(plan.focal_errors.min(), plan.focal_errors.max(), np.abs(strengths).max()),
         typical=plan.typical_errors,

@@ -1,6 +1,7 @@
 """Tables of a real lens on the device: those of some lens samples at a time, and sums of light."""
 
 from collections import OrderedDict
+from dataclasses import replace
 
 import numpy as np
 
@@ -54,6 +55,20 @@ class LensTables:
         slot = index % self._together * self._sets
         light = real_lens.SampleLight(light, self._table(len(tables), slot), self._sets)
         return real_lens.LensSample(slot, moves, light, turns, self._sets)
+
+    def discs(self, colors):
+        """Return the `LensSample` of discs: the lens' middle, at each band of wavelengths.
+
+        Parameters
+        ----------
+        colors : engine.planning.bokeh_colors.BokehColors or None
+        """
+        bands = colors.traced if colors else ()
+        if not bands:
+            return self._middle
+        shares = np.stack([band.shares for band in bands])
+        tables = self._upload(np.zeros((len(bands), 2)), shares)
+        return replace(self._middle, resources=tables, tables=len(bands))
 
     def add(self, index):
         """Note that a sample was added to the picture."""
@@ -120,23 +135,26 @@ class LensTables:
 
     def _part(self, number):
         if number not in self._parts:
-            count = self._together
-            places = self._plan.lens_places[:, number * count : (number + 1) * count]
+            part = slice(number * self._together, (number + 1) * self._together)
+            places = self._plan.lens_places[:, part]
+            colors = self._plan.lens_colors(part)
+            if colors is not None:
+                colors = np.repeat(colors, len(places), axis=0)
             # The sets of a sample one after the other.
             places = places.swapaxes(0, 1).reshape(-1, 2)
             light = self._lens.light(places)
-            turns = self._turns(places) if self._plan.blurs else None
+            turns = self._turns(places, colors) if self._plan.blurs else None
             texture = real_lens.light_texture(light)
-            self._parts[number] = (self._upload(places), texture, light, turns)
+            self._parts[number] = (self._upload(places, colors), texture, light, turns)
             while len(self._parts) > _KEPT:
                 self._parts.popitem(last=False)
         self._parts.move_to_end(number)
         return self._parts[number]
 
-    def _upload(self, places):
+    def _upload(self, places, colors=None):
         tables = self._lens.tables
         size = self._plan.width, self._plan.height
-        return real_lens.resources(tables.moves(places), tables, size)
+        return real_lens.resources(tables.moves(places, colors), tables, size)
 
-    def _turns(self, places):
-        return real_lens.turns_texture(self._plan.turns(places))
+    def _turns(self, places, colors):
+        return real_lens.turns_texture(self._plan.turns(places, colors))

@@ -159,7 +159,8 @@ class FrameRenderer(ReadableFrame):
 
     def _stage(self, plan):
         scene = (self._drawing, self._buffers, self._occluders, self._highlights)
-        return BokehStage(plan, *scene, self._field, self._lens and self._lens.sample(None))
+        lens = self._lens and self._lens.discs(plan.bokeh.colors)
+        return BokehStage(plan, *scene, self._field, lens)
 
     @property
     def layered(self):

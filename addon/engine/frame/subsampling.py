@@ -43,8 +43,9 @@ class SubsampleBlur:
         self._lens = lens
         self._turns = np.zeros((1, 2, 2, 2))
         if lens:
-            places = plan.lens_positions[:: -(-plan.samples // _TYPICAL)]
-            self._turns = _SURE * plan.turns(places).reshape(-1, 2, 2, 2)
+            part = slice(None, None, -(-plan.samples // _TYPICAL))
+            turns = plan.turns(plan.lens_positions[part], plan.lens_colors(part))
+            self._turns = _SURE * turns.reshape(-1, 2, 2, 2)
         self._sweep, self._gain = plan.sweep, None
         if wavelengths:
             self._sweep, self._gain = plan.sweep_parts

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...sampling.chromatic import FARTHEST_FOCUS, LEAST_FOCAL_SHARE, LEAST_SCALE
+from ...sampling.chromatic import LEAST_FOCAL_SHARE, LEAST_SCALE
 from ...sampling.spectral_bands import spectral_bands
 from .field_table import diamond_turn, field_of_raster, field_table, picture_radius
 
@@ -63,6 +63,9 @@ class ChromaticPlan:
         Mapping from pixels of the region to the field: scale and offset, x and y each.
     typical_errors : tuple of 2 float
         Two focal errors whose circles of confusion have about the mean square of all wavelengths'.
+    traced : bool
+        The colours are those of the real lens that samples see through (`lens_plan`): here, all
+        wavelengths are like the reference.
     """
 
     wavelengths_nm: np.ndarray
@@ -76,6 +79,7 @@ class ChromaticPlan:
     inverse_focus: float
     raster: np.ndarray
     typical_errors: tuple[float, float]
+    traced: bool = False
 
     def dispersion(self, sample):
         """Return a sample's focal error and lateral strength, 2 floats."""
@@ -83,18 +87,26 @@ class ChromaticPlan:
 
     def with_samples(self, aberration, samples):
         """Return the same aberration with other samples; parameters as of `plan_chromatic`."""
-        return replace(self, **_sampled(aberration, samples))
+        found = replace(self, **_sampled(aberration, samples))
+        return found.through_lens() if self.traced else found
+
+    def through_lens(self):
+        """Return the plan whose colours are left to a real lens."""
+        nothing = np.zeros(len(self.wavelengths_nm))
+        return replace(
+            self,
+            focal_errors=nothing,
+            lateral_strengths=nothing,
+            table=np.zeros_like(self.table),
+            typical_errors=(0.0, 0.0),
+            traced=True,
+        )
 
     @property
     def samples_for_one(self):
         """Number of samples of one wavelength that are worth one of all, mean of the channels."""
         colors = self.weights[:, :3]
         return float((len(colors) * np.square(colors).sum(axis=0) / colors.sum(axis=0) ** 2).mean())
-
-    @property
-    def least_inverse_focus(self):
-        """Where equation (4.5) is clamped, 1/m."""
-        return self.inverse_focus / FARTHEST_FOCUS
 
     def strengths(self, eye):
         """Return axial and lateral map at points of camera space.
@@ -150,14 +162,15 @@ class ChromaticPlan:
     def inverse_focus_at(self, focal_error, axial):
         """Return the inverse of the focus distance, 1/m, equations (4.5) and (4.7).
 
+        Below 0 the focus lies beyond infinity.
+
         Parameters
         ----------
         focal_error, axial : array_like, broadcast
             Of the wavelength, and the axial map.
         """
         ratio = np.maximum(1.0 + focal_error * (1.0 - axial), LEAST_FOCAL_SHARE)
-        inverse = self.inverse_focus + (1.0 / ratio - 1.0) / self.focal_length
-        return np.maximum(inverse, self.least_inverse_focus)
+        return self.inverse_focus + (1.0 / ratio - 1.0) / self.focal_length
 
     def ranges(self, corners):
         """Return the ranges of focus and scale over all wavelengths within bounding boxes.

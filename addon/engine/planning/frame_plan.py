@@ -251,13 +251,27 @@ class FramePlan:
             constant, linear = 1.0 / focus - (slope - 1.0) / offset, -2.0 / offset
         return np.concatenate([scale * constant, scale * linear])
 
-    def turns(self, lens_positions):
+    def lens_colors(self, part):
+        """Return the shares of a real lens' colours, as of `SampleTables.moves`, of samples.
+
+        Parameters
+        ----------
+        part : slice
+            Of the samples.
+        """
+        if self.chromatic is None:
+            return None
+        return self.real_lens.color_shares(self.chromatic.wavelengths_nm[part])
+
+    def turns(self, lens_positions, colors=None):
         """Return what the real lens adds to `sweep` at lens samples.
 
         Parameters
         ----------
         lens_positions : ndarray of shape (N, 2)
             In m.
+        colors : ndarray or None
+            As of `SampleTables.moves`.
 
         Returns
         -------
@@ -266,7 +280,7 @@ class FramePlan:
             of the movement in texels; by x and y on the lens, m.
         """
         tables = self.real_lens.tables
-        found = tables.turns(lens_positions)
+        found = tables.turns(lens_positions, colors)
         slope, offset = self.projection[2, 2:]
         # 1 / depth, in units of the largest vergence, is affine in the depth buffer's value.
         first = (slope - 1.0) / offset / tables.largest_vergence

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...errors import AplanatError, FocusError
 from ...lens_bokeh.samples.field_grid import field_grid
+from ...lens_bokeh.samples.lens_colors import LensColors
 from ...lens_bokeh.samples.lens_rays import lens_rays
 from ...lens_bokeh.samples.sample_tables import SampleTables, sample_tables
 from ...optics.distortion import divisor
@@ -51,6 +52,12 @@ class RealLensPlan:
         Bound of how far it moves samples apart beyond the thin lens, as a tangent.
     spacing : float
         Of the samples, in radii of the iris.
+    colors : LensColors or None
+        What other wavelengths change; None: all are like the reference.
+    strengths : tuple of 2 float
+        Factors of the axial and the lateral part of that.
+    parts_colors : bool
+        The colours of the picture are those; else those of a thin lens are drawn.
     """
 
     tables: SampleTables
@@ -60,10 +67,28 @@ class RealLensPlan:
     most_moved: float
     most_blurred: float
     spacing: float = 0.0
+    colors: LensColors | None = None
+    strengths: tuple[float, float] = (1.0, 1.0)
+    parts_colors: bool = False
 
     def with_samples(self, count):
         """Return the plan for a number of samples."""
         return replace(self, spacing=float(np.sqrt(np.pi / count)))
+
+    def color_shares(self, wavelengths_nm):
+        """Return what samples of wavelengths have of the traced colours, as `SampleTables.moves`.
+
+        Parameters
+        ----------
+        wavelengths_nm : ndarray of shape (N,)
+
+        Returns
+        -------
+        ndarray of shape (N, 2, K) or None
+        """
+        if self.colors is None:
+            return None
+        return self.colors.shares(wavelengths_nm)[:, None] * np.array(self.strengths)[:, None]
 
     def light(self, lens_positions):
         """Return the weights of lens samples over the picture.
@@ -80,6 +105,11 @@ class RealLensPlan:
         """
         found = self.tables.light(lens_positions, self.spacing)
         return ((found + self.floor) / self.base).astype(np.float32)
+
+    @property
+    def corner(self):
+        """Distance of the farthest field that was traced from the axis, as a tangent."""
+        return max(float(np.abs(self.grid.low).max()), float(np.abs(self.grid.high).max()))
 
     @property
     def grid(self):
@@ -141,7 +171,8 @@ def plan_real_lens(camera, film, lens):
     name = camera.real_lens.prescription.name
     try:
         corners = (*low.tolist(), *high.tolist())
-        made = _plan(_Lens(camera.real_lens), _Thin(lens), corners, _outermost(camera))
+        colors = _colors(camera.chromatic)
+        made = _plan(_Lens(camera.real_lens), _Thin(lens), corners, _outermost(camera), colors)
     except FocusError:
         raise
     except AplanatError as error:
@@ -156,15 +187,22 @@ def plan_real_lens(camera, film, lens):
     return made, report
 
 
+def _colors(aberration):
+    """Return the strengths and the range of wavelengths of a lens' own colours, or None."""
+    if aberration is None or not aberration.of_lens:
+        return None
+    return aberration.axial, aberration.lateral, *aberration.extremes_nm
+
+
 # Memo of its arguments alone: a picture asks for the same again and again.
 @lru_cache(maxsize=4)
-def _plan(key, thin, corners, outermost):
+def _plan(key, thin, corners, outermost, colors):
     settings, lens = key.settings, thin.lens
     low, high = np.array(corners[:2]), np.array(corners[2:])
     sides = None
     if not key.settings.shapes_bokeh:
         sides = tuple(_reach(each) for each in np.maximum(np.abs(low), np.abs(high)))
-    rays = _rays(key, lens.focus_distance, _reach(outermost), sides)
+    rays = _rays(key, lens.focus_distance, _reach(outermost), sides, colors is not None)
     grids = field_grid(low, high), field_grid(low, high, _MARGIN)
     tables = sample_tables(rays, *grids, lens.aperture_radius, lens.iris.ratio, outermost)
     places = lens_samples(0, _MANY, lens.iris) * lens.aperture_radius
@@ -175,11 +213,27 @@ def _plan(key, thin, corners, outermost):
     falloff = np.ones_like(mean)
     if settings.exposure == "LENS":
         falloff = mean / axis
-    moves = tables.moves(np.append(places[:_TYPICAL], [[0.0, 0.0]], axis=0))
+    own = colors is not None and rays.parts_colors
+    plan = RealLensPlan(tables, mean + floor, floor, falloff, 0.0, 0.0, parts_colors=own)
+    if rays.colors is not None:
+        plan = replace(plan, colors=rays.colors, strengths=colors[:2])
+    moved, apart = _bounds(plan, np.append(places[:_TYPICAL], [[0.0, 0.0]], axis=0), colors)
+    return replace(plan, most_moved=_SURE * moved, most_blurred=_SURE * apart)
+
+
+def _bounds(plan, places, colors):
+    """Return how far samples move points, and apart, over all wavelengths, as tangents."""
+    shares = [None]
+    if plan.colors is not None:
+        shares += [plan.color_shares(np.full(len(places), nm)) for nm in colors[2:]]
     powers = np.linspace(0.0, 1.0, _LOOKS)[:, None] ** np.arange(4)
-    moves = np.einsum("vk,nyxkc->nvyxc", powers, moves)
-    moved, apart = (np.linalg.norm(each, axis=-1).max() for each in (moves, moves - moves[-1:]))
-    return RealLensPlan(tables, mean + floor, floor, falloff, _SURE * moved, _SURE * apart)
+    bounds = []
+    for each in shares:
+        moves = np.einsum("vk,nyxkc->nvyxc", powers, plan.tables.moves(places, each))
+        # The last is the lens' middle.
+        pair = moves, moves - moves[-1:]
+        bounds.append([np.linalg.norm(part, axis=-1).max() for part in pair])
+    return np.max(bounds, axis=0).tolist()
 
 
 def _outermost(camera):
@@ -231,13 +285,7 @@ class _Thin:
 
 # Memo of its arguments alone: as of `_plan`, whatever part of the field is shown.
 @lru_cache(maxsize=4)
-def _rays(lens, focus_distance, tangent, sides):
+def _rays(lens, focus_distance, tangent, sides, colored):
     settings = lens.settings
-    return lens_rays(
-        settings.prescription,
-        settings.label,
-        focus_distance,
-        settings.f_number,
-        tangent,
-        sides=sides,
-    )
+    state = settings.prescription, settings.label, focus_distance, settings.f_number, tangent
+    return lens_rays(*state, sides=sides, colored=colored)

@@ -53,7 +53,7 @@ def camera_settings(
     if recorded and data.aplanat.lens == recorded[0]:
         of_lens += _against(recorded, sources.shelf, real_lens is not None)
     focus = focus_distance(depsgraph, camera)
-    chromatic, of_chromatic = read_chromatic(data, real_lens, focus)
+    chromatic, of_chromatic = read_chromatic(data, real_lens)
     corner = 0.0
     if captured.orthographic:
         real_lens = None

@@ -69,6 +69,7 @@ class CylinderRays:
 
     # Where no light comes from is in the light itself.
     last_seen = np.inf
+    parts_colors, colors = False, None
 
     def moves(self, nodes):
         """Lay out the aberrations over places of the field; as of `LensRays`."""

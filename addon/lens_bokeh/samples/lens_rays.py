@@ -26,10 +26,11 @@ import numpy as np
 
 from ...errors import FocusError, PrescriptionError
 from ...optics.focus import focused
-from ...optics.glass import REFERENCE_WAVELENGTH_NM
+from ...optics.glass import REFERENCE_WAVELENGTH_NM as _LINE
 from ...optics.paraxial import first_order
 from ..tables.spline import spline_matrix
 from .cylinder_rays import cylinder_rays
+from .lens_colors import LensColors, trace_colors, traced_wavelengths
 from .ray_fan import RayFan, undistorted
 from .stop_rays import StopAim
 from .stop_shapes import paraxial_pupil, stop_shapes
@@ -81,6 +82,8 @@ class LensRays:
         Whether T takes the distortion away.
     complete : bool
         Whether the fields reach as far as they were wanted; else no light comes from farther out.
+    colors : LensColors or None
+        What other wavelengths change, where it was asked for and the glasses have dispersion.
     """
 
     orders: np.ndarray
@@ -95,6 +98,10 @@ class LensRays:
     distorted: np.ndarray
     flat: bool
     complete: bool = True
+    colors: LensColors | None = None
+
+    # Whether other wavelengths can be traced.
+    parts_colors = True
 
     def of_fields(self, values, odd, wanted):
         """Interpolate over the field.
@@ -201,8 +208,8 @@ def lens_rays(
     f_number,
     largest_tangent,
     flat=True,
-    wavelength_nm=REFERENCE_WAVELENGTH_NM,
     sides=None,
+    colored=False,
 ):
     """Trace a lens for lens samples.
 
@@ -218,13 +225,15 @@ def lens_rays(
         Of the fields that are wanted; fewer are traced where no light comes through.
     flat : bool
         Without distortion.
-    wavelength_nm : float
     sides : tuple of 2 float or None
         Largest tangents along x and y, of which a lens with cylinders makes use.
+    colored : bool
+        With `colors`; a lens with cylinders has none.
 
     Returns
     -------
     LensRays or CylinderRays
+        At the d line, to which the lens is focused.
 
     Raises
     ------
@@ -245,10 +254,10 @@ def lens_rays(
     lens = configuration.stopped_down(max(f_number, configuration.f_number))
     if not lens.of_revolution:
         sides = sides or (largest_tangent, largest_tangent)
-        return cylinder_rays(lens, order.enp_z, focus, vergences, sides, flat, wavelength_nm)
-    scale, radius = paraxial_pupil(lens, order.enp_z, focus, wavelength_nm)
-    for stopped, places in stop_shapes(lens, order.enp_z, radius, focus, wavelength_nm):
-        aim = StopAim(stopped, order.enp_z, radius * places, wavelength_nm)
+        return cylinder_rays(lens, order.enp_z, focus, vergences, sides, flat, _LINE)
+    scale, radius = paraxial_pupil(lens, order.enp_z, focus, _LINE)
+    for stopped, places in stop_shapes(lens, order.enp_z, radius, focus, _LINE):
+        aim = StopAim(stopped, order.enp_z, radius * places, _LINE)
         fan = RayFan(aim, scale, abs(radius), focus, vergences)
         fields, found = _followed(fan, lens.half_field_deg, largest_tangent)
         if not fan.folded:
@@ -261,16 +270,23 @@ def lens_rays(
     if len(found) < _FEWEST:
         raise PrescriptionError("no ray gets through the lens but near its axis")
     distorted = fan.chiefs(fields)
+    taken = distorted if flat else None
+    fitted = fan.fitted(fields, found, taken)
+    colors = None
+    wavelengths = traced_wavelengths(configuration) if colored else ()
+    if wavelengths:
+        colors = trace_colors(fan, fields, fitted[:2], wavelengths, taken)
     return LensRays(
         fan.orders,
         fields,
         vergences * _MM,
         focus * _MM,
         nearest * _MM,
-        *fan.fitted(fields, found, distorted if flat else None),
+        *fitted,
         distorted,
         flat,
         bool(fields[-1] >= largest_tangent * (1.0 - 1e-9)),
+        colors,
     )
 
 

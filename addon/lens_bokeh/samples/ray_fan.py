@@ -1,5 +1,7 @@
 """Fans of rays through a lens, field by field, and the sums of `disc_terms` that follow them."""
 
+from copy import copy
+
 import numpy as np
 
 from ..tables.spline import spline_matrix
@@ -62,6 +64,12 @@ class RayFan:
         self.cosines, self.sines = terms * np.cos(turn), terms * np.sin(turn)
         # Rays on the mirror line stand for themselves alone.
         self.weight = np.where((self.angle == 0.0) | (self.angle == np.pi), 1.0, 2.0)
+
+    def at_wavelength(self, wavelength_nm):
+        """Return the fan of another wavelength, in the frame of this one."""
+        other = copy(self)
+        other.aim = self.aim.at_wavelength(wavelength_nm)
+        return other
 
     def follow(self, fields):
         """Return `StopRays` of each field with its light, up to the last that rays come from."""

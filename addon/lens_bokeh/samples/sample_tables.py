@@ -14,7 +14,7 @@ camera whose focal length is not that of the lens keeps its blur (as discs do). 
 makes the opening narrower, and movements with it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -59,6 +59,7 @@ class SampleTables:
     _light: np.ndarray
     _rims: np.ndarray
     _slopes: np.ndarray
+    _colors: tuple = ()
 
     def places(self, lens_positions):
         """Places of the iris of lens positions, shape (N, 2).
@@ -70,13 +71,16 @@ class SampleTables:
         """
         return lens_positions * np.array([self.ratio, 1.0]) / self.aperture_radius
 
-    def moves(self, lens_positions):
+    def moves(self, lens_positions, colors=None):
         """Tables of the displacement of lens samples.
 
         Parameters
         ----------
         lens_positions : ndarray of shape (N, 2)
             In m.
+        colors : ndarray of shape (N, 2, K) or None
+            Shares of the K traced wavelengths' differences in the aberrations and in the rays
+            through the middle of the iris; None: the reference wavelength.
 
         Returns
         -------
@@ -86,16 +90,22 @@ class SampleTables:
         grid = self.moves_grid
         terms = disc_terms(self.orders, np.append(self.places(lens_positions), [[0.0, 0.0]], 0))
         terms = (terms[:-1] - terms[-1]).reshape(len(lens_positions), -1)
-        found = (terms @ self._moves).reshape(-1, len(self._chief), 4, 2) + self._chief
+        found = _mixed(terms, colors, (self._moves, *(moves for moves, _ in self._colors)))
+        found = found.reshape(-1, *self._chief.shape) + self._chief
+        if colors is not None:
+            for share, (_, chief) in zip(colors[:, 1].T, self._colors, strict=True):
+                found += share[:, None, None, None] * chief
         return found.reshape(-1, grid.rows, grid.columns, 4, 2).astype(np.float32)
 
-    def turns(self, lens_positions):
+    def turns(self, lens_positions, colors=None):
         """Tables of how displacements change with the place on the lens.
 
         Parameters
         ----------
         lens_positions : ndarray of shape (N, 2)
             In m.
+        colors : ndarray of shape (N, 2, K) or None
+            As of `moves`.
 
         Returns
         -------
@@ -109,16 +119,19 @@ class SampleTables:
             step[axis] = _NUDGE
             ahead, behind = (disc_terms(self.orders, places + s) for s in (step, -step))
             slopes = (ahead - behind).reshape(len(places), -1) * (0.5 * scale / _NUDGE)
-            found.append(slopes @ self._linear_moves / self.aperture_radius)
+            found.append(_mixed(slopes, colors, self._linear_moves) / self.aperture_radius)
         return np.stack(found, axis=-1).reshape(-1, grid.rows, grid.columns, 2, 2, 2)
 
     @cached_property
     def _linear_moves(self):
-        """`_moves` as straight lines over the vergence, through two Chebyshev points."""
+        """Tables of moves as straight lines over the vergence, through two Chebyshev points."""
         at = 0.5 - 0.5 * np.array([1.0, -1.0]) * np.sqrt(0.5)
         line = np.linalg.inv(at[:, None] ** np.arange(2)) @ at[:, None] ** np.arange(4)
-        moves = self._moves.reshape(len(self._moves), -1, 4, 2)
-        return np.einsum("lk,tnkc->tnlc", line, moves).reshape(len(moves), -1)
+        found = []
+        for each in (self._moves, *(moves for moves, _ in self._colors)):
+            moves = each.reshape(len(each), -1, 4, 2)
+            found.append(np.einsum("lk,tnkc->tnlc", line, moves).reshape(len(moves), -1))
+        return found
 
     def light(self, lens_positions, spacing=0.0):
         """Tables of the light of lens samples, without a division.
@@ -187,6 +200,15 @@ class SampleTables:
         return light
 
 
+def _mixed(terms, colors, tables):
+    """Sum up the terms of samples, with shares of other wavelengths' tables, if there are any."""
+    found = terms @ tables[0]
+    if colors is not None:
+        for share, table in zip(colors[:, 0].T, tables[1:], strict=True):
+            found += share[:, None] * (terms.astype(table.dtype) @ table)
+    return found
+
+
 def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=np.inf):
     """Lay out a lens over a picture.
 
@@ -225,6 +247,12 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=n
     every[0, :, :-1][:, np.minimum(away[:-1], outermost) > rays.last_seen] = 0.0
     light, rims = every[0], every[1:]
     slopes = [_rim_slope(rim, rays.orders) for rim in rims]
+    colors = []
+    if rays.colors is not None:
+        for changed, chiefs in zip(rays.colors.aberrations, rays.colors.chief, strict=True):
+            other = replace(rays, aberrations=changed, chief=chiefs)
+            over, middle = _moves(other, wide_grid.nodes, aperture_radius, ratio)
+            colors.append((over.reshape(len(over), -1).astype(np.float32), middle))
     # Rims that cut nothing of this picture.
     cutting = [s for s, (_, least) in enumerate(slopes) if least < _CLEAR]
     rims, slopes = [rims[s] for s in cutting], [slopes[s][0] for s in cutting]
@@ -241,6 +269,7 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=n
         _light=light,
         _rims=np.array(rims).reshape(-1, *light.shape),
         _slopes=np.array(slopes).reshape(-1, light.shape[1]),
+        _colors=tuple(colors),
     )
 
 

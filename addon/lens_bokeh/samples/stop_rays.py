@@ -64,6 +64,10 @@ class StopAim:
         self._wavelength = wavelength_nm
         self._radii = np.array([surface.semi_diameter for surface in configuration.surfaces])
 
+    def at_wavelength(self, wavelength_nm):
+        """Return the aim for another wavelength: pupil and places of the stop are the same."""
+        return StopAim(self._configuration, self._pupil, self.pupil_radius, wavelength_nm)
+
     def rays(self, field, vergences, targets, start):
         """Find rays.
 

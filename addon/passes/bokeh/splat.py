@@ -129,6 +129,8 @@ def splat(square, count, textures, look, view_buffer, rays=None):
     for name, texture in look.textures:
         shader.uniform_sampler(name, texture)
     shader.uniform_block("view_buf", view_buffer)
-    for block in look.blocks:
+    for number, block in enumerate(look.blocks):
         shader.uniform_block("splat_buf", block)
+        if look.lens is not None and look.lens.tables > 1:
+            shader.uniform_int("lens_slot", number)
         shader.draw_instanced(square, count)

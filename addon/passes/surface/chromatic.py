@@ -97,8 +97,8 @@ def resources(*, table, radius, parallel, focus, raster, extremes, typical):
         Distance from the axis in the field where t is 1.
     parallel : bool
     focus : tuple of 4 float
-        Inverse focus distance and inverse focal length of the reference wavelength, least inverse
-        focus distance, all in 1/m; least lateral scale.
+        Inverse focus distance and inverse focal length of the reference wavelength, 1/m; unused;
+        least lateral scale.
     raster : sequence of 4 float
         From pixels to the field: scale and offset.
     extremes : tuple of 3 float

@@ -38,6 +38,9 @@ class LensSample:
         Of `turns_texture`, for subsamples.
     sets : int
         Places in the tables from that one on that pixels have in turn; see `SampleLight`.
+    tables : int
+        Number of the tables that are drawn one after the other, from its own on: of the middle of
+        the lens one for each band of wavelengths.
     """
 
     slot: int
@@ -45,6 +48,7 @@ class LensSample:
     light: "SampleLight | None" = None
     turns: object = None
     sets: int = 1
+    tables: int = 1
 
     def bind(self, shader):
         """Set what `declared` has declared in a bound shader."""

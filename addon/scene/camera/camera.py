@@ -147,7 +147,7 @@ def read_optics(depsgraph, camera, world=None, sources=None):
     opening, of_iris = read_opening(data, real_lens, sources.irises)
     lens, of_focus = read_lens(depsgraph, camera, real_lens, world, opening)
     focus = lens.focus_distance if lens else None
-    chromatic, of_chromatic = read_chromatic(data, real_lens, focus)
+    chromatic, of_chromatic = read_chromatic(data, real_lens)
     breathing, of_breathing = read_breathing(data, real_lens, focus)
     corner = corner_tangent(data, depsgraph.scene) / breathing
     bokeh, of_bokeh = read_bokeh(data, real_lens, corner, opening)

@@ -1,5 +1,6 @@
 """Reads the chromatic aberration of a Blender camera into a `ChromaticAberration`."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import bpy
@@ -7,9 +8,11 @@ import numpy as np
 
 from ...errors import AplanatError, GlassNotFoundError
 from ...lens_io.glasses.dispersion import DEFAULT_GLASS, glass_dispersion, lens_dispersion
+from ...optics.glass import REFERENCE_WAVELENGTH_NM
 from ...sampling.chromatic import SPECTRAL_RANGE_NM, WIDEST_RANGE_NM, ChromaticAberration
 from ...sampling.equalizer import FLAT, SpectralEqualizer
 from ...sampling.field_maps import LIMIT, LINEAR_CURVE, FieldMap
+from ...sampling.spectral_bands import middle_wavelength
 from ...sampling.spectrum import LINEAR_REC709, primaries_of
 from .drawn_curves import EQUALIZER, EQUALIZER_RANGE_NM, MAP_CURVES, SAMPLES, curve_values
 
@@ -21,7 +24,7 @@ _NARROWEST_RANGE_NM = 1.0
 _ATOM_STEPS = {"axial": ("axial_first", "axial_then"), "lateral": ("lateral_first", "lateral_then")}
 
 
-def read_chromatic(camera, real_lens, focus=None):
+def read_chromatic(camera, real_lens):
     """Return the chromatic aberration of a camera, and warnings about what cannot be met.
 
     Parameters
@@ -30,8 +33,6 @@ def read_chromatic(camera, real_lens, focus=None):
         Evaluated in the frame that is drawn.
     real_lens : LensSettings or None
         As read from the same camera.
-    focus : float or None
-        Focus distance in m; None without depth of field.
 
     Returns
     -------
@@ -42,13 +43,13 @@ def read_chromatic(camera, real_lens, focus=None):
     """
     if not camera.aplanat.chromatic.use:
         return None, ()
-    return describe_chromatic(camera, real_lens, focus)
+    return describe_chromatic(camera, real_lens)
 
 
-def describe_chromatic(camera, real_lens, focus=None):
+def describe_chromatic(camera, real_lens):
     """Read chromatic aberration as `read_chromatic`, even if it is switched off."""
     settings = camera.aplanat.chromatic
-    dispersion, problems = _read_dispersion(settings, real_lens)
+    dispersion, of_lens, problems = _read_dispersion(settings, real_lens)
     maps = []
     for which in _ATOM_STEPS:
         field_map = read_field_map(settings, which)
@@ -67,9 +68,10 @@ def describe_chromatic(camera, real_lens, focus=None):
         wavelength_range,
         equalizer,
         primaries,
+        "LENS" if of_lens else settings.focus_light,
     )
     problems += range_problems + equalizer_problems + space_problems
-    return aberration, problems + _problems(aberration, focus)
+    return aberration, problems + _problems(aberration)
 
 
 def read_field_map(settings, which):
@@ -96,8 +98,17 @@ def read_field_map(settings, which):
 
 # Memos of their arguments alone: what is equal is one object, so that it is compared at once.
 _field_map = lru_cache(maxsize=64)(FieldMap)
-_aberration = lru_cache(maxsize=16)(ChromaticAberration)
 _problems = lru_cache(maxsize=64)(ChromaticAberration.problems)
+
+
+# Memo of its arguments alone; see above.
+@lru_cache(maxsize=16)
+def _aberration(*settings_and_focus):
+    *settings, focus = settings_and_focus
+    found = ChromaticAberration(*settings)
+    if focus == "LENS":
+        return replace(found, focus_nm=REFERENCE_WAVELENGTH_NM, of_lens=True)
+    return replace(found, focus_nm=middle_wavelength(found)) if focus == "MIDDLE" else found
 
 
 # Memo of the weights alone; see above.
@@ -111,20 +122,21 @@ def _read_dispersion(settings, real_lens):
     if settings.dispersion == "LENS":
         if real_lens is not None:
             return _dispersion_of_lens(real_lens)
-        dispersion, problems = _dispersion_of_glass(settings.glass)
-        told = f"has no real lens whose axial color could be used; that of {settings.glass} is used"
-        return dispersion, problems or (told,)
+        dispersion, _, problems = _dispersion_of_glass(settings.glass)
+        told = f"has no real lens whose colors could be used; those of {settings.glass} are used"
+        return dispersion, False, problems or (told,)
     return _dispersion_of_glass(settings.glass)
 
 
 def _dispersion_of_glass(name):
+    """Return a dispersion, whether it is the real lens', and warnings."""
     try:
-        return glass_dispersion(name), ()
+        return glass_dispersion(name), False, ()
     except GlassNotFoundError as error:
         problem = f"{error}; {DEFAULT_GLASS} parts the colors instead"
     except AplanatError as error:
         problem = f"glass '{name}': {error}; {DEFAULT_GLASS} parts the colors instead"
-    return glass_dispersion(DEFAULT_GLASS), (problem,)
+    return glass_dispersion(DEFAULT_GLASS), False, (problem,)
 
 
 def _dispersion_of_lens(real_lens):
@@ -134,14 +146,15 @@ def _dispersion_of_lens(real_lens):
         dispersion = lens_dispersion(configuration)
     except AplanatError as error:
         problem = f"lens '{name}' has no axial color that could be used ({error})"
-        return glass_dispersion(DEFAULT_GLASS), (f"{problem}; that of {DEFAULT_GLASS} is used",)
+        told = f"{problem}; that of {DEFAULT_GLASS} is used"
+        return glass_dispersion(DEFAULT_GLASS), False, (told,)
     if not dispersion.disperses:
         told = f"the glasses of lens '{name}' are given without dispersion: it parts no colors"
-        return dispersion, (told,)
+        return dispersion, True, (told,)
     if not configuration.of_revolution:
         told = f"lens '{name}' has cylinders: its axial color along the height is drawn all round"
-        return dispersion, (told,)
-    return dispersion, ()
+        return dispersion, True, (told,)
+    return dispersion, True, ()
 
 
 def _map_problems(settings, which, field_map):

@@ -38,6 +38,7 @@ class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, SwitchHeader, PresetsHeader, 
             glass = column.row()
             glass.use_property_decorate = False
             glass.prop(settings, "glass", icon="MATERIAL")
+            column.prop(settings, "focus_light")
         if settings.mode == "SPECTRAL":
             wavelengths = column.column(align=True)
             wavelengths.prop(settings, "wavelength_min", text="Wavelengths (nm)")
@@ -48,16 +49,9 @@ class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, SwitchHeader, PresetsHeader, 
         camera = context.camera
         letters = letters_across(context)
         lens = real_lens_of(camera)
-        dof = camera.dof
-        # How far away an object is, only drawing tells.
-        known = dof.use_dof and dof.focus_object is None and dof.focus_distance > 0.0
-        focus = dof.focus_distance if known else None
-        aberration, problems = describe_chromatic(camera, lens, focus)
-        if dof.use_dof:
-            text = (
-                f"The focus distance is meant for {aberration.reference_nm:.0f} nm, the longest"
-                " wavelength."
-            )
+        aberration, problems = describe_chromatic(camera, lens)
+        if camera.dof.use_dof:
+            text = f"The focus distance is meant for light of {aberration.reference_nm:.0f} nm."
         else:
             text = "Axial aberration is seen with Depth of Field only."
         draw_sentences(column, text, letters, icon="INFO")
@@ -73,6 +67,14 @@ class _FieldMapPanel(_ChromaticPanel):
     def draw(self, context):
         """Draw the two atoms, the curves that are drawn, and the map."""
         settings, column = self.begin(context)
+        if _has_own_colors(context.camera):
+            draw_sentences(
+                column,
+                "The colors are those of the real lens, over the whole picture, without a map.",
+                letters_across(context),
+                icon="INFO",
+            )
+            column.active = False
         for step, name in enumerate((f"{self.which}_first", f"{self.which}_then")):
             column.prop(settings, name)
             if getattr(settings, name) == "CURVE":
@@ -138,6 +140,13 @@ class APLANAT_CAMERA_PT_chromatic_equalizer(_ChromaticPanel, SwitchHeader, bpy.t
         column.active = settings.use and settings.use_equalizer
         if _draw_curve(column, settings, EQUALIZER):
             draw_spectrum(column, settings.spectrum)
+
+
+def _has_own_colors(camera):
+    """Whether a real lens' own colors are drawn, which have no maps."""
+    if camera.aplanat.chromatic.dispersion != "LENS" or not camera.dof.use_dof:
+        return False
+    return real_lens_of(camera) is not None
 
 
 def _draw_curve(column, settings, name):

@@ -26,6 +26,13 @@ def _atom_changed(name):
     return update
 
 
+def _use_changed(settings, context):
+    if settings.id_data.is_editable:
+        # Files in which it is not stored are older, and mean another light (`migration_steps`).
+        settings.focus_light = settings.focus_light
+    setting_changed(settings, context)
+
+
 def _equalizer_changed(settings, context):
     if settings.use_equalizer and settings.id_data.is_editable:
         make_group(settings)
@@ -40,6 +47,7 @@ def _found_glasses(settings, _context, typed):
 
 _CALLBACKS = {
     **{name: {"update": _atom_changed(name)} for name in settings_of(MAPS)},
+    "use": {"update": _use_changed},
     "use_equalizer": {"update": _equalizer_changed},
     "glass": {"search": _found_glasses},
 }

@@ -3,6 +3,7 @@
 from .moved_settings import move, move_animation
 
 _NONE = 0
+_LONGEST_WAVELENGTH = 0
 
 
 def distortion_to_lens(kind, block, stored):
@@ -23,8 +24,15 @@ def distortion_to_lens(kind, block, stored):
         move_animation(block, old, new)
 
 
+def focus_of_longest_wavelength(kind, block, stored):
+    """To version 3: which light is in focus can be chosen; it was the longest wavelength."""
+    chromatic = stored.get("chromatic") if kind == "cameras" else None
+    if chromatic is not None and "use" in chromatic and "focus_light" not in chromatic:
+        chromatic["focus_light"] = _LONGEST_WAVELENGTH
+
+
 # By the version that it leads to: called as step(kind, block, stored) for each data-block that has
 # stored settings. `kind` is the name of its collection in bpy.data, or "view_layers"; `stored`
 # holds the stored values by name, groups inside as groups, and also those whose property is gone.
 # Keys and drivers of the block name a setting, too: `moved_settings` moves both.
-STEPS = {2: distortion_to_lens}
+STEPS = {2: distortion_to_lens, 3: focus_of_longest_wavelength}

@@ -87,12 +87,13 @@ def wall(scene, side):
     bpy.context.object.data.materials.append(material)
 
 
-def traced(scene, data, lens, samples, folder, sides=None):
+def traced(scene, data, lens, samples, folder, sides=None, wavelength=587.5618):
     """Render the traced lens; `sides` are those of the sensor that the picture shows, mm."""
     import _cycles
 
     height = data.sensor_width * scene.render.resolution_y / scene.render.resolution_x
-    source = shader_source(lens, (data.sensor_width, height) if sides is None else sides, data.lens)
+    size = (data.sensor_width, height) if sides is None else sides
+    source = shader_source(lens, size, data.lens, wavelength_nm=wavelength)
     (folder / "lens.osl").write_text(source)
     assert _cycles.osl_compile(str(folder / "lens.osl"), str(folder / "lens.oso"))
     data.type, data.custom_bytecode = "CUSTOM", (folder / "lens.oso").read_text()
@@ -127,6 +128,24 @@ def test_a_picture_is_that_of_the_traced_lens(empty_scene, camera, tmp_path):
     # Noise of the other picture alone leaves 0.98; a thin lens is far off.
     assert ssim(ours, theirs) > 0.96, tmp_path
     assert ssim(thin, theirs) < 0.94
+
+
+@pytest.mark.skipif(not has_osl(), reason="this Blender's Cycles comes without OSL")
+def test_another_wavelength_is_that_of_the_traced_lens(empty_scene, camera, tmp_path):
+    violet = 435.8
+    lens = use_lens(camera, "singlet-planoconvex-100mm", 20.0, "LENS", "LENS")
+    world(empty_scene, (0.05, 0.08, 0.15))
+    balls(empty_scene)
+    chromatic = camera.aplanat.chromatic
+    chromatic.use, chromatic.dispersion = True, "LENS"
+    chromatic.wavelength_min, chromatic.wavelength_max = violet - 0.5, violet + 0.5
+    ours = render_aplanat(empty_scene, 96)
+    theirs = traced(empty_scene, camera, lens, 384, tmp_path, wavelength=violet)
+    chromatic.use = False
+    without = render_aplanat(empty_scene, 96)
+    save_side_by_side(tmp_path / "ours.png", ours, theirs)
+    assert ssim(ours, theirs) > 0.97, tmp_path
+    assert 1.0 - ssim(without, theirs) > 2.0 * (1.0 - ssim(ours, theirs))
 
 
 @pytest.mark.skipif(not has_osl(), reason="this Blender's Cycles comes without OSL")
