@@ -24,6 +24,7 @@ from benchmarks.benches.frames import BenchScene
 from benchmarks.referees import chromatic_charts
 from benchmarks.referees.picture_metrics import compare
 from benchmarks.referees.shared_scenes import shared_scene
+from tests.pictures import render_aplanat, render_picture
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
@@ -146,3 +147,38 @@ def test_hills_of_a_profile_are_counted():
     assert count_maxima(np.sin(3.0 * np.pi * x) ** 2) == 3
     # Ripples of less than 2 % are none.
     assert count_maxima(np.sin(np.pi * x) + 0.005 * np.sin(60.0 * x)) == 1
+
+
+def test_discs_of_a_real_lens_have_the_colors_of_its_samples(empty_scene, camera):
+    bpy = pytest.importorskip("bpy")
+    for place in ((-0.06, 0.035, -1.2), (0.5, 0.3, -8.0)):
+        bpy.ops.mesh.primitive_ico_sphere_add(
+            subdivisions=2, radius=-0.006 * place[2], location=place
+        )
+        material = bpy.data.materials.new("lamp")
+        tree = material.node_tree
+        tree.nodes.clear()
+        glow = tree.nodes.new("ShaderNodeEmission")
+        glow.inputs["Strength"].default_value = 100.0
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        tree.links.new(glow.outputs["Emission"], output.inputs["Surface"])
+        bpy.context.object.data.materials.append(material)
+    camera.lens, camera.sensor_width = 99.65, 20.0
+    camera.dof.use_dof, camera.dof.aperture_fstop, camera.dof.focus_distance = True, 4.0, 2.0
+    settings = camera.aplanat
+    settings.lens, settings.bokeh.vignetting = "singlet-planoconvex-100mm", "LENS"
+    chromatic = settings.chromatic
+    chromatic.use, chromatic.dispersion, chromatic.mode = True, "LENS", "RGB"
+    settings.bokeh.use = False
+    samples = render_aplanat(empty_scene, 384)[..., :3]
+    scene = empty_scene.aplanat
+    scene.method, scene.use_target_error, scene.render_samples = "ADAPTIVE", False, 12
+    settings.bokeh.use = True
+    discs = render_picture(empty_scene)[..., :3]
+    chromatic.use = False
+    grey = render_picture(empty_scene)[..., :3]
+    error, without = (np.square(each - samples).mean() for each in (discs, grey))
+    # Noise of the samples is most of it.
+    assert error < 0.3 * without
+    # Each channel has all of its light.
+    assert discs.sum(axis=(0, 1)) == pytest.approx(samples.sum(axis=(0, 1)), rel=0.03)
