@@ -56,14 +56,9 @@ class LensTables:
         light = real_lens.SampleLight(light, self._table(len(tables), slot), self._sets)
         return real_lens.LensSample(slot, moves, light, turns, self._sets)
 
-    def discs(self, colors):
-        """Return the `LensSample` of discs: the lens' middle, at each band of wavelengths.
-
-        Parameters
-        ----------
-        colors : engine.planning.bokeh_colors.BokehColors or None
-        """
-        bands = colors.traced if colors else ()
+    def discs(self, bokeh):
+        """Return the `LensSample` of a `BokehPlan`'s discs: the middle, for each band."""
+        bands = bokeh.colors.traced if bokeh.colors else ()
         if not bands:
             return self._middle
         shares = np.stack([band.shares for band in bands])

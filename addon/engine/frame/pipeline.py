@@ -159,8 +159,7 @@ class FrameRenderer(ReadableFrame):
 
     def _stage(self, plan):
         scene = (self._drawing, self._buffers, self._occluders, self._highlights)
-        lens = self._lens and self._lens.discs(plan.bokeh.colors)
-        return BokehStage(plan, *scene, self._field, lens)
+        return BokehStage(plan, *scene, self._field, self._lens and self._lens.discs(plan.bokeh))
 
     @property
     def layered(self):

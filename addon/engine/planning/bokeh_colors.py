@@ -93,6 +93,29 @@ class BokehColors:
         return replace(self, levels=(*levels[:-1], replace(levels[-1], most=np.inf)))
 
 
+def colors_of_frame(aberration, plan, farthest):
+    """Plan the bands of wavelengths of a frame's discs.
+
+    Parameters
+    ----------
+    aberration : ChromaticAberration or None
+        Of the camera.
+    plan : FramePlan
+    farthest : float
+        Depth of the farthest highlight, m.
+
+    Returns
+    -------
+    BokehColors or None
+        None: one disc for all wavelengths.
+    """
+    if plan.chromatic is None:
+        return None
+    if plan.chromatic.traced:
+        return plan_traced_colors(aberration, plan)
+    return plan_colors(aberration, plan.chromatic, plan.coc_scale, farthest)
+
+
 def plan_colors(aberration, chromatic: ChromaticPlan, coc_scale, farthest):
     """Plan the bands of wavelengths of a frame's discs.
 

@@ -16,7 +16,7 @@ from ...sampling.pixel_filter import filter_density
 from ...snapshot.brightness import brightest, mirrors
 from ...snapshot.camera import BokehSettings, LensSettings
 from ...snapshot.surface_graph import Constant
-from .bokeh_colors import BokehColors, plan_colors, plan_traced_colors
+from .bokeh_colors import BokehColors, colors_of_frame
 from .bokeh_search import (
     LEAST_SUBPIXELS,
     corners_of,
@@ -206,13 +206,8 @@ def plan_bokeh(snapshot, plan):
     shining = bright - unsplit
     rows, _ = rows_of(snapshot.content, shining)
     seen = extents(corners_of(snapshot.content, rows), plan.view)
-    colors = None
-    if plan.chromatic and plan.chromatic.traced:
-        colors = plan_traced_colors(snapshot.camera.chromatic, plan)
-    elif plan.chromatic:
-        farthest = float(seen.farthest.max(initial=plan.focus_distance))
-        aberration = snapshot.camera.chromatic
-        colors = plan_colors(aberration, plan.chromatic, plan.coc_scale, farthest)
+    farthest = float(seen.farthest.max(initial=plan.focus_distance))
+    colors = colors_of_frame(snapshot.camera.chromatic, plan, farthest)
     largest = _largest_coc(snapshot.content, plan, seen, colors)
     if largest <= least:
         return None

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...levels.choosing import coc_radius
 from ...sampling.highlights import highlight_share
-from .bokeh_colors import plan_colors
+from .bokeh_colors import colors_of_frame
 from .bokeh_plan import INFINITY, BokehPlan, filter_width, least_splatted, shaping_lens
 
 
@@ -29,10 +29,7 @@ def plan_stack_bokeh(snapshot, plan):
     if camera.bokeh is None or camera.lens is None or plan.coc_scale == 0.0:
         return None
     least = least_splatted(plan)
-    colors = None
-    if plan.chromatic:
-        farthest = max(stack.depth_range)
-        colors = plan_colors(camera.chromatic, plan.chromatic, plan.coc_scale, farthest)
+    colors = colors_of_frame(camera.chromatic, plan, max(stack.depth_range))
     if _largest_coc(plan, stack, colors) <= least:
         return None
     # With a parallel projection, all pixels show the same point at infinity: no highlight.
