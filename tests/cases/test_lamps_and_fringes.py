@@ -98,6 +98,16 @@ def test_small_lamps_keep_their_light_at_small_blurs(
     assert picture[..., 0].sum(dtype=np.float64) == pytest.approx(light, rel=5e-3)
 
 
+# A near clip of a millimetre leaves steps of 5 mm of depth at 9 m; they are 12 mm apart.
+@pytest.mark.parametrize("parallel", [False, True])
+def test_a_lamp_right_behind_a_dark_surface_gives_no_light(parallel, empty_scene, aplanat_bpy):
+    scene = _lamp(aplanat_bpy, empty_scene, 2.5, 3.0, parallel)
+    _quad(aplanat_bpy, "dark", (0.0, 9.0 - 0.012, 0.0), 9.0, (0.0, 0.0, 0.0))
+    scene.camera.data.clip_start, scene.camera.data.clip_end = 1e-3, 1e5
+    picture = _render(aplanat_bpy, scene, 32, "ADAPTIVE")
+    np.testing.assert_array_equal(picture, 0.0)
+
+
 # Lamps are drawn as discs from a circle of confusion of a pixel on; by the samples alone, the error
 # was 0.15 to 0.5.
 @pytest.mark.parametrize("samples", [16, 32])

@@ -14,6 +14,7 @@ from ...device.uniforms import uniform_buffer
 from ...passes import background
 from ...passes.bokeh import highlights, peel
 from ...passes.surface import surface
+from ..planning.bokeh_search import deep_projection, rows_of
 from .lamp_areas import NO_AREAS, LampAreas, lamp_areas
 from .search_tiles import tiles_of
 
@@ -37,6 +38,8 @@ class _Search:
     subpixels : int
     views : list of (tuple of 2 float, int)
         Places on the lens, m, and the region of the lens that each represents.
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space of the whole raster.
     areas : LampAreas
         Areas of the instances whose texels are counted.
     """
@@ -46,6 +49,7 @@ class _Search:
     part: tuple[int, int, int, int]
     subpixels: int
     views: list
+    projection: np.ndarray
     areas: LampAreas = NO_AREAS
 
 
@@ -140,16 +144,22 @@ class HighlightSearch:
         alone = [((0.0, 0.0), 0)]
         steady = bokeh.shining - bokeh.mirroring
         areas = NO_AREAS
+        content, whole = self._drawing.content, bokeh.projection
         if not bokeh.draft:
-            content, size = self._drawing.content, bokeh.whole[2:]
-            areas = lamp_areas(content, steady, self._plan, bokeh.projection, size)
-        searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone, areas)]
+            areas = lamp_areas(content, steady, self._plan, whole, bokeh.whole[2:])
+
+        def deep(surfaces):
+            return deep_projection(content, rows_of(content, surfaces)[0], self._plan, whole)
+
+        fine = bokeh.subpixels
+        searches = [_Search(steady, False, bokeh.part, fine, alone, deep(steady), areas)]
         if bokeh.mirroring:
             several = views if len(views) > 1 else alone
-            fine = bokeh.mirroring_subpixels
-            searches.append(_Search(bokeh.mirroring, False, bokeh.whole, fine, several))
+            fine, mirrors = bokeh.mirroring_subpixels, bokeh.mirroring
+            searches.append(_Search(mirrors, False, bokeh.whole, fine, several, deep(mirrors)))
         if bokeh.world:
-            searches.append(_Search(frozenset(), True, bokeh.whole, bokeh.world_subpixels, alone))
+            fine = bokeh.world_subpixels
+            searches.append(_Search(frozenset(), True, bokeh.whole, fine, alone, whole))
         return searches
 
     def _draws(self, search):
@@ -177,7 +187,7 @@ class HighlightSearch:
 
     def _draw(self, search, tile, view, draws, raster, held, fullscreen):
         """Draw a tile, seen from a place on the lens, into lists; return its `ViewParams`."""
-        params = uniform_buffer(self._raster_params(tile, raster, search.subpixels))
+        params = uniform_buffer(self._raster_params(search, tile, raster))
         framebuffer = raster.framebuffer(depth="scene")
         size = (tile[2] * search.subpixels, tile[3] * search.subpixels)
         with framebuffer.bind(), state.scissored(0, 0, *size):
@@ -274,7 +284,7 @@ class HighlightSearch:
             self._drawing.counts.draw_calls += 1
             self._drawing.counts.triangles += draw.triangles * draw.count
 
-    def _raster_params(self, tile, raster, subpixels):
+    def _raster_params(self, search, tile, raster):
         plan, bokeh = self._plan, self._plan.bokeh
         x, y, _, _ = tile
         width, height = raster.width, raster.height
@@ -285,9 +295,9 @@ class HighlightSearch:
         return surface.VIEW_PARAMS.pack(
             view=plan.view,
             view_inverse=np.linalg.inv(plan.view),
-            projection=crop @ bokeh.projection,
+            projection=crop @ search.projection,
             lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
-            film=(width * subpixels, height * subpixels, 0.0, 0.0),
+            film=(width * search.subpixels, height * search.subpixels, 0.0, 0.0),
         )
 
 

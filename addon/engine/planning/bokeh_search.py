@@ -18,6 +18,9 @@ _HITS_A_SIDE = 6.0
 # Sub-pixels across a single lamp: its light is found to one per cent. The error with m sub-pixels
 # on a lamp falls with m^(3/4); that of the sum of k lamps as if each had k^(2/3) times as many.
 _HITS_A_LAMP = 45.0
+# Parallax over the lens beyond which a surface hides no highlight from all of it, px: more than
+# hiding_lib.glsl and visibility_lib.glsl ask for.
+_HIDING_PARALLAX = 2.0
 # Most sub-pixels for the sake of single lamps: along a side of a pixel, and in all.
 _FINEST = 64
 _FINE_RASTER = 1 << 21
@@ -78,6 +81,53 @@ def rectangles_of(content, rows, plan, projection, size):
     upper = np.where(ahead[:, None], places.max(axis=1), size)
     seen = (w > 1e-6).any(axis=(1, 2)) & (upper > 0.0).all(axis=1) & (lower < size).all(axis=1)
     return lower[seen], upper[seen], size
+
+
+def deep_projection(content, rows, plan, projection):
+    """Return a projection whose depths tell apart surfaces close to one another, shape (4, 4).
+
+    Its clip planes enclose some instances and what may hide them from the whole lens, no more:
+    between those of a camera, a near one of millimetres leaves no steps of depth far away.
+
+    Parameters
+    ----------
+    content : SceneContent
+    rows : ndarray of shape (R,)
+        Of the instance table.
+    plan : FramePlan
+    projection : ndarray of shape (4, 4)
+        Camera space to clip space, whose clip planes are not exceeded.
+    """
+    if len(rows) == 0:
+        return projection
+    planes = _clip_planes(projection, plan.orthographic)
+    depth = -(corners_of(content, rows) @ plan.view[2, :3] + plan.view[2, 3])
+    nearest, farthest = depth.min(), depth.max()
+    move = _HIDING_PARALLAX / max(plan.coc_scale, 1e-30)
+    if plan.orthographic:
+        nearest = nearest - move * plan.focus_distance
+    else:
+        nearest = 1.0 / (1.0 / max(nearest, planes[0]) + move)
+    # For rounding; of a flat surface across the view, too.
+    room = 1e-3 * max(abs(nearest), abs(farthest))
+    near, far = max(planes[0], nearest - room), min(planes[1], farthest + room)
+    if not near < far:
+        return projection
+    deep = np.array(projection)
+    if plan.orthographic:
+        deep[2, 2:] = -2.0 / (far - near), -(far + near) / (far - near)
+    else:
+        deep[2, 2:] = -(far + near) / (far - near), -2.0 * far * near / (far - near)
+    return deep
+
+
+def _clip_planes(projection, orthographic):
+    """Return the depths of the near and the far clip plane, m."""
+    slope, offset = projection[2, 2:]
+    if orthographic:
+        return (offset + 1.0) / slope, (offset - 1.0) / slope
+    # In single precision, a far plane many times as far as the near one is infinitely far.
+    return offset / (slope - 1.0), offset / (slope + 1.0) if slope < -1.0 else np.inf
 
 
 def part_of(rectangles):

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from addon.engine.planning.bokeh_search import deep_projection
 from addon.engine.planning.plan import plan_frame
 from addon.sampling.highlights import highlight_share
 from addon.sampling.iris import Iris
@@ -90,3 +91,23 @@ def test_lone_lamps_are_searched_where_they_are():
     # 45 sub-pixels across, and never more than the budget.
     assert width * bokeh.subpixels >= 45
     assert width * height * bokeh.subpixels**2 <= 1 << 21
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_depths_of_the_search_enclose_highlights_and_what_hides_them(parallel):
+    corners = (TRIANGLE, TRIANGLE - [0.0, 0.0, 4.0])
+    made = triangles_snapshot(corners, ((5.0,) * 3,) * 2, 96, 64, LENS, parallel=parallel)
+    plan = plan_frame(made)
+    deep = deep_projection(made.content, np.arange(2), plan, plan.projection)
+    np.testing.assert_array_equal(deep[[0, 1, 3]], plan.projection[[0, 1, 3]])
+    # Here the circle of confusion differs by 1 px from that at 8 m.
+    move = 1.0 / plan.coc_scale
+    hider = 8.0 - move * plan.focus_distance if parallel else 1.0 / (1.0 / 8.0 + move)
+    for depth in (hider, 8.0, 12.0):
+        clip = deep @ [0.0, 0.0, -depth, 1.0]
+        assert -1.0 < clip[2] / clip[3] < 1.0
+    before, after = (
+        np.ptp([(p @ [0, 0, -d, 1])[2] / (p @ [0, 0, -d, 1])[3] for d in (8.0, 8.01)])
+        for p in (plan.projection, deep)
+    )
+    assert after > 10.0 * before
