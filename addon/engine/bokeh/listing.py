@@ -14,7 +14,6 @@ from ...device.uniforms import uniform_buffer
 from ...passes import background
 from ...passes.bokeh import highlights, peel
 from ...passes.surface import surface
-from ..planning.bokeh_search import deep_projection, rows_of
 from .lamp_areas import NO_AREAS, LampAreas, lamp_areas
 from .search_tiles import tiles_of
 
@@ -144,22 +143,19 @@ class HighlightSearch:
         alone = [((0.0, 0.0), 0)]
         steady = bokeh.shining - bokeh.mirroring
         areas = NO_AREAS
-        content, whole = self._drawing.content, bokeh.projection
         if not bokeh.draft:
-            areas = lamp_areas(content, steady, self._plan, whole, bokeh.whole[2:])
-
-        def deep(surfaces):
-            return deep_projection(content, rows_of(content, surfaces)[0], self._plan, whole)
-
-        fine = bokeh.subpixels
-        searches = [_Search(steady, False, bokeh.part, fine, alone, deep(steady), areas)]
+            content, size = self._drawing.content, bokeh.whole[2:]
+            areas = lamp_areas(content, steady, self._plan, bokeh.projection, size)
+        deep, deep_mirrors = bokeh.search_projections
+        searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone, deep, areas)]
         if bokeh.mirroring:
             several = views if len(views) > 1 else alone
             fine, mirrors = bokeh.mirroring_subpixels, bokeh.mirroring
-            searches.append(_Search(mirrors, False, bokeh.whole, fine, several, deep(mirrors)))
+            searches.append(_Search(mirrors, False, bokeh.whole, fine, several, deep_mirrors))
         if bokeh.world:
             fine = bokeh.world_subpixels
-            searches.append(_Search(frozenset(), True, bokeh.whole, fine, alone, whole))
+            around = bokeh.projection
+            searches.append(_Search(frozenset(), True, bokeh.whole, fine, alone, around))
         return searches
 
     def _draws(self, search):

@@ -20,6 +20,7 @@ from .bokeh_colors import BokehColors, colors_of_frame
 from .bokeh_search import (
     LEAST_SUBPIXELS,
     corners_of,
+    deep_projection,
     emitting,
     graph_of,
     part_of,
@@ -82,6 +83,9 @@ class BokehPlan:
         The traced lens that shapes the discs; None: the thin lens.
     filter_width : float
         Side of the box with the variance of the pixel filter, px.
+    search_projections : tuple of 2 ndarray of shape (4, 4), optional
+        As `projection`, for the search of surfaces that do not mirror and of those that do; see
+        `bokeh_search.deep_projection`. None: highlights are those of captured layers.
     colors : BokehColors or None
         None: one disc for all wavelengths.
     draft : bool
@@ -107,6 +111,7 @@ class BokehPlan:
     iris: Iris
     real_lens: LensSettings | None
     filter_width: float
+    search_projections: tuple[np.ndarray, np.ndarray] | None = None
     colors: BokehColors | None = None
     draft: bool = False
 
@@ -226,6 +231,10 @@ def plan_bokeh(snapshot, plan):
         rows, _ = rows_of(snapshot.content, keys)
         return rectangles_of(snapshot.content, rows, plan, projection, size)
 
+    def deep(keys):
+        rows, _ = rows_of(snapshot.content, keys)
+        return deep_projection(snapshot.content, rows, plan, projection)
+
     steady = seen_in_raster(shining - mirroring)
     part = part_of(steady)
     rows, of_group = rows_of(snapshot.content, emitting(snapshot.content, shining))
@@ -240,6 +249,7 @@ def plan_bokeh(snapshot, plan):
         height=height,
         margin=margin,
         projection=projection,
+        search_projections=(deep(shining - mirroring), deep(mirroring)),
         subpixels=max(
             subpixels_of_triangles(snapshot.content, plan, rows, of_group, size),
             subpixels_of_lamps(steady, part),
