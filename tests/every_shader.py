@@ -90,6 +90,16 @@ def _principled(**more):
     return SurfaceGraph((principled,), Link(0, "BSDF"))
 
 
+def _rarer():
+    """A mix of glass and of a coated surface that lets light pass."""
+    coat = {"Coat Weight": (1.0,), "Coat Roughness": (0.1,), "Coat IOR": (1.5,)}
+    coated = _principled(**coat, **{"Coat Tint": (1.0, 1.0, 1.0), "Transmission Weight": (0.5,)})
+    glass = _node("glass", (("mirrors", "1"),), Color=(1.0,), Roughness=(0.1,), IOR=(1.4,))
+    shaders_in = (("Fac", Constant((0.5,))), ("Shader", Link(0, "BSDF")))
+    mixed = ShaderNode("mix_shader", (*shaders_in, ("Shader_001", Link(1, "BSDF"))))
+    return SurfaceGraph((*coated.nodes, glass, mixed), Link(2, "Shader"))
+
+
 _COLOURS = _node("color_attribute", (("name", "Col"),))
 _LIT_BY_ATTRIBUTE = SurfaceGraph(
     (_COLOURS, _node("diffuse", Color=Link(0, "Color"))), Link(1, "BSDF")
@@ -103,6 +113,7 @@ GRAPHS = {
     "added": _pair("add_shader"),
     "lit": _principled(),
     "lit and transparent": _principled(Alpha=(0.5,)),
+    "rarer closures": _rarer(),
     "attribute": _LIT_BY_ATTRIBUTE,
 }
 # With and without what a mesh may lack.

@@ -55,7 +55,8 @@ def mirrors(graph):
         False for surfaces that also emit: their emission outshines their reflections.
     """
     return not emits(graph) and any(
-        node.kind == "glossy" or (node.kind == "principled" and not _is_matt(node))
+        node.kind in {"glossy", "metallic", "glass"}
+        or (node.kind == "principled" and not _is_matt(node))
         for node in graph.nodes
     )
 
@@ -126,8 +127,11 @@ def _graph_bound(graph, mesh, images, reflected):
         elif node.kind == "emission":
             color, strength = of(inputs["Color"]), of(inputs["Strength"])
             bound = _product(color, strength)
-        elif node.kind in {"diffuse", "glossy"}:
+        elif node.kind in {"diffuse", "glossy", "translucent", "metallic", "glass"}:
             color = of(inputs["Color"])
+            # Edges of metals are white; thin glass mirrors with two faces.
+            if node.kind in {"metallic", "glass"}:
+                color = max(color, 1.0) * (2.0 if node.kind == "glass" else 1.0)
             bound = _product(color, reflected)
             if node.kind == "glossy" and color > 1.0:
                 bound *= _REPEATED
@@ -135,6 +139,8 @@ def _graph_bound(graph, mesh, images, reflected):
             # A metal, or the coat of the diffuse part, is never brighter than white.
             color, strength = of(inputs["Emission Color"]), of(inputs["Emission Strength"])
             reflectance = max(of(inputs["Base Color"]), 1.0)
+            if "Coat Weight" in inputs:
+                reflectance += 1.0
             bound = _product(reflectance, reflected) + _product(color, strength)
         elif node.kind == "mix_shader":
             bound = max(of(inputs["Shader"]), of(inputs["Shader_001"]))

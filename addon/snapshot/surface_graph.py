@@ -78,7 +78,7 @@ class SurfaceGraph:
 
 
 # Closures whose light depends on the normal.
-LIT_KINDS = frozenset({"diffuse", "glossy", "principled"})
+LIT_KINDS = frozenset({"diffuse", "glossy", "principled", "translucent", "metallic", "glass"})
 _NORMAL_KINDS = LIT_KINDS | {
     *("geometry", "texture_coordinate", "fresnel", "layer_weight", "tangent", "bump", "normal_map"),
     "displacement",

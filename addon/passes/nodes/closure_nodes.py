@@ -53,12 +53,30 @@ _PRINCIPLED = {
 }
 
 
+# Where a surface has them.
+_ON_TOP = {
+    "transmission": ("Transmission Weight", "float"),
+    "coat": ("Coat Weight", "float"),
+    "coat_roughness": ("Coat Roughness", "float"),
+    "coat_ior": ("Coat IOR", "float"),
+    "coat_tint": ("Coat Tint", "vec3"),
+}
+
+
 @generates("principled")
 def _principled(node, writer):
     members = {
         member: writer.value(node.input(name), kind) for member, (name, kind) in _PRINCIPLED.items()
     }
+    given = dict(node.inputs)
+    for member, (name, kind) in _ON_TOP.items():
+        if name in given:
+            members[member] = writer.value(given[name], kind)
+    if "Coat Weight" in given:
+        writer.features.add("COATED")
     surface = writer.lit_closure("BSDF", "BSDF_PRINCIPLED", members | _normal(node, writer))
+    if "Transmission Weight" in given:
+        _see_through(writer, surface)
     alpha = dict(node.inputs).get("Alpha")
     if alpha is None:
         return surface
@@ -66,6 +84,47 @@ def _principled(node, writer):
     covered = writer.closure("BSDF", cover)
     writer.transmitting.add(covered["BSDF"][1])
     return covered
+
+
+@generates("translucent")
+def _translucent(node, writer):
+    writer.features.add("OTHER_CLOSURES")
+    members = {"color": writer.value(node.input("Color"), "vec3")}
+    return writer.lit_closure("BSDF", "BSDF_TRANSLUCENT", members | _normal(node, writer))
+
+
+@generates("metallic")
+def _metallic(node, writer):
+    writer.features.add("OTHER_CLOSURES")
+    members = {
+        "color": writer.value(node.input("Color"), "vec3"),
+        "specular_tint": writer.value(node.input("Edge Tint"), "vec3"),
+        "roughness": writer.value(node.input("Roughness"), "float"),
+        "repeats": "true" if node.setting("multiple_scattering") else "false",
+    }
+    return writer.lit_closure("BSDF", "BSDF_METALLIC", members | _normal(node, writer))
+
+
+@generates("glass")
+def _glass(node, writer):
+    writer.features.add("OTHER_CLOSURES")
+    members = {
+        "color": writer.value(node.input("Color"), "vec3"),
+        "roughness": writer.value(node.input("Roughness"), "float"),
+        "ior": writer.value(node.input("IOR"), "float"),
+        "repeats": "true" if node.setting("multiple_scattering") else "false",
+        # What only refracts mirrors nothing.
+        "specular_level": "1.0" if node.setting("mirrors") else "0.0",
+    }
+    glass = writer.lit_closure("BSDF", "BSDF_GLASS", members | _normal(node, writer))
+    _see_through(writer, glass)
+    return glass
+
+
+def _see_through(writer, outputs):
+    writer.transmitting.add(outputs["BSDF"][1])
+    # What it mirrors does not fade where it is clear.
+    writer.glows = True
 
 
 @generates("transparent")

@@ -45,6 +45,8 @@ class SurfaceCode:
         Shader files below ``gpu_shaders/`` that the code calls, besides those of every surface.
     reads_place : bool
         The code reads the varying of the position in object space, ``v_object_position``.
+    features : tuple of str
+        Defines that its closures need.
     """
 
     source: str
@@ -56,6 +58,7 @@ class SurfaceCode:
     glows: bool = False
     libraries: tuple[str, ...] = ()
     reads_place: bool = False
+    features: tuple[str, ...] = ()
 
 
 def generate(graph, available):
@@ -93,4 +96,5 @@ def generate(graph, available):
         glows=writer.glows and surface in writer.transmitting,
         libraries=tuple(libraries),
         reads_place=writer.reads_place,
+        features=tuple(sorted(writer.features)),
     )

@@ -337,3 +337,11 @@ def _light_falloff(node, writer):
         "Linear": ("float", f"({falling} * {far})"),
         "Constant": ("float", f"({falling} * {far} * {far})"),
     }
+
+
+@generates("conductor")
+def _conductor(node, writer):
+    n, k = (writer.let("vec3", writer.value(node.input(i), "vec3")) for i in ("IOR", "Extinction"))
+    reflected = f"(({n} - 1.0) * ({n} - 1.0) + {k} * {k})"
+    whole = f"(({n} + 1.0) * ({n} + 1.0) + {k} * {k})"
+    return {"Color": ("vec3", writer.let("vec3", f"{reflected} / max({whole}, vec3(1e-6))"))}

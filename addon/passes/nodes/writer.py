@@ -31,6 +31,8 @@ class Writer:
     glows : bool
     reads_place : bool
         The code reads the position in object space.
+    features : set of str
+        Defines of rarer parts of the closures, which other shaders are compiled without.
     """
 
     available: frozenset[str]
@@ -46,6 +48,7 @@ class Writer:
     dark: set[str] = field(default_factory=set)
     glows: bool = False
     reads_place: bool = False
+    features: set[str] = field(default_factory=set)
     # (type, expression) of each output of each node so far
     outputs: list[dict[str, tuple[str, str]]] = field(default_factory=list)
 

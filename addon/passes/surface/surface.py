@@ -103,7 +103,7 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
     own = tuple(key for key in target.attributes if key in mesh_attributes)
     defines = [*target.defines, *["HOLDOUT"] * holdout, *["TRANSPARENT"] * transparent]
     if target.shades and not holdout:
-        defines += [*["SHADES"], *["LIT"] * code.lit]
+        defines += [*["SHADES"], *["LIT"] * code.lit, *code.features]
         if code.glows:
             defines.append("GLOW" if glow else "GLOW_APART")
     if "HAS_VECTOR" in defines and deforms:

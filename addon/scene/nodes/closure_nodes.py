@@ -22,9 +22,7 @@ def _note_linked(reader, node, groups, *identifiers):
 
 # Inputs of the Principled BSDF that are not drawn, and the value at which they have no effect.
 _PRINCIPLED_LEFT_OUT = {
-    "Transmission Weight": 0.0,
     "Subsurface Weight": 0.0,
-    "Coat Weight": 0.0,
     "Sheen Weight": 0.0,
     "Anisotropic": 0.0,
     "Diffuse Roughness": 0.0,
@@ -58,21 +56,29 @@ def _principled(reader, node, groups):
         groups,
     )
     inputs += reader.normal(node, groups)
+    coat = reader.value(node, "Coat Weight", groups)
+    if not is_constant(coat, 0.0):
+        names = ("Coat Roughness", "Coat IOR", "Coat Tint")
+        inputs += [("Coat Weight", coat), *reader.values(node, names, groups)]
+    transmission = reader.value(node, "Transmission Weight", groups)
+    if not is_constant(transmission, 0.0):
+        inputs.append(("Transmission Weight", transmission))
+        reader.note(_THROUGH_GLASS)
     alpha = reader.value(node, "Alpha", groups)
     if not (isinstance(alpha, Constant) and alpha.value[0] >= 1.0):
         inputs.append(("Alpha", alpha))
     return reader.add("principled", inputs)
 
 
+_THROUGH_GLASS = "glass does not bend what is seen through it, nor blur it"
+
 # Shader nodes that are drawn as a diffuse surface, with a warning.
 _AS_DIFFUSE = {
-    "BSDF_TRANSLUCENT": "Color",
     "SUBSURFACE_SCATTERING": "Color",
     "BSDF_SHEEN": "Color",
     "BSDF_TOON": "Color",
     "BSDF_HAIR": "Color",
 }
-_AS_GLOSSY = {"BSDF_GLASS": "Color", "BSDF_REFRACTION": "Color", "BSDF_METALLIC": "Base Color"}
 
 
 @reads("BSDF_DIFFUSE", *_AS_DIFFUSE)
@@ -86,22 +92,52 @@ def _diffuse(reader, node, groups):
     return Link(reader.add("diffuse", inputs), "BSDF")
 
 
-@reads("BSDF_GLOSSY", *_AS_GLOSSY)
-def _glossy(reader, node, groups):
-    if node.type in _AS_GLOSSY:
-        reader.note(f"node '{node.bl_label}' is drawn as a glossy surface")
-    _note_linked(reader, node, groups, "Tangent")
-    if input_socket(node, "Anisotropy") and not is_constant(
-        reader.value(node, "Anisotropy", groups), 0.0
-    ):
-        reader.note("anisotropy is not drawn")
-    color = reader.value(node, _AS_GLOSSY.get(node.type, "Color"), groups)
-    roughness = reader.value(node, "Roughness", groups)
+def _multiple(node):
     # Scattering more than once brightens rough surfaces; other distributions leave it out.
     multiple = getattr(node, "distribution", "MULTI_GGX") == "MULTI_GGX"
-    settings = (("multiple_scattering", "1" if multiple else ""),)
-    inputs = [("Color", color), ("Roughness", roughness), *reader.normal(node, groups)]
-    return Link(reader.add("glossy", inputs, settings), "BSDF")
+    return ("multiple_scattering", "1" if multiple else "")
+
+
+def _note_anisotropy(reader, node, groups):
+    if not is_constant(reader.value(node, "Anisotropy", groups), 0.0):
+        reader.note("anisotropy is not drawn")
+    _note_linked(reader, node, groups, "Tangent")
+
+
+@reads("BSDF_GLOSSY")
+def _glossy(reader, node, groups):
+    _note_anisotropy(reader, node, groups)
+    inputs = reader.values(node, ("Color", "Roughness"), groups) + reader.normal(node, groups)
+    return Link(reader.add("glossy", inputs, (_multiple(node),)), "BSDF")
+
+
+@reads("BSDF_METALLIC")
+def _metallic(reader, node, groups):
+    _note_anisotropy(reader, node, groups)
+    if node.fresnel_type == "F82":
+        color, edge = (reader.value(node, name, groups) for name in ("Base Color", "Edge Tint"))
+    else:
+        # Head on; towards the edge every metal gets white.
+        optics = reader.values(node, ("IOR", "Extinction"), groups)
+        color, edge = Link(reader.add("conductor", optics), "Color"), Constant((1.0,) * 3)
+    inputs = [("Color", color), ("Edge Tint", edge), *reader.values(node, ("Roughness",), groups)]
+    inputs += reader.normal(node, groups)
+    return Link(reader.add("metallic", inputs, (_multiple(node),)), "BSDF")
+
+
+@reads("BSDF_GLASS", "BSDF_REFRACTION")
+def _glass(reader, node, groups):
+    reader.note(_THROUGH_GLASS)
+    inputs = reader.values(node, ("Color", "Roughness", "IOR"), groups)
+    inputs += reader.normal(node, groups)
+    mirrors = "1" if node.type == "BSDF_GLASS" else ""
+    return Link(reader.add("glass", inputs, (_multiple(node), ("mirrors", mirrors))), "BSDF")
+
+
+@reads("BSDF_TRANSLUCENT")
+def _translucent(reader, node, groups):
+    inputs = reader.values(node, ("Color",), groups) + reader.normal(node, groups)
+    return Link(reader.add("translucent", inputs), "BSDF")
 
 
 @reads("BSDF_TRANSPARENT")

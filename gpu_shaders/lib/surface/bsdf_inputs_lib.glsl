@@ -6,6 +6,9 @@
 #define BSDF_DIFFUSE 0
 #define BSDF_GLOSSY 1
 #define BSDF_PRINCIPLED 2
+#define BSDF_TRANSLUCENT 3
+#define BSDF_METALLIC 4
+#define BSDF_GLASS 5
 
 struct Bsdf {
   int kind;
@@ -16,14 +19,36 @@ struct Bsdf {
   float metallic;
   float ior;
   float specular_level;
-  vec3 specular_tint;
+  vec3 specular_tint;  // metals: the tint of the edge
   vec3 emission_color;
   float emission_strength;
+  float transmission;  // share of the base that is glass
+  float coat;          // share that is coated
+  float coat_roughness;
+  float coat_ior;
+  vec3 coat_tint;
 };
 
 Bsdf bsdf_of_kind(int kind)
 {
-  return Bsdf(kind, vec3(0.0), vec3(0.0), 0.0, true, 0.0, 1.5, 0.5, vec3(1.0), vec3(0.0), 0.0);
+  Bsdf bsdf;
+  bsdf.kind = kind;
+  bsdf.color = vec3(0.0);
+  bsdf.normal = vec3(0.0);
+  bsdf.roughness = 0.0;
+  bsdf.repeats = true;
+  bsdf.metallic = 0.0;
+  bsdf.ior = 1.5;
+  bsdf.specular_level = 0.5;
+  bsdf.specular_tint = vec3(1.0);
+  bsdf.emission_color = vec3(0.0);
+  bsdf.emission_strength = 0.0;
+  bsdf.transmission = 0.0;
+  bsdf.coat = 0.0;
+  bsdf.coat_roughness = 0.03;
+  bsdf.coat_ior = 1.5;
+  bsdf.coat_tint = vec3(1.0);
+  return bsdf;
 }
 
 #endif

@@ -11,6 +11,15 @@
 #include "lib/surface/closure_lib.glsl"
 #include "lib/surface/fresnel_lib.glsl"
 
+// Share of the light that passes a face of glass.
+vec3 glass_transmittance(Bsdf bsdf, float cos_view)
+{
+  vec3 color = clamp(number_or_zero(bsdf.color), 0.0, 1.0);
+  float eta = clamp(number_or_zero(bsdf.ior), 1e-5, 1e5);
+  float mirrored = (bsdf.specular_level > 0.0) ? fresnel_dielectric(cos_view, eta) : 0.0;
+  return color * (1.0 - mirrored);
+}
+
 #if defined(LIT) && defined(SHADES)
 #include "lib/surface/bsdf_lib.glsl"
 #include "lib/surface/environment_lib.glsl"
@@ -33,12 +42,14 @@ struct Shading {
   float cos_view;
 };
 
-// A reflecting lobe: F = f0 + (1 - f0) rise. eta > 0: a dielectric's rise, else Schlick's.
+// A reflecting lobe: F = f0 + (1 - f0) rise - dip cos (1 - cos)^6. eta > 0: a dielectric's rise, else
+// Schlick's. The dip is what the edge of a metal lacks (F82; Kutz et al., 2021).
 struct Lobe {
   vec3 weight;
   vec3 f0;
   float eta;
   bool repeats;  // multiple scattering between the facets is added
+  vec3 dip;
 };
 
 // Light that a surface reflects towards the eye.
@@ -119,17 +130,27 @@ vec3 lobe_repeat(Lobe lobe, vec3 albedo)
                         vec3(1.0);
 }
 
-// Directional albedo of a lobe.
-vec3 lobe_albedo(Lobe lobe, vec3 albedo)
+vec3 lobe_fresnel(Lobe lobe, float cosine)
 {
-  return (lobe.f0 * albedo.x + albedo.y) * lobe_repeat(lobe, albedo);
+  float m = 1.0 - clamp(cosine, 0.0, 1.0);
+  return mix(lobe.f0, vec3(1.0), lobe_rise(lobe, cosine)) -
+         lobe.dip * (clamp(cosine, 0.0, 1.0) * m * m * m * m * m * m);
+}
+
+// Directional albedo of a lobe.
+vec3 lobe_albedo(Lobe lobe, vec3 albedo, float cos_view)
+{
+  // The dip is that of a mirror: the table has none.
+  float m = 1.0 - cos_view;
+  vec3 lacks = lobe.dip * (cos_view * m * m * m * m * m * m * (albedo.x + albedo.y));
+  return (lobe.f0 * albedo.x + albedo.y - lacks) * lobe_repeat(lobe, albedo);
 }
 
 // Reflectance of two lobes at a facet.
 vec3 lobes_reflect(Lobe a, vec3 repeat_a, Lobe b, vec3 repeat_b, float cosine)
 {
-  return a.weight * repeat_a * mix(a.f0, vec3(1.0), lobe_rise(a, cosine)) +
-         b.weight * repeat_b * mix(b.f0, vec3(1.0), lobe_rise(b, cosine));
+  return a.weight * repeat_a * lobe_fresnel(a, cosine) +
+         b.weight * repeat_b * lobe_fresnel(b, cosine);
 }
 
 // The world reflected by two lobes, by a few sampled facets, each with the world averaged over its
@@ -173,7 +194,8 @@ Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
   vec3 repeat_a = lobe_repeat(a, albedo);
   vec3 repeat_b = lobe_repeat(b, albedo);
   vec3 mirrored = 2.0 * dot(s.normal, s.view) * s.normal - s.view;
-  vec3 reflectance = a.weight * lobe_albedo(a, albedo) + b.weight * lobe_albedo(b, albedo);
+  vec3 reflectance = a.weight * lobe_albedo(a, albedo, s.cos_view) +
+                     b.weight * lobe_albedo(b, albedo, s.cos_view);
   vec3 sum = environment_buf.color.rgb * reflectance;
   if (environment_buf.color.w > 0.5) {
     if (roughness < SPLIT_ROUGHNESS) {
@@ -217,83 +239,26 @@ Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
   return Reflected(sum, unsplit);
 }
 
-Closure reflecting(Reflected reflected)
-{
-  return Closure(finite_light(reflected.light), vec3(0.0), 0.0, finite_light(reflected.unsplit));
-}
-
-Closure closure_diffuse(Shading s, Bsdf bsdf)
-{
-  Reflected reflected = diffuse_light(s);
-  // Negative colours reflect nothing, as in Cycles; negative lamps do take light away.
-  vec3 c = max(number_or_zero(bsdf.color), vec3(0.0));
-  return reflecting(Reflected(c * reflected.light, c * reflected.unsplit));
-}
-
-Closure closure_glossy(Shading s, Bsdf bsdf)
-{
-  float r = clamp(number_or_zero(bsdf.roughness), 0.0, 1.0);
-  vec3 albedo = ggx_albedo(ggx_tx, s.cos_view, r);
-  vec3 c = max(number_or_zero(bsdf.color), vec3(0.0));
-  // The same reflectance in every direction: a lobe of f0 = 1, with the colour as its weight.
-  // Above 1 light grows with every scattering; from about 8 on its sum has no limit.
-  vec3 repeat_color = bsdf.repeats ? ggx_multiple_scattering(albedo, min(c, vec3(5.0))) : vec3(1.0);
-  Lobe lobe = Lobe(c * repeat_color, vec3(1.0), 0.0, false);
-  Lobe none = Lobe(vec3(0.0), vec3(0.0), 0.0, false);
-  return reflecting(glossy_light(s, r, lobe, none));
-}
-
-Closure closure_principled(Shading s, Bsdf bsdf)
-{
-  // As in Cycles, a base brighter than white is one only where it is diffuse.
-  vec3 base = max(number_or_zero(bsdf.color), vec3(0.0));
-  float metal = clamp(number_or_zero(bsdf.metallic), 0.0, 1.0);
-  float r = clamp(number_or_zero(bsdf.roughness), 0.0, 1.0);
-  vec3 tint = max(number_or_zero(bsdf.specular_tint), vec3(0.0));
-  // At most 1: then all light is reflected.
-  float eta = clamp(number_or_zero(bsdf.ior), 1e-5, 1e5);
-  float f0 = f0_from_ior(eta);
-  float specular_level = number_or_zero(bsdf.specular_level);
-  if (specular_level != 0.5) {
-    f0 *= 2.0 * max(specular_level, 0.0);
-    float raised = ior_from_f0(f0);
-    eta = (eta < 1.0) ? 1.0 / raised : raised;
-    f0 = f0_from_ior(eta);
-  }
-  vec3 albedo = ggx_albedo(ggx_tx, s.cos_view, r);
-  Lobe metal_lobe = Lobe(vec3(metal), min(base, vec3(1.0)), 0.0, true);
-  Lobe dielectric = Lobe(vec3(1.0 - metal), clamp(f0 * tint, 0.0, 1.0), eta, true);
-  Reflected reflected = glossy_light(s, r, metal_lobe, dielectric);
-  if (metal < 1.0) {
-    // The diffuse layer gets the light that the dielectric layer does not reflect.
-    vec3 taken = lobe_albedo(dielectric, albedo);
-    float left = (1.0 - metal) * clamp(1.0 - max(taken.r, max(taken.g, taken.b)), 0.0, 1.0);
-    Reflected diffuse = diffuse_light(s);
-    reflected.light += base * left * diffuse.light;
-    reflected.unsplit += base * left * diffuse.unsplit;
-  }
-  Closure closure = reflecting(reflected);
-  closure.radiance += finite_light(bsdf.emission_color * bsdf.emission_strength);
-  return closure;
-}
-
-Closure closure_lit(Bsdf bsdf)
-{
-  Shading s = surface_shading(bsdf.normal);
-  if (bsdf.kind == BSDF_DIFFUSE) {
-    return closure_diffuse(s, bsdf);
-  }
-  if (bsdf.kind == BSDF_GLOSSY) {
-    return closure_glossy(s, bsdf);
-  }
-  return closure_principled(s, bsdf);
-}
+#include "passes/surface/surface_closures.glsl"
 
 #else
 
+// Only what passes.
 Closure closure_lit(Bsdf bsdf)
 {
-  return closure_none();
+  vec3 normal = (dot(bsdf.normal, bsdf.normal) > 0.0) ? normalize(bsdf.normal) : point_normal();
+  float cos_view = clamp(dot(point_view(), normal), 1e-4, 1.0);
+  Closure closure = closure_none();
+  if (bsdf.kind == BSDF_GLASS) {
+    closure.transmittance = glass_transmittance(bsdf, cos_view);
+  }
+  else if (bsdf.kind == BSDF_PRINCIPLED) {
+    float share = clamp(number_or_zero(bsdf.transmission), 0.0, 1.0) *
+                  (1.0 - clamp(number_or_zero(bsdf.metallic), 0.0, 1.0));
+    bsdf.color = sqrt(max(number_or_zero(bsdf.color), vec3(0.0)));
+    closure.transmittance = share * glass_transmittance(bsdf, cos_view);
+  }
+  return closure;
 }
 
 #endif
