@@ -26,6 +26,30 @@ LENS = Section("Real lens", "Camera Properties > Lens > Real Lens", (
             " group of a real one. With depth of field only", told="breathing"),
 ))
 
+_STRENGTH = {"limits": (-100.0, 100.0), "soft": (-10.0, 10.0), "step": 10, "precision": 2}
+
+ABERRATIONS = Section("Aberrations", "Camera Properties > Lens > Aberrations", (
+    Setting("spherical", 0.0, "Spherical", "How far the rim of the iris misses: positive makes"
+            " discs behind the focus soft and those in front of it outlined, negative the other way"
+            " round. 1 is a hundredth of half the picture's diagonal at f/2; stopped down it"
+            " vanishes first", field="spherical", told="aberrations.spherical", kept=True,
+            **_STRENGTH),
+    Setting("coma", 0.0, "Coma", "Tails of points towards the corners: positive points outwards."
+            " 1 is as of Spherical, in the corner", field="coma", told="aberrations.coma",
+            kept=True, **_STRENGTH),
+    Setting("astigmatism", 0.0, "Astigmatism", "Towards the corners, lines that run away from the"
+            " middle and lines around it are in focus at different distances. 1 is as of"
+            " Spherical, in the corner", field="astigmatism", told="aberrations.astigmatism",
+            kept=True, **_STRENGTH),
+    Setting("field_curvature", 0.0, "Field Curvature", "The focus bends towards the corners:"
+            " positive is nearer to the camera. 1 is as of Spherical, in the corner",
+            field="field_curvature", told="aberrations.field_curvature", kept=True, **_STRENGTH),
+    Setting("swirl", 0.0, "Swirl", "Blur towards the corners is narrower along the direction away"
+            " from the middle, so that it runs round the middle: by that share of its width in the"
+            " corner", limits=(0.0, 1.0), subtype="FACTOR", field="swirl",
+            told="aberrations.swirl", kept=True),
+))
+
 DISTORTION = Section("Distortion", "Camera Properties > Lens > Real Lens > Distortion", (
     Setting("distortion", "NONE", "Distortion", "How the lens bends straight lines: of the whole"
             " picture, in all its passes, with and without depth of field. The middle of the"

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..lens_bokeh.look.appearance import Appearance
+from ..lens_bokeh.tables.artist_lens import ArtistLens
 from ..optics.prescription import Prescription
 from ..sampling.chromatic import ChromaticAberration
 from ..sampling.thin_lens import ThinLens
@@ -139,6 +140,10 @@ class Camera:
         optical axis to the picture's outermost corner; empty: none.
     breathing : float
         How much larger the picture is drawn than with the focus at infinity; `projection` has it.
+    artist : ArtistLens or None
+        Aberrations of a camera without a real lens; None: none.
+    f_number : float
+        Of the thin lens, for these.
     field_radius : float or None
         Distance of the outermost corner of the camera's own picture from the optical axis: as a
         tangent, for a parallel projection in m. None: that of `projection`.
@@ -156,4 +161,6 @@ class Camera:
     chromatic: ChromaticAberration | None = None
     distortion: tuple[float, ...] = ()
     breathing: float = 1.0
+    artist: ArtistLens | None = None
+    f_number: float = 0.0
     field_radius: float | None = None

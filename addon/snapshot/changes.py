@@ -118,8 +118,8 @@ def same_camera(old, new):
         and _same_array(old.projection, new.projection)
         and (old.lens, old.orthographic) == (new.lens, new.orthographic)
         and old.bokeh == new.bokeh
-        # Only bokeh shows more of a real lens than its opening.
-        and (new.bokeh is None or old.real_lens == new.real_lens)
+        and old.real_lens == new.real_lens
+        and (old.artist, old.f_number) == (new.artist, new.f_number)
         and (old.chromatic, old.field_radius) == (new.chromatic, new.field_radius)
         and _same_pose(old.previous, new.previous)
         and _same_pose(old.next, new.next)

@@ -48,7 +48,7 @@ ROOMS = {
         *("lens_bokeh.look", "lens_bokeh.tables", "lens_io"),
     ),
     "layers": ("files",),
-    "snapshot": ("layers", "optics", "sampling", "lens_bokeh.look"),
+    "snapshot": ("layers", "optics", "sampling", "lens_bokeh.look", "lens_bokeh.tables"),
     "levels.making": ("snapshot",),
     "levels": ("files", "snapshot", "levels.making"),
     # The graphics device, and passes on it.
@@ -65,6 +65,7 @@ ROOMS = {
     "scene.nodes": ("sampling", "snapshot", "scene.images"),
     "scene.camera": (
         *("optics", "optics.rays", "sampling", "lens_bokeh.openings", "lens_bokeh.look"),
+        "lens_bokeh.tables",
         *("lens_io", "lens_io.glasses", "settings", "snapshot", "scene.images"),
     ),
     "scene.shading": ("snapshot", "scene.images", "scene.nodes"),
@@ -72,7 +73,8 @@ ROOMS = {
     "scene": ("settings", "snapshot", "scene.camera", "scene.geometry", "scene.shading"),
     # A frame: planned, drawn, shown.
     "engine.planning": (
-        *("layers", "optics", "sampling", "lens_bokeh.samples", "snapshot", "levels"),
+        *("layers", "optics", "sampling", "lens_bokeh.samples", "lens_bokeh.tables"),
+        *("snapshot", "levels"),
     ),
     "engine.drawing": (
         *("device", "sampling", "passes", "passes.surface", "passes.visibility"),
@@ -121,7 +123,10 @@ ROOMS = {
     ),
     # What a user meets.
     "ui.jobs": ("layers", "engine", "engine.refocus"),
-    "ui.previews": ("lens_bokeh.openings", "lens_bokeh.look", "plots", "scene.camera", "ui.jobs"),
+    "ui.previews": (
+        *("lens_bokeh.openings", "lens_bokeh.look", "lens_bokeh.tables", "plots"),
+        *("scene.camera", "ui.jobs"),
+    ),
     "ui.operators": (
         *("optics", "sampling", "lens_io", "lens_io.importers.draft"),
         *("files", "layers", "scene.camera", "engine", "engine.refocus", "capture", "ui.jobs"),

@@ -17,6 +17,7 @@ MEMOS = {
     "files.version": ("version",),
     "device.shader_source": ("_join", "_places", "_read", "load"),
     "engine.planning.lens_plan": ("_plan", "_rays"),
+    "engine.bokeh.artist_tiles": ("artist_tiles",),
     "engine.bokeh.look": (
         *("_beams", "_lens_rows", "_light_on_radii", "_opening"),
         *("_profile", "_rims", "_tiles", "_tiles_left"),

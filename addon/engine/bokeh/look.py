@@ -30,6 +30,7 @@ from ...lens_bokeh.openings.shapes import opening_of
 from ...lens_bokeh.tables.pupil_tracing import build_pupil_tables
 from ...optics.focus import focused
 from ...passes.bokeh.splat import MOST_RIMS, SPLAT_PARAMS
+from .artist_tiles import artist_tiles
 from .lens_profiles import lens_profile, lens_pupil
 
 # Texels along a side of the opening's layers, and of the iris masks that they are made from.
@@ -114,8 +115,8 @@ def describe_look(plan):
         "rims": np.zeros((MOST_RIMS, 4)),
     }
     # A draft uses the on-axis pattern of the lens everywhere: its table is ready at once.
-    tiled = settings.vignetting == "LENS" and not plan.orthographic and not bokeh.draft
-    if lens is not None and tiled:
+    tiled = lens is not None and settings.vignetting == "LENS" and not plan.orthographic
+    if (tiled or bokeh.artist) and not bokeh.draft:
         _add_tiles(plan, appearance, tangent, arrays, params)
         return ("TILES",), arrays, params
     variants = ()
@@ -339,16 +340,18 @@ def _rims(rims, opening_and_profile, tangent):
 
 
 def _add_tiles(plan, appearance, tangent, arrays, params):
-    settings, lens = plan.bokeh.settings, _Lens(plan.bokeh.real_lens)
-    tiles, w_range, soft = _tiles(lens, plan.focus_distance, tangent)
-    first, last = w_range
+    if plan.bokeh.artist:
+        (tiles, (first, last), soft), strength = artist_tiles(plan.bokeh.artist, tangent), 1.0
+    else:
+        lens, strength = _Lens(plan.bokeh.real_lens), plan.bokeh.settings.profile_strength
+        tiles, (first, last), soft = _tiles(lens, plan.focus_distance, tangent)
     even = replace(appearance, rims=(), edge=0.0) == type(appearance)()
     arrays["sharp_tx"], arrays["soft_tx"] = tiles.sharp, tiles.soft
     arrays["places_tx"] = tiles.places
     arrays["left_tx"] = _tiles_left(_Arrays(tiles, arrays["opening_tx"]), even)
     params["field"] = (1.0 / tiles.largest_tangent, 0.0, 1.0, float(not even))
     scale = plan.coc_scale / plan.focus_distance
-    params["rows"] = (first, 1.0 / (last - first), soft * scale, settings.profile_strength)
+    params["rows"] = (first, 1.0 / (last - first), soft * scale, strength)
 
 
 # Memo: see `_opening`.
@@ -369,8 +372,8 @@ def _tiles(lens, focus_distance, tangent):
     plane = state.image_plane(distance)
     # The circle of confusion of the lens, c = k0 + k1 V, is 0 at the focus.
     linear = state.ray_map.reference[0] + (plane - state.ray_map.plane) * state.ray_map.reference[1]
-    opening = profile.stop_fraction(lens.settings.f_number)
-    k0, k1 = (-opening * state.ray_map.pupil_radius * linear).tolist()
+    radius = profile.stop_fraction(lens.settings.f_number) * state.ray_map.pupil_radius
+    k0, k1 = (-radius * linear).tolist()
     # Off the axis, patterns change most where they are as small as the aberrations there.
     soft = beams.width_in_focus(plane - beams.sensor, -k0 / k1)
     ends = [k0 + k1 * vergence for vergence in (0.0, nearest)]

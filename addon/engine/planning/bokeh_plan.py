@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...lens_bokeh.samples.artist_rays import ArtistRays
 from ...levels.choosing import coc_radius, extents
 from ...sampling.highlights import highlight_share, least_coc
 from ...sampling.iris import Iris
@@ -29,6 +30,7 @@ from .bokeh_search import (
     subpixels_of_lamps,
     subpixels_of_triangles,
 )
+from .lens_plan import artist_rays
 from .seen_from_edge import seen_from_edge
 
 # Depth that represents infinity, in focus distances: the circle of confusion differs by 1e-6.
@@ -90,6 +92,8 @@ class BokehPlan:
         None: one disc for all wavelengths.
     draft : bool
         A draft with bounded work, for a moving view; see `drafted`.
+    artist : ArtistRays or None
+        The artist's lens that shapes the discs.
     """
 
     settings: BokehSettings
@@ -114,6 +118,7 @@ class BokehPlan:
     search_projections: tuple[np.ndarray, np.ndarray] | None = None
     colors: BokehColors | None = None
     draft: bool = False
+    artist: ArtistRays | None = None
 
     @property
     def lens_views(self):
@@ -202,7 +207,8 @@ def plan_bokeh(snapshot, plan):
     wanted = sampling.method != "REFERENCE" or sampling.reference_bokeh
     if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
         return None
-    if plan.real_lens is not None and shaping_lens(snapshot.camera) is None:
+    camera = snapshot.camera
+    if plan.real_lens is not None and not (shaping_lens(camera) or shaping_artist(camera)):
         # No discs are traced for it, and those of a thin lens would not be where the samples are.
         return None
     least = least_splatted(plan)
@@ -265,6 +271,7 @@ def plan_bokeh(snapshot, plan):
         real_lens=shaping_lens(snapshot.camera),
         filter_width=filter_width(film.filter_kind, film.filter_size_px),
         colors=colors,
+        artist=shaping_artist(snapshot.camera),
     )
 
 
@@ -277,6 +284,13 @@ def shaping_lens(camera):
     """Return the traced lens that shapes a camera's discs, as `LensSettings`, or None."""
     lens = camera.real_lens
     return lens if lens and lens.shapes_bokeh and not camera.orthographic else None
+
+
+def shaping_artist(camera):
+    """Return the artist's lens that shapes a camera's discs, as `ArtistRays`, or None."""
+    if camera.real_lens is not None or camera.artist is None or camera.orthographic:
+        return None
+    return artist_rays(camera)
 
 
 def _views_across(settings):

@@ -12,10 +12,12 @@ from functools import lru_cache
 import numpy as np
 
 from ...errors import AplanatError, FocusError
+from ...lens_bokeh.samples.artist_rays import ArtistRays
 from ...lens_bokeh.samples.field_grid import field_grid
 from ...lens_bokeh.samples.lens_colors import LensColors
 from ...lens_bokeh.samples.lens_rays import lens_rays
 from ...lens_bokeh.samples.sample_tables import SampleTables, sample_tables
+from ...lens_bokeh.tables.artist_lens import opening_at
 from ...optics.distortion import divisor
 from ...sampling.sequence import lens_samples
 from .field_table import field_of_raster, picture_radius
@@ -147,7 +149,7 @@ def plan_real_lens(camera, film, lens):
     Parameters
     ----------
     camera : Camera
-        With a `real_lens`.
+        With a `real_lens`, or an artist's.
     film : Film
     lens : ThinLens
         Of the camera.
@@ -168,9 +170,11 @@ def plan_real_lens(camera, film, lens):
     low = np.array(low)
     high = low + np.array([scale_x, scale_y]) * film.region[2:]
     low, high = np.minimum(low, high), np.maximum(low, high)
+    corners = (*low.tolist(), *high.tolist())
+    if camera.real_lens is None:
+        return _plan(artist_rays(camera), _Thin(lens), corners, _outermost(camera), None), ()
     name = camera.real_lens.prescription.name
     try:
-        corners = (*low.tolist(), *high.tolist())
         colors = _colors(camera.chromatic)
         made = _plan(_Lens(camera.real_lens), _Thin(lens), corners, _outermost(camera), colors)
     except FocusError:
@@ -197,12 +201,15 @@ def _colors(aberration):
 # Memo of its arguments alone: a picture asks for the same again and again.
 @lru_cache(maxsize=4)
 def _plan(key, thin, corners, outermost, colors):
-    settings, lens = key.settings, thin.lens
+    lens = thin.lens
     low, high = np.array(corners[:2]), np.array(corners[2:])
-    sides = None
-    if not key.settings.shapes_bokeh:
-        sides = tuple(_reach(each) for each in np.maximum(np.abs(low), np.abs(high)))
-    rays = _rays(key, lens.focus_distance, _reach(outermost), sides, colors is not None)
+    if isinstance(key, ArtistRays):
+        rays = key
+    else:
+        sides = None
+        if not key.settings.shapes_bokeh:
+            sides = tuple(_reach(each) for each in np.maximum(np.abs(low), np.abs(high)))
+        rays = _rays(key, lens.focus_distance, _reach(outermost), sides, colors is not None)
     grids = field_grid(low, high), field_grid(low, high, _MARGIN)
     tables = sample_tables(rays, *grids, lens.aperture_radius, lens.iris.ratio, outermost)
     places = lens_samples(0, _MANY, lens.iris) * lens.aperture_radius
@@ -211,7 +218,7 @@ def _plan(key, thin, corners, outermost, colors):
     mean = tables.light(places, spacing).mean(axis=0)
     floor = np.maximum(_DARK * axis - mean, 0.0)
     falloff = np.ones_like(mean)
-    if settings.exposure == "LENS":
+    if key.loses_light:
         falloff = mean / axis
     own = colors is not None and rays.parts_colors
     plan = RealLensPlan(tables, mean + floor, floor, falloff, 0.0, 0.0, parts_colors=own)
@@ -236,14 +243,25 @@ def _bounds(plan, places, colors):
     return np.max(bounds, axis=0).tolist()
 
 
+def artist_rays(camera):
+    """Return the `ArtistRays` of a camera with an artist's lens and a thin one to add them to."""
+    lens, opening = camera.lens, opening_at(camera.f_number)
+    thin = lens.aperture_radius, 1.0 / lens.focus_distance
+    return ArtistRays(camera.artist, opening, corner_of(camera), *thin)
+
+
+def corner_of(camera):
+    """Return the distance of the corner of the camera's own picture from the axis, a tangent."""
+    return camera.field_radius or picture_radius(camera.projection, camera.orthographic)
+
+
 def _outermost(camera):
     """Return the tangent of the farthest field that the camera's own picture shows.
 
     It does not depend on the part that is drawn: a region, or more around it in a viewport.
     """
-    corner = camera.field_radius or picture_radius(camera.projection, camera.orthographic)
     # A barrel shows what lies beyond.
-    return corner / min(float(divisor(1.0, camera.distortion)), 1.0)
+    return corner_of(camera) / min(float(divisor(1.0, camera.distortion)), 1.0)
 
 
 def _reach(outermost):
@@ -257,6 +275,7 @@ class _Lens:
 
     def __init__(self, settings):
         self.settings = settings
+        self.loses_light = settings.exposure == "LENS"
 
     def _key(self):
         own = self.settings

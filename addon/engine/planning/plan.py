@@ -183,7 +183,9 @@ def _plan_raster(snapshot):
 def _through_lens(snapshot, plan):
     """Return a plan whose samples see through the camera's real lens, where that can be."""
     camera, lens = snapshot.camera, snapshot.camera.lens
-    if lens is None or not lens.aperture_radius or not camera.real_lens:
+    if lens is None or not lens.aperture_radius:
+        return plan
+    if camera.real_lens is None and (camera.artist is None or camera.orthographic):
         return plan
     made, report = plan_real_lens(camera, snapshot.film, lens)
     if made is None:

@@ -5,7 +5,14 @@ import numpy as np
 from ...levels.choosing import coc_radius
 from ...sampling.highlights import highlight_share
 from .bokeh_colors import colors_of_frame
-from .bokeh_plan import INFINITY, BokehPlan, filter_width, least_splatted, shaping_lens
+from .bokeh_plan import (
+    INFINITY,
+    BokehPlan,
+    filter_width,
+    least_splatted,
+    shaping_artist,
+    shaping_lens,
+)
 
 
 def plan_stack_bokeh(snapshot, plan):
@@ -60,6 +67,7 @@ def plan_stack_bokeh(snapshot, plan):
         real_lens=shaping_lens(camera),
         filter_width=filter_width(film.filter_kind, film.filter_size_px),
         colors=colors,
+        artist=shaping_artist(camera),
     )
 
 

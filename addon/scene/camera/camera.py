@@ -16,7 +16,7 @@ from .breathing import read_breathing, with_breathing
 from .chromatic import read_chromatic
 from .distortion import read_distortion
 from .irises import IrisReader, read_opening
-from .lenses import read_real_lens, user_folder
+from .lenses import read_artist, read_real_lens, user_folder
 
 
 def _library():
@@ -138,8 +138,8 @@ def read_optics(depsgraph, camera, world=None, sources=None):
     -------
     dict
         Arguments of `Camera`: ``lens``, ``real_lens``, ``chromatic``, ``bokeh``,
-        ``distortion``, ``breathing``, and ``report``, warnings about settings that cannot be met,
-        as lines that name the camera.
+        ``distortion``, ``breathing``, ``artist``, ``f_number``, and ``report``, warnings about
+        settings that cannot be met, as lines that name the camera.
     """
     data = camera.data
     sources = sources or CameraSources()
@@ -164,6 +164,8 @@ def read_optics(depsgraph, camera, world=None, sources=None):
         "bokeh": bokeh,
         "distortion": distortion,
         "breathing": breathing,
+        "artist": read_artist(data, real_lens),
+        "f_number": real_lens.f_number if real_lens else data.dof.aperture_fstop,
         "report": tuple(f"camera '{camera.name}': {line}" for line in problems),
     }
 

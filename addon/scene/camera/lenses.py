@@ -4,6 +4,9 @@ from pathlib import Path
 
 import bpy
 
+from ...lens_bokeh.tables.artist_lens import ArtistLens
+from ...settings.scene_part_settings import ABERRATIONS
+from ...settings.setting import settings_of
 from ...snapshot.camera import LensSettings
 
 _EXTENSIONS = "bl_ext."
@@ -67,3 +70,22 @@ def read_real_lens(camera, shelf):
     f_number = max(camera.dof.aperture_fstop, configuration.f_number)
     own = (found.id, configuration.label, f_number, prescription, wanted.exposure)
     return LensSettings(*own), problems
+
+
+def read_artist(camera, real_lens):
+    """Return the aberrations of a camera without a real lens.
+
+    Parameters
+    ----------
+    camera : bpy.types.Camera
+    real_lens : LensSettings or None
+
+    Returns
+    -------
+    ArtistLens or None
+        None where there are none: with a real lens, with a parallel projection.
+    """
+    if real_lens is not None or camera.type != "PERSP":
+        return None
+    lens = ArtistLens(**{name: getattr(camera.aplanat, name) for name in settings_of(ABERRATIONS)})
+    return None if lens.is_plain else lens

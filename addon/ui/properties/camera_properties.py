@@ -4,7 +4,7 @@ import bpy
 from bpy.props import EnumProperty, PointerProperty, StringProperty
 
 from ...engine.shared_resources import shelf
-from ...settings.scene_part_settings import DISTORTION, LENS
+from ...settings.scene_part_settings import ABERRATIONS, DISTORTION, LENS
 from ..previews import lens_thumbnails
 from .bokeh_properties import APPEARANCE_NAMES, AplanatBokehSettings
 from .chromatic_properties import SETTING_NAMES, AplanatChromaticSettings
@@ -135,6 +135,7 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
     __annotations__ = {
         **properties(
             LENS,
+            ABERRATIONS,
             DISTORTION,
             callbacks={"lens": {"search": _found_lenses, "update": _lens_changed}},
             **SHARED,
