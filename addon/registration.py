@@ -15,6 +15,7 @@ from .ui.operators import (
     refocus_writing,
 )
 from .ui.panels import (
+    aberration_panel,
     blender_panels,
     bokeh_panel,
     capture_panel,
@@ -27,7 +28,7 @@ from .ui.panels import (
     sampling_panel,
 )
 from .ui.presets import preset_menus
-from .ui.previews import bokeh_previews, chromatic_previews, lens_thumbnails
+from .ui.previews import aberration_previews, bokeh_previews, chromatic_previews, lens_thumbnails
 from .ui.properties import data_block_properties, migrations, overrides
 
 _MODULES = (
@@ -47,6 +48,8 @@ _MODULES = (
     lens_import,
     lens_panel,
     iris_panel,
+    aberration_previews,
+    aberration_panel,
     bokeh_previews,
     bokeh_panel,
     chromatic_curves,

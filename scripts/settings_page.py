@@ -15,7 +15,14 @@ sys.path.insert(0, str(REPO))
 from addon.settings.bokeh_settings import BOKEH  # noqa: E402  (after the path is set)
 from addon.settings.chromatic_settings import CHROMATIC  # noqa: E402
 from addon.settings.refocus_settings import DEPTH_PASS, REFOCUS  # noqa: E402
-from addon.settings.scene_part_settings import DISTORTION, LAMP, LENS, MATERIAL, WORLD  # noqa: E402
+from addon.settings.scene_part_settings import (  # noqa: E402
+    ABERRATIONS,
+    DISTORTION,
+    LAMP,
+    LENS,
+    MATERIAL,
+    WORLD,
+)
 from addon.settings.scene_settings import CAPTURE, SCENE, VIEW_LAYER  # noqa: E402
 
 PAGE = REPO / "docs" / "settings.md"
@@ -25,7 +32,7 @@ PARTS = {
     "scene.aplanat.capture": ("Capture of depth layers", (CAPTURE,)),
     "scene.aplanat.refocus": ("Refocused picture of a scene", (REFOCUS, DEPTH_PASS)),
     "view_layer.aplanat": ("View layer", VIEW_LAYER),
-    "camera.data.aplanat": ("Camera", (LENS, DISTORTION)),
+    "camera.data.aplanat": ("Camera", (LENS, ABERRATIONS, DISTORTION)),
     "camera.data.aplanat.bokeh": ("Bokeh of a camera", BOKEH),
     "camera.data.aplanat.chromatic": ("Chromatic aberration of a camera", CHROMATIC),
     "material.aplanat": ("Material", (MATERIAL,)),

@@ -14,7 +14,7 @@ from ..settings.setting import settings_of
 from .capture.capture_arguments import add_capture, check_capture
 from .lens.lens_arguments import add_lens, check_lens
 from .refocus.refocus_arguments import add_refocus, check_refocus
-from .render.camera_arguments import add_distortion
+from .render.camera_arguments import add_aberrations, add_distortion
 from .render.sampling_arguments import add_sampling, check_sampling
 from .words.frame_values import (
     FRAMES_HELP,
@@ -166,6 +166,7 @@ def _add_render(commands):
         choices=settings_of(LENS)["exposure"].words,
         help="brightness of the corners with a real lens",
     )
+    add_aberrations(parser)
     add("--breathing", action="store_true", help="focus breathing, if the camera has it not yet")
     add(
         "--fstop",

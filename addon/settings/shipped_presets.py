@@ -178,3 +178,26 @@ CHROMATIC_PRESETS = (
     _chromatic("CENTRE", "Lateral colour is strongest in the middle", lateral=0.5),
     _chromatic("RINGS", "Both turn round in a ring halfway to the corners"),
 )
+
+ABERRATION_PRESETS = (
+    Preset("None", "A thin lens without aberrations", {}),
+    Preset(
+        "Soft Focus", "Glow round everything bright, creamy behind the focus", {"spherical": 4.0}
+    ),
+    Preset(
+        "Soap Bubbles",
+        "Outlined discs behind the focus, as of an overcorrected triplet",
+        {"spherical": -1.5},
+    ),
+    Preset(
+        "Swirl",
+        "Portrait lens whose blur runs round the middle of the picture",
+        {"swirl": 0.6, "field_curvature": 1.5, "astigmatism": 0.5, "spherical": 0.5},
+    ),
+    Preset(
+        "Single Lens",
+        "Sharp in the middle alone, all aberrations towards the corners",
+        {"spherical": 1.0, "coma": 1.0, "astigmatism": 1.5, "field_curvature": 4.0},
+    ),
+    Preset("Comets", "Wings towards the corners, as of a fast old lens", {"coma": 3.0}),
+)

@@ -107,6 +107,7 @@ ROOMS = {
             "settings",
             "snapshot",
             "lens_bokeh.openings",
+            "lens_bokeh.tables",
             "scene.camera",
         ),
         *("engine.planning", "engine.drawing", "engine.layered", "engine.frame"),

@@ -30,7 +30,8 @@ bokeh.dust = 7
 def groups(camera, empty_scene):
     """The property group of each kind."""
     own = camera.aplanat
-    return {"sampling": empty_scene.aplanat, "bokeh": own.bokeh, "chromatic": own.chromatic}
+    found = {"sampling": empty_scene.aplanat, "bokeh": own.bokeh, "chromatic": own.chromatic}
+    return found | {"aberrations": own}
 
 
 def apply(bpy, kind, name):
@@ -89,6 +90,9 @@ def test_the_menus_have_the_shipped_presets_in_order(groups, preset_folder):
         "chromatic": [
             *("Standard", "Subtle", "Showcase", "Spread", "Reversed"),
             *("Steep", "Wheel", "Butterfly", "Centre", "Rings"),
+        ],
+        "aberrations": [
+            *("None", "Soft Focus", "Soap Bubbles", "Swirl", "Single Lens", "Comets"),
         ],
     }
     for kind in KINDS:

@@ -17,7 +17,7 @@ from addon.scene.settings import read_preview_sampling, read_sampling
 from addon.settings.bokeh_settings import BOKEH
 from addon.settings.chromatic_settings import CHROMATIC
 from addon.settings.refocus_settings import DEPTH_PASS, REFOCUS
-from addon.settings.scene_part_settings import DISTORTION, LAMP, LENS, MATERIAL, WORLD
+from addon.settings.scene_part_settings import ABERRATIONS, DISTORTION, LAMP, LENS, MATERIAL, WORLD
 from addon.settings.scene_settings import CAPTURE, MEASURING, PREVIEW, SCENE, VIEW_LAYER
 from addon.settings.setting import settings_of
 from addon.snapshot.camera import BokehSettings
@@ -32,7 +32,7 @@ GROUPS = {
     "AplanatCaptureSettings": (CAPTURE,),
     "AplanatRefocusSettings": (REFOCUS, DEPTH_PASS),
     "AplanatViewLayerSettings": VIEW_LAYER,
-    "AplanatCameraSettings": (LENS, DISTORTION),
+    "AplanatCameraSettings": (LENS, ABERRATIONS, DISTORTION),
     "AplanatBokehSettings": BOKEH,
     "AplanatChromaticSettings": CHROMATIC,
     "AplanatMaterialSettings": (MATERIAL,),

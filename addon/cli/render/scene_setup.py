@@ -101,6 +101,9 @@ def apply_frame(scene, frame, arguments, lens_id=None):
         _stop_animation(scene.camera.data, "aplanat.exposure")
         exposure = settings_of(LENS)["exposure"].identifier(arguments.exposure)
         scene.camera.data.aplanat.exposure = exposure
+    for name, strength in arguments.aberration:
+        _stop_animation(scene.camera.data, f"aplanat.{name}")
+        setattr(scene.camera.data.aplanat, name, strength)
     if arguments.breathing:
         _stop_animation(scene.camera.data, "aplanat.use_breathing")
         scene.camera.data.aplanat.use_breathing = True

@@ -18,8 +18,9 @@ from ...scene.camera.irises import read_opening
 from ...scene.camera.lenses import read_real_lens
 from ...scene.settings import read_passes, read_sampling
 from ...settings.bokeh_settings import BOKEH
+from ...settings.scene_part_settings import ABERRATIONS
 from ...settings.scene_settings import ADVANCED, LEVELS, RENDER, SAMPLING
-from ...settings.setting import told, told_by
+from ...settings.setting import settings_of, told, told_by
 
 
 def settings_in_force(scene, sources, arguments=None):
@@ -90,6 +91,7 @@ def settings_in_force(scene, sources, arguments=None):
         "aperture_ratio": dof.aperture_ratio,
         **_iris(data, opening),
         "lens_exposure": lens.exposure.lower() if lens else None,
+        "aberrations": _aberrations(data, lens),
         "breathing": _breathing(depsgraph, camera, lens),
         "distortion": _distortion(scene, data, lens),
         "bokeh": _bokeh(scene, data, lens, opening),
@@ -144,6 +146,13 @@ def _breathing(depsgraph, camera, lens):
     if not (camera.data.aplanat.use_breathing and camera.data.dof.use_dof):
         return None
     return read_breathing(camera.data, lens, focus_distance(depsgraph, camera))[0]
+
+
+def _aberrations(data, lens):
+    """Return the strengths of an artist's lens; null with a real one."""
+    if lens:
+        return None
+    return {name: getattr(data.aplanat, name) for name in settings_of(ABERRATIONS)}
 
 
 def _distortion(scene, data, lens):

@@ -31,7 +31,8 @@ from ...lens_bokeh.tables.pupil_tracing import build_pupil_tables
 from ...optics.focus import focused
 from ...passes.bokeh.splat import MOST_RIMS, SPLAT_PARAMS
 from .artist_tiles import artist_tiles
-from .lens_profiles import lens_profile, lens_pupil
+from .lens_profiles import lens_pupil
+from .look_keys import ArraysKey, LensKey
 
 # Texels along a side of the opening's layers, and of the iris masks that they are made from.
 _OPENING, _MASK = 512, 1024
@@ -106,7 +107,7 @@ def describe_look(plan):
     ringing = appearance.diffraction is not None
     fresnel = _fresnel_scale(plan) if ringing else 0.0
     arrays = {"opening_tx": _opening(replace(appearance, rims=(), edge=0.0), fresnel)}
-    lens = bokeh.real_lens and _Lens(bokeh.real_lens)
+    lens = bokeh.real_lens and LensKey(bokeh.real_lens)
     tangent = _largest_tangent(plan)
     params = {
         "opening": _opening_params(plan, bokeh.filter_width),
@@ -128,7 +129,7 @@ def describe_look(plan):
     layers = None
     if rows is not None:
         variants += ("PROFILE",)
-        layers = _profile(_Arrays(rows, arrays["opening_tx"]), strength)
+        layers = _profile(ArraysKey(rows, arrays["opening_tx"]), strength)
         arrays["profile_tx"] = layers
         first, last = rows.w_range
         soft = rows.soft * plan.coc_scale / plan.focus_distance
@@ -136,7 +137,7 @@ def describe_look(plan):
     if settings.vignetting == "ANALYTIC" and appearance.rims and not plan.orthographic:
         variants += ("RIMS",)
         rims = appearance.rims[:MOST_RIMS]
-        left = _rims(rims, _Arrays(arrays["opening_tx"], layers), tangent)
+        left = _rims(rims, ArraysKey(arrays["opening_tx"], layers), tangent)
         arrays["left_tx"] = left
         params["field"] = (1.0 / tangent, len(rims), len(left) / LAYERS, 0.0)
         params["rims"][: len(rims), :3] = [(r.radius, r.shift, r.members) for r in rims]
@@ -208,38 +209,6 @@ def _bands(plan):
                 "dispersion": band.dispersion,
                 "spread": (level.least, min(level.most, _FARTHEST), *colors.spreads),
             }
-
-
-class _Lens:
-    """A real lens as a cache key; its prescription is compared by identity."""
-
-    def __init__(self, settings):
-        self.settings = settings
-
-    def __eq__(self, other):
-        return self.settings == other.settings
-
-    def __hash__(self):
-        return hash((self.settings.id, self.settings.label, self.settings.f_number))
-
-    def profile(self):
-        """Return the lens' bokeh profile."""
-        return lens_profile(self.settings)
-
-
-class _Arrays:
-    """Arrays as a cache key: compared by identity, not by value."""
-
-    def __init__(self, *parts):
-        self.parts = parts
-
-    def __eq__(self, other):
-        return len(self.parts) == len(other.parts) and all(
-            a is b for a, b in zip(self.parts, other.parts, strict=True)
-        )
-
-    def __hash__(self):
-        return hash(tuple(map(id, self.parts)))
 
 
 def _texture(array):
@@ -324,7 +293,7 @@ def _lens_rows(lens, focus_distance):
 @lru_cache(maxsize=4)
 def _profile(rows_and_opening, strength):
     rows, opening = rows_and_opening.parts
-    return profile_layers(rows, opening, strength, _light_on_radii(_Arrays(opening)))
+    return profile_layers(rows, opening, strength, _light_on_radii(ArraysKey(opening)))
 
 
 # Memo: see `_opening`.
@@ -340,15 +309,17 @@ def _rims(rims, opening_and_profile, tangent):
 
 
 def _add_tiles(plan, appearance, tangent, arrays, params):
-    if plan.bokeh.artist:
-        (tiles, (first, last), soft), strength = artist_tiles(plan.bokeh.artist, tangent), 1.0
+    bokeh, strength = plan.bokeh, 1.0
+    if bokeh.artist:
+        found = artist_tiles(bokeh.artist, tangent)
     else:
-        lens, strength = _Lens(plan.bokeh.real_lens), plan.bokeh.settings.profile_strength
-        tiles, (first, last), soft = _tiles(lens, plan.focus_distance, tangent)
+        strength = bokeh.settings.profile_strength
+        found = _tiles(LensKey(bokeh.real_lens), plan.focus_distance, tangent)
+    tiles, (first, last), soft = found
     even = replace(appearance, rims=(), edge=0.0) == type(appearance)()
     arrays["sharp_tx"], arrays["soft_tx"] = tiles.sharp, tiles.soft
     arrays["places_tx"] = tiles.places
-    arrays["left_tx"] = _tiles_left(_Arrays(tiles, arrays["opening_tx"]), even)
+    arrays["left_tx"] = _tiles_left(ArraysKey(tiles, arrays["opening_tx"]), even)
     params["field"] = (1.0 / tiles.largest_tangent, 0.0, 1.0, float(not even))
     scale = plan.coc_scale / plan.focus_distance
     params["rows"] = (first, 1.0 / (last - first), soft * scale, strength)

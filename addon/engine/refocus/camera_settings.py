@@ -12,7 +12,7 @@ from ...scene.camera.chromatic import read_chromatic
 from ...scene.camera.distortion import read_distortion
 from ...scene.camera.irises import read_opening
 from ...scene.camera.lens_record import recorded_file
-from ...scene.camera.lenses import read_real_lens
+from ...scene.camera.lenses import read_artist, read_real_lens
 from ..planning.field_table import picture_radius
 from .settings import RefocusSettings
 
@@ -76,6 +76,7 @@ def camera_settings(
         distortion=distortion,
         samples=samples,
         seed=seed,
+        artist=None if captured.orthographic else read_artist(data, real_lens),
     )
     problems = (*of_lens, *of_iris, *of_chromatic, *of_bokeh, *of_distortion)
     return settings, tuple(f"camera '{camera.name}': {line}" for line in problems)

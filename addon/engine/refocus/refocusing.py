@@ -13,7 +13,7 @@ from ..frame.pipeline import FrameRenderer
 from ..layered.layer_raster import clipped_projection
 from ..layered.stack_layers import StackLayers, stack_far, stack_near
 from ..planning.plan import plan_frame
-from .settings import bokeh_of, lens_of, real_lens_of
+from .settings import bokeh_of, f_stop_of, lens_of, real_lens_of
 
 # Lens samples between two looks at whether to go on.
 _STRETCH = 16
@@ -56,6 +56,8 @@ def refocus_snapshot(stack, settings, content=None):
         bokeh=bokeh_of(stack, settings),
         chromatic=settings.chromatic,
         distortion=settings.distortion,
+        artist=settings.artist,
+        f_number=f_stop_of(stack, settings),
     )
     sampling = Sampling(method="LAYERED", lens_samples=settings.samples, seed=settings.seed)
     return SceneSnapshot(

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from ...lens_bokeh.openings.shapes import stopped_down
+from ...lens_bokeh.tables.artist_lens import ArtistLens
 from ...sampling.chromatic import ChromaticAberration
 from ...sampling.iris import Iris
 from ...sampling.thin_lens import ThinLens, aperture_radius
@@ -32,6 +33,8 @@ class RefocusSettings:
         None: no chromatic aberration.
     distortion : tuple of float
         As of `snapshot.camera.Camera`.
+    artist : ArtistLens or None
+        Aberrations without a real lens.
     samples : int
         Lens samples.
     seed : int
@@ -47,6 +50,7 @@ class RefocusSettings:
     distortion: tuple[float, ...] = ()
     samples: int = settings_of(REFOCUS)["samples"].default
     seed: int = 0
+    artist: ArtistLens | None = None
 
 
 def f_stop_of(stack, settings):

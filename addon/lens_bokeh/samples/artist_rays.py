@@ -12,6 +12,7 @@ from .landing import spread_places
 _NEAREST = 4.0
 _DEGREE = 3
 _PLACES = 32
+_ORDERS = disc_orders(_DEGREE)
 
 
 @dataclass(frozen=True)
@@ -37,11 +38,15 @@ class ArtistRays:
     aperture_radius: float
     focus_vergence: float
 
-    orders = disc_orders(_DEGREE)
     stretch = 1.0
     last_seen = np.inf
     parts_colors, colors = False, None
     loses_light = False
+
+    @property
+    def orders(self):
+        """Of the `disc_terms`."""
+        return _ORDERS
 
     @property
     def largest_vergence(self):

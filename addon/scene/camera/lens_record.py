@@ -18,7 +18,7 @@ from ...lens_io.lens_shelf import LensShelf
 from ...lens_io.recorded_lens import text_of
 from ...settings.bokeh_settings import BOKEH, DEBUG
 from ...settings.chromatic_settings import CHROMATIC
-from ...settings.scene_part_settings import DISTORTION, LENS
+from ...settings.scene_part_settings import ABERRATIONS, DISTORTION, LENS
 from ...settings.setting import settings_of
 from .irises import IrisReader
 from .lenses import user_folder
@@ -51,7 +51,7 @@ def record_lens(camera, shelf=None):
         ``iris``, the picture of the opening, if any.
     """
     own = camera.aplanat
-    told = {name: getattr(own, name) for name in settings_of(LENS, DISTORTION)}
+    told = {name: getattr(own, name) for name in settings_of(LENS, ABERRATIONS, DISTORTION)}
     told["bokeh"] = {name: getattr(own.bokeh, name) for name in _BOKEH}
     told["chromatic"] = {name: getattr(own.chromatic, name) for name in _CHROMATIC}
     text = own.lens and text_of(shelf or LensShelf([user_folder()]), own.lens)
@@ -138,7 +138,7 @@ def apply_lens(told, camera):
         # Recorded when distortion was part of the bokeh.
         source = bokeh["distortion_source"] if bokeh.get("use", True) else "NONE"
         told = {"distortion": source, "distortion_k": bokeh.get("distortion"), **told}
-    _assign(own, settings_of(LENS, DISTORTION), told)
+    _assign(own, settings_of(LENS, ABERRATIONS, DISTORTION), told)
     _assign(own.bokeh, _BOKEH, told.get("bokeh"))
     _assign(own.chromatic, _CHROMATIC, told.get("chromatic"))
     image = _image(told.get("iris"))

@@ -1,4 +1,4 @@
-"""Presets of sampling, bokeh and chromatic aberration: the shipped ones, and those a user saves.
+"""Presets of sampling, bokeh and aberrations: the shipped ones, and those that a user saves.
 
 Shipped presets are data (`settings.shipped_presets`), applied by one operator; they can neither be
 overwritten nor removed. A user's own are scripts in Blender's folder of presets, saved, run and
@@ -15,9 +15,16 @@ from bpy.props import EnumProperty, StringProperty
 
 from ...settings.bokeh_settings import BOKEH
 from ...settings.chromatic_settings import CHROMATIC
+from ...settings.scene_part_settings import ABERRATIONS
 from ...settings.scene_settings import SCENE
 from ...settings.setting import Section, changed, kept_names, settings_of
-from ...settings.shipped_presets import BOKEH_PRESETS, CHROMATIC_PRESETS, SAMPLING_PRESETS, Preset
+from ...settings.shipped_presets import (
+    ABERRATION_PRESETS,
+    BOKEH_PRESETS,
+    CHROMATIC_PRESETS,
+    SAMPLING_PRESETS,
+    Preset,
+)
 from ..operators.lens_operators import camera_of
 from ..properties.chromatic_properties import SETTING_NAMES
 
@@ -64,6 +71,11 @@ def _group_of_camera(name):
     return group
 
 
+def _camera_settings(context):
+    camera = camera_of(context)
+    return None if camera is None else camera.aplanat
+
+
 _CAMERA = 'camera = getattr(bpy.context, "camera", None) or bpy.context.scene.camera.data'
 KINDS = {
     "sampling": _Kind(
@@ -96,6 +108,16 @@ KINDS = {
         _group_of_camera("chromatic"),
         (_CAMERA, "chromatic = camera.aplanat.chromatic"),
         tuple(f"chromatic.{name}" for name in SETTING_NAMES),
+    ),
+    "aberrations": _Kind(
+        "Aberrations",
+        "the aberrations of a lens without a prescription",
+        "camera",
+        (ABERRATIONS,),
+        ABERRATION_PRESETS,
+        _camera_settings,
+        (_CAMERA,),
+        tuple(f"camera.aplanat.{name}" for name in kept_names(ABERRATIONS)),
     ),
 }
 
