@@ -199,3 +199,12 @@ def test_version_is_the_manifests(capsys):
     with pytest.raises(SystemExit):
         parse(["--version"])
     assert capsys.readouterr().out.strip() == f"aplanat {version()}"
+
+
+def test_aberrations_are_told_apart_by_their_names_and_bounded():
+    words = ["render", "a.blend", "-o", "a.png", "--aberration", "field-curvature=-2"]
+    found = parse([*words, "--aberration", "swirl=0.5"])
+    assert found.aberration == [("field_curvature", -2.0), ("swirl", 0.5)]
+    for wrong in ("blur=1", "swirl=2", "coma=much", "coma"):
+        with pytest.raises(InputError, match="aberration"):
+            parse([*words[:4], "--aberration", wrong])
