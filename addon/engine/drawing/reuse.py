@@ -27,6 +27,8 @@ _MOST_MEMBERS = 16
 # Steps between places in a cell, along x and y: the plastic number's, whose multiples modulo 1 fill
 # a square most evenly.
 _TURN = np.array([0.7548776662466927, 0.5698402909980532])
+# Turns of `place_in_cell` between two seeds: other places, also where cells have many parents.
+_SEED_TURNS = 7919
 # Rows of cells after which the places of parents in their cells repeat.
 _PATTERN = 16
 # Least share of the work that sprites must save to be used.
@@ -102,8 +104,9 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
     _, cell_of, sizes = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
     cell_of = cell_of.ravel()
     sprites = []
+    turn = row + plan.first + _SEED_TURNS * (plan.source.seed if plan.source else 0)
     for number, members in _families(cell_of, sizes):
-        place = place_in_cell(cells[members[0]], row + plan.first + number)
+        place = place_in_cell(cells[members[0]], turn + number)
         parent = int(members[_parent(moves[members], place)])
         level = int(levels[parent])
         pixels = rectangle[2] * rectangle[3]
