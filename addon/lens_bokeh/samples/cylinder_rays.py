@@ -71,6 +71,15 @@ class CylinderRays:
     last_seen = np.inf
     parts_colors, colors = False, None
 
+    @property
+    def farthest(self):
+        """The farthest field that was traced, as a tangent."""
+        return float(np.hypot(*(each[-1] for each in self.fields)))
+
+    def places_shown(self, fields):
+        """Return where fields are shown in focus; as of `LensRays`."""
+        return fields if self.flat else self.distortion.done(fields)
+
     def moves(self, nodes):
         """Lay out the aberrations over places of the field; as of `LensRays`."""
         cosine_x, cosine_y = self._odd()
@@ -109,13 +118,20 @@ class Distortion:
     fields: tuple
     shift: np.ndarray
 
+    def done(self, fields):
+        """Return the places where fields are shown, shape (P, 2) both."""
+        return fields + self._shifts(fields)
+
     def undone(self, places):
         """Return the fields that are shown at places, shape (P, 2) both."""
         seen = places
-        odd = np.array([True, False])
         for _ in range(_STEPS):
-            seen = places - _interpolated(self.fields, self.shift, odd, ~odd, seen)
+            seen = places - self._shifts(seen)
         return seen
+
+    def _shifts(self, fields):
+        odd = np.array([True, False])
+        return _interpolated(self.fields, self.shift, odd, ~odd, fields)
 
 
 def cylinder_rays(lens, pupil, focus, vergences, tangents, flat, wavelength_nm):

@@ -146,6 +146,19 @@ class LensRays:
         """
         return tangents if self.flat else undistorted(self.distorted, tangents)
 
+    @property
+    def farthest(self):
+        """The farthest field that was traced, as a tangent."""
+        return float(self.fields[-1])
+
+    def places_shown(self, fields):
+        """Return where fields are shown in focus, both of shape (P, 2), as tangents."""
+        if self.flat:
+            return fields
+        away = np.hypot(*fields.T)
+        shown = np.interp(away, *self.distorted.T)
+        return fields * (shown / np.maximum(away, 1e-30))[:, None]
+
     # Height of the pupil over its width.
     stretch = 1.0
 

@@ -22,6 +22,7 @@ import numpy as np
 from .disc_terms import disc_terms
 from .field_grid import FieldGrid
 from .landing import spread_places, where_they_land
+from .seen_fields import SeenFields, fields_on_circles, seen_fields
 
 _GRADIENT_PLACES, _NUDGE = 96, 1e-3
 # Nodes that are looked at around the picture, for the rays that land in it.
@@ -59,6 +60,7 @@ class SampleTables:
     _light: np.ndarray
     _rims: np.ndarray
     _slopes: np.ndarray
+    _seen: SeenFields
     _colors: tuple = ()
 
     def places(self, lens_positions):
@@ -88,14 +90,21 @@ class SampleTables:
             Coefficients of the powers of V over the largest vergence, x and y.
         """
         grid = self.moves_grid
+        found, reach = self._followed(lens_positions, colors)
+        found = self._seen.held(found, reach)
+        return found.reshape(-1, grid.rows, grid.columns, 4, 2).astype(np.float32)
+
+    def _followed(self, lens_positions, colors):
+        """Return movements at nodes and circles, and how far samples see."""
         terms = disc_terms(self.orders, np.append(self.places(lens_positions), [[0.0, 0.0]], 0))
-        terms = (terms[:-1] - terms[-1]).reshape(len(lens_positions), -1)
-        found = _mixed(terms, colors, (self._moves, *(moves for moves, _ in self._colors)))
+        from_middle = (terms[:-1] - terms[-1]).reshape(len(lens_positions), -1)
+        found = _mixed(from_middle, colors, (self._moves, *(moves for moves, _ in self._colors)))
         found = found.reshape(-1, *self._chief.shape) + self._chief
         if colors is not None:
             for share, (_, chief) in zip(colors[:, 1].T, self._colors, strict=True):
                 found += share[:, None, None, None] * chief
-        return found.reshape(-1, grid.rows, grid.columns, 4, 2).astype(np.float32)
+        terms = terms[:-1].reshape(len(lens_positions), -1)
+        return found, self._seen.reach(terms, found[:, -self._seen.count :])
 
     def turns(self, lens_positions, colors=None):
         """Tables of how displacements change with the place on the lens.
@@ -120,7 +129,9 @@ class SampleTables:
             ahead, behind = (disc_terms(self.orders, places + s) for s in (step, -step))
             slopes = (ahead - behind).reshape(len(places), -1) * (0.5 * scale / _NUDGE)
             found.append(_mixed(slopes, colors, self._linear_moves) / self.aperture_radius)
-        return np.stack(found, axis=-1).reshape(-1, grid.rows, grid.columns, 2, 2, 2)
+        found = np.stack(found, axis=-1).reshape(len(places), -1, 2, 2, 2)
+        found = self._seen.held(found, self._followed(lens_positions, colors)[1])
+        return found.reshape(-1, grid.rows, grid.columns, 2, 2, 2)
 
     @cached_property
     def _linear_moves(self):
@@ -232,7 +243,9 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=n
     SampleTables
     """
     largest = float(rays.largest_vergence)
-    moves, chief = _moves(rays, wide_grid.nodes, aperture_radius, ratio)
+    circles, tangents = fields_on_circles(rays)
+    fields = np.concatenate([wide_grid.nodes, circles])
+    moves, chief = _moves(rays, fields, aperture_radius, ratio)
     source = grid.padded(_PADDING)
     every = rays.light_and_rims(source.nodes)
     # The nodes of the picture, and the axis.
@@ -251,7 +264,7 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=n
     if rays.colors is not None:
         for changed, chiefs in zip(rays.colors.aberrations, rays.colors.chief, strict=True):
             other = replace(rays, aberrations=changed, chief=chiefs)
-            over, middle = _moves(other, wide_grid.nodes, aperture_radius, ratio)
+            over, middle = _moves(other, fields, aperture_radius, ratio)
             colors.append((over.reshape(len(over), -1).astype(np.float32), middle))
     # Rims that cut nothing of this picture.
     cutting = [s for s, (_, least) in enumerate(slopes) if least < _CLEAR]
@@ -269,6 +282,7 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=n
         _light=light,
         _rims=np.array(rims).reshape(-1, *light.shape),
         _slopes=np.array(slopes).reshape(-1, light.shape[1]),
+        _seen=seen_fields(rays, wide_grid.nodes, circles, tangents),
         _colors=tuple(colors),
     )
 
