@@ -146,6 +146,19 @@ def nodes_blend(aplanat_bpy, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def cards_blend(aplanat_bpy, tmp_path_factory):
+    """Cards that glow with the outputs of nodes, a card for each output."""
+    from benchmarks.nodes import image_cases, input_cases, pattern_cases, sheet
+
+    modules = (input_cases, image_cases, pattern_cases)
+    cases = {(c.node, c.output): c for module in modules for c in module.CASES}
+    sheet.build_sheet(aplanat_bpy, list(cases.values()))
+    path = tmp_path_factory.mktemp("cards") / "cards.blend"
+    aplanat_bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    return path
+
+
+@pytest.fixture(scope="session")
 def backends(blender, tmp_path_factory):
     """Return the names of the backends, each of which Blender was seen to use when asked."""
     folder = tmp_path_factory.mktemp("backends")
@@ -158,7 +171,7 @@ def backends(blender, tmp_path_factory):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["demo", "toys", "toys_lit", "surfaces", "nodes"])
+@pytest.mark.parametrize("scene", ["demo", "toys", "toys_lit", "surfaces", "nodes", "cards"])
 def test_vulkan_agrees_with_opengl(scene, blender, backends, request, tmp_path):
     blend = request.getfixturevalue(f"{scene}_blend")
     pictures = {}
