@@ -128,4 +128,11 @@ OTHERS = [
         )
     ),
 ]
-CASES = NOISE + VORONOI + OTHERS
+GABOR = [
+    *(
+        Case("TexGabor", output, {**_PLACE, "Scale": 0.6, "Anisotropy": a}, {"gabor_type": kind})
+        for kind in ("2D", "3D")
+        for output, a in (("Value", 1.0), ("Value", 0.3), ("Phase", 0.6), ("Intensity", 0.0))
+    ),
+]
+CASES = NOISE + VORONOI + OTHERS + GABOR

@@ -38,7 +38,6 @@ STATED = {
     "Raycast": (FALLBACK, "the value of the socket that it feeds"),
     "TexSky": (FALLBACK, "the value of the socket that it feeds"),
     "TexIES": (FALLBACK, "the value of the socket that it feeds"),
-    "TexGabor": (FALLBACK, "the value of the socket that it feeds"),
     "RadialTiling": (FALLBACK, "the value of the socket that it feeds"),
     "ShaderToRGB": (FALLBACK, "the value of the socket that it feeds; Cycles has none"),
     "Script": (FALLBACK, "the value of the socket that it feeds"),

@@ -154,3 +154,20 @@ def _gradient(node, writer):
     pattern = f"gradient_pattern({vector}, GRADIENT_{node.setting('type')})"
     value = writer.let("float", pattern)
     return {"Fac": ("float", value), "Color": ("color", f"vec3({value})")}
+
+
+@generates("gabor", "lib/nodes/gabor_lib.glsl")
+def _gabor(node, writer):
+    vector = writer.value(node.input("Vector"), "vec3")
+    scale, frequency, anisotropy = _floats(node, writer, "Scale", "Frequency", "Anisotropy")
+    if node.setting("type") == "2D":
+        (turned,) = _floats(node, writer, "Orientation 2D")
+        call = f"gabor_flat(({vector} * {scale}).xy, {frequency}, {anisotropy}, {turned})"
+    else:
+        turned = writer.value(node.input("Orientation 3D"), "vec3")
+        call = f"gabor_solid({vector} * {scale}, {frequency}, {anisotropy}, {turned})"
+    found = writer.let("vec3", call)
+    return {
+        name: ("float", f"{found}.{axis}")
+        for name, axis in zip(("Value", "Phase", "Intensity"), "xyz", strict=True)
+    }

@@ -107,3 +107,12 @@ def _brick(reader, node, groups):
 def _gradient(reader, node, groups):
     settings = (("type", node.gradient_type),)
     return reader.add("gradient", [_place(reader, node, groups)], settings)
+
+
+@reads("TEX_GABOR")
+def _gabor(reader, node, groups):
+    flat = node.gabor_type == "2D"
+    turned = "Orientation 2D" if flat else "Orientation 3D"
+    names = ("Scale", "Frequency", "Anisotropy", turned)
+    inputs = [_place(reader, node, groups), *reader.values(node, names, groups)]
+    return reader.add("gabor", inputs, (("type", node.gabor_type),))

@@ -255,3 +255,52 @@ def test_a_material_keeps_its_shader_whatever_its_numbers(bpy):
         code = generate(read(material)[0].graph, ("normal", "generated"))
         sources.add((code.source, len(code.constants), code.features))
     assert len(sources) == 20
+
+
+def emission_of(material):
+    snapshot, reader = read(material)
+    assert reader.report == []
+    return snapshot.graph.nodes[snapshot.graph.surface.node]
+
+
+def test_a_reroute_that_nothing_feeds_keeps_the_sockets_value(bpy):
+    material, tree = new_material(bpy)
+    glow = tree.emission((0.2, 0.4, 0.6), 7.0)
+    dangling = tree.tree.nodes.new("NodeReroute")
+    tree.tree.links.new(dangling.outputs[0], glow.inputs["Strength"])
+    assert emission_of(material).input("Strength").value == (7.0,)
+
+
+def test_groups_in_groups_and_muted_nodes_are_seen_through(bpy):
+    inner = bpy.data.node_groups.new("inner", "ShaderNodeTree")
+    inner.interface.new_socket("Number", in_out="INPUT", socket_type="NodeSocketFloat")
+    inner.interface.new_socket("Number", in_out="OUTPUT", socket_type="NodeSocketFloat")
+    start, end = (inner.nodes.new(f"NodeGroup{end}") for end in ("Input", "Output"))
+    muted = inner.nodes.new("ShaderNodeMath")
+    muted.mute = True
+    inner.links.new(start.outputs[0], muted.inputs[0])
+    inner.links.new(muted.outputs[0], end.inputs[0])
+    outer = inner.copy()
+    outer.nodes.clear()
+    start, end = (outer.nodes.new(f"NodeGroup{end}") for end in ("Input", "Output"))
+    group = outer.nodes.new("ShaderNodeGroup")
+    group.node_tree = inner
+    outer.links.new(start.outputs[0], group.inputs[0])
+    outer.links.new(group.outputs[0], end.inputs[0])
+    material, tree = new_material(bpy)
+    used = tree.node("Group", node_tree=outer)
+    used.inputs[0].default_value = 0.3
+    tree.emission((1.0, 1.0, 1.0), used.outputs[0])
+    assert emission_of(material).input("Strength").value == pytest.approx((0.3,))
+
+
+def test_a_menu_chooses_what_is_drawn(bpy):
+    material, tree = new_material(bpy)
+    switch = tree.tree.nodes.new("GeometryNodeMenuSwitch")
+    switch.data_type = "FLOAT"
+    numbers = [socket for socket in switch.inputs if socket.type == "VALUE"]
+    for socket, value in zip(numbers, (0.25, 0.75), strict=False):
+        socket.default_value = value
+    switch.inputs[0].default_value = switch.enum_items[1].name
+    tree.emission((1.0, 1.0, 1.0), switch.outputs[0])
+    assert emission_of(material).input("Strength").value == (0.75,)
