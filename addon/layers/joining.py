@@ -52,7 +52,7 @@ def join_layers(stack):
     return replace(stack, layers=tuple(joined))
 
 
-def open_ends(coverages, depths, reach=REACH):
+def open_ends(coverages, depths, reach=REACH, in_parts=False):
     """Find the pixels that a layer lacks of a surface that comes out of the layer in front of it.
 
     They are not whole in the layer, but are together with the one in front, and lie beside pixels
@@ -68,6 +68,10 @@ def open_ends(coverages, depths, reach=REACH):
         In a measure that planes are linear in over the picture; of any value where nothing is.
     reach : int
         How far from a pixel that is whole, in pixels.
+    in_parts : bool
+        Parts of a pixel that the two layers have of a surface are the whole together, however
+        small: rays take them from the one or from the other layer. Then no pixel that the layer in
+        front has a part of counts as the layer's alone.
 
     Returns
     -------
@@ -75,9 +79,9 @@ def open_ends(coverages, depths, reach=REACH):
     """
     front, behind = coverages
     whole = behind >= WHOLE
-    first = whole & (front < WHOLE)
+    first = whole & (front <= 0.0 if in_parts else front < WHOLE)
     together = front + (1.0 - front) * behind >= WHOLE
-    found = ~whole & (front > 0.0) & together
+    found = ~whole & (front > 0.0) & (together | in_parts)
     found &= _near(first, reach)
     rows, columns = np.nonzero(found)
     if not len(rows):

@@ -62,6 +62,23 @@ def test_refocused_captures(capture, floor, tmp_path, engine):
     assert ssim(picture[::-1], expected) > 0.98, tmp_path
 
 
+@pytest.mark.parametrize("shift", [0.0, 1.0, 2.0])
+def test_a_horizon_lies_between_rows_of_texels(floor, shift):
+    # A pixel has three rows of texels, which would have it up to a sixth too high or too low.
+    floor.render.film_transparent = True
+    floor.render.resolution_x = floor.render.resolution_y = 48
+    for name in ("Cube", "Card"):
+        floor.objects[name].hide_render = True
+    data = floor.camera.data
+    data.shift_y, data.dof.aperture_fstop = shift / 9.0 / 48.0, 8.0
+    heights = []
+    for method in ("LAYERED", "REFERENCE"):
+        alpha = combined(render(floor, method, 128))[::-1, 16:32, 3]
+        heights.append(alpha[16:].mean(axis=1).sum())
+    # A third of a texel, half of it to either side, and the noise of the pixel's samples.
+    assert heights[0] == pytest.approx(heights[1], abs=1.0 / 18.0 + 0.01)
+
+
 def test_layers_of_our_own_engine(floor, tmp_path):
     reference = combined(render(floor, "REFERENCE", 128))
     # Many thin slices: their overlap is less than a texel of the floor.

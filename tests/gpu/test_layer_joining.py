@@ -28,6 +28,16 @@ def scene_depths():
     return found
 
 
+def scene_shares(depths):
+    """Texels are whole, but for some near the cuts that a layer has a part of."""
+    rng = np.random.default_rng(3)
+    cuts = np.linspace(0.0, 1.0, COUNT + 1)
+    near = np.abs(depths[..., None] - cuts[1:-1]).min(axis=-1) < 0.02
+    parts = rng.integers(1, 10, depths.shape) / 9.0
+    found = np.where(near & (rng.uniform(size=depths.shape) < 0.6), parts, 1.0)
+    return np.where(depths <= 1.0, found, 0.0).astype(np.float32)
+
+
 def read(texture, slot, channels):
     import gpu
 
@@ -39,6 +49,7 @@ def read(texture, slot, channels):
 
 def test_the_device_joins_what_the_twin_joins():
     depths = scene_depths()
+    shares = scene_shares(depths)
     colors = np.random.default_rng(1).uniform(0.0, 1.0, (COUNT * EYES, HEIGHT, WIDTH, 4))
     # As exact as what the device keeps.
     colors = colors.astype(np.float16).astype(np.float32)
@@ -47,16 +58,20 @@ def test_the_device_joins_what_the_twin_joins():
     with Targets(WIDTH, HEIGHT, []) as targets:
         kept = targets.textures
         kept["colors"] = texture_array(colors, layers.COLOR_FORMAT)
-        kept["depths"] = texture_array(depths[..., None], layers.DEPTH_FORMAT)
+        kept["depths"] = texture_array(np.stack([depths, shares], axis=-1), layers.DEPTH_FORMAT)
         kept["mattes"] = texture_array(mattes)
         joining.join(targets, COUNT, EYES)
-        found = [read(kept["depths"], number, 1)[..., 0] for number in range(COUNT)]
+        read_depths = np.stack([read(kept["depths"], number, 2) for number in range(COUNT)])
         found_colors = [read(kept["colors"], number, 4) for number in range(COUNT * EYES)]
         found_mattes = [read(kept["mattes"], number, 4) for number in range(COUNT)]
     total = 0
     for number in range(1, COUNT):
-        pair = depths[number - 1 : number + 1]
-        ends = open_ends([(d <= 1.0).astype(float) for d in pair], pair, reach=1)
+        part = slice(number - 1, number + 1)
+        pair = shares[part]
+        widened = open_ends(pair, depths[part], reach=2, in_parts=True)
+        # Those that it has a part of keep what they are.
+        ends = widened & (shares[number] == 0.0)
+        shares[number][widened] = 1.0
         depths[number][ends] = depths[number - 1][ends]
         mattes[number][ends] = mattes[number - 1][ends]
         for eye in range(EYES):
@@ -64,6 +79,7 @@ def test_the_device_joins_what_the_twin_joins():
             colors[layer][ends] = colors[layer - 1][ends]
         total += ends.sum()
     assert total > 2 * WIDTH
-    assert np.array_equal(found, depths)
+    assert np.array_equal(read_depths[..., 0], depths)
+    assert np.array_equal(read_depths[..., 1], shares)
     assert np.array_equal(found_mattes, mattes)
     assert np.array_equal(found_colors, colors)

@@ -8,6 +8,10 @@ import numpy as np
 # pixel filter makes it only where texels are finer than pixels.
 _MOST_TEXELS = 1 << 25
 _FINEST = 3
+# Parts of a texel along each side that shapes are drawn in, and of all texels together: edges lie
+# between texels, and that of a horizon is one for a whole row of pixels.
+_PARTS, _MOST_PARTS = 3, 1 << 24
+_LONGEST = 8192
 
 
 @dataclass(frozen=True)
@@ -22,12 +26,15 @@ class LayerRaster:
         Texels along a side of a pixel.
     margin : tuple of 2 int
         Pixels beyond the frame on the left and right, at the bottom and the top.
+    parts : int
+        That shapes of slices are drawn in, along each side of a texel.
     """
 
     width: int
     height: int
     fine: int
     margin: tuple[int, int]
+    parts: int = 1
 
 
 def layer_raster(plan, nearest, farthest):
@@ -51,7 +58,13 @@ def layer_raster(plan, nearest, farthest):
     slices = plan.layered.count * len(plan.layered.eyes)
     affordable = int(np.sqrt(_MOST_TEXELS / (width * height * slices)))
     fine = int(np.clip(affordable, 1, _FINEST))
-    return LayerRaster(width * fine, height * fine, fine, margin)
+    width, height = width * fine, height * fine
+    parts = 1
+    if not plan.layered.peeled:
+        # What is peeled lies behind single parts: texels of several surfaces would be mixed.
+        parts = min(int(np.sqrt(_MOST_PARTS / (width * height))), _LONGEST // max(width, height))
+        parts = int(np.clip(parts, 1, _PARTS))
+    return LayerRaster(width, height, fine, margin, parts)
 
 
 def plan_reach(plan, nearest, farthest):

@@ -17,6 +17,7 @@ from ...device import state
 from ...device.targets import TargetSpec
 from ...device.textures import texture_2d
 from ...device.uniforms import uniform_buffer
+from ...passes.bokeh import peel
 from ...passes.layered import cast, layers
 from ...passes.surface import surface, surface_target
 from .scene_layers import draw_scene_layers
@@ -82,10 +83,13 @@ class LayeredDrawing:
             resources = {"highlights": self._highlights, "optics": self._optics(None).wavelength}
             target = surface_target.of_layers(self._target)
             solid = self._drawing.full_detail_draws(target)
+            solid = [draw for draw in solid if not draw.transparent]
+            wanted = {(draw.group, draw.slot) for draw in solid}
             made = draw_scene_layers(
                 plan,
                 self._drawing,
-                [draw for draw in solid if not draw.transparent],
+                solid,
+                self._drawing.full_detail_draws(peel.OPAQUE, wanted),
                 self._buffers.instances,
                 "MATTES" in self._target.defines,
                 resources,

@@ -27,7 +27,7 @@ _ROUNDING = 1e-4
 _MEASURES = 2
 
 
-def draw_scene_layers(plan, drawing, draws, instances, mattes, resources):
+def draw_scene_layers(plan, drawing, draws, shapes, instances, mattes, resources):
     """Draw a scene into depth layers.
 
     Parameters
@@ -38,6 +38,8 @@ def draw_scene_layers(plan, drawing, draws, instances, mattes, resources):
         Aimed at the frame.
     draws : list of Draw
         Of what is drawn, for `passes.surface.surface_target.of_layers`.
+    shapes : list of Draw
+        Of the same, for `passes.bokeh.peel.OPAQUE`.
     instances : GPUTexture
     mattes : bool
         The draws have a second target, of mattes.
@@ -48,7 +50,7 @@ def draw_scene_layers(plan, drawing, draws, instances, mattes, resources):
     -------
     DeviceLayers
     """
-    drawn = _Slices(plan, draws, instances, mattes, resources)
+    drawn = _Slices(plan, draws, shapes, instances, mattes, resources)
     near, far, nearest, farthest = _depths(plan, drawing, drawn)
     count, eyes = plan.layered.count, plan.layered.eyes
     planes = [(near, far)] * count
@@ -57,7 +59,7 @@ def draw_scene_layers(plan, drawing, draws, instances, mattes, resources):
         planes = [(slice_.clip_start, slice_.clip_end) for slice_ in slices]
     raster = layer_raster(plan, nearest, farthest)
     sides = (raster.width, raster.height)
-    textures = drawn.draw(raster, sides, planes, eyes)
+    textures = drawn.draw(raster, sides, planes, eyes, raster.parts)
     if not plan.layered.peeled:
         joining.join(textures, len(planes), len(eyes))
     drawing.counts.draw_calls += drawn.times * len(draws)
@@ -94,7 +96,7 @@ class _Slices:
     Parameters
     ----------
     plan : FramePlan
-    draws, instances, mattes, resources
+    draws, shapes, instances, mattes, resources
         As of `draw_scene_layers`.
 
     Attributes
@@ -103,15 +105,16 @@ class _Slices:
         How often the scene was drawn so far.
     """
 
-    def __init__(self, plan, draws, instances, mattes, resources):
+    def __init__(self, plan, draws, shapes, instances, mattes, resources):
         self._plan = plan
         self._draws = draws
+        self._shapes = shapes
         self._instances = instances
         self._slots = ("color", "mattes")[: 1 + mattes]
         self._resources = resources
         self.times = 0
 
-    def draw(self, raster, sides, planes, eyes):
+    def draw(self, raster, sides, planes, eyes, parts=1):
         """Draw slices into new layers.
 
         Parameters
@@ -124,6 +127,8 @@ class _Slices:
             Depths that they lie between, m.
         eyes : ndarray of shape (E, 2)
             As `LayeredPlan.eyes`.
+        parts : int
+            Of a texel along each side that its shape is drawn in.
 
         Returns
         -------
@@ -131,26 +136,29 @@ class _Slices:
             Of `passes.layered.layers.specs`, without pyramids.
         """
         plan, mattes = self._plan, len(self._slots) > 1
-        shown = np.array([raster.width, raster.height]) / raster.fine
-        projection = np.diag([*(plan.width, plan.height) / shown, 1.0, 1.0]) @ plan.projection
-        origin = (np.array(plan.origin) - raster.margin) * sides / shown
+        projection, origin = self._shown(raster, sides)
         # Peeled layers take turns with the depths: what is drawn lies behind the one before.
         depths = ("depth", "front")
         specs = [TargetSpec(name, "RGBA32F") for name in self._slots]
         specs += [TargetSpec(name, "DEPTH_COMPONENT32F") for name in depths]
         made = Targets(*sides, layers.specs(*sides, len(planes), mattes, len(eyes)))
+        if parts > 1:
+            specs.append(TargetSpec("shape", "DEPTH_COMPONENT32F", scale=parts))
         with Targets(*sides, specs) as drawn:
             with drawn.framebuffer(depth="front").bind():
                 drawn.framebuffer(depth="front").clear(depth=0.0)
             for number, pair in enumerate(planes):
                 clipped = clipped_projection(projection, *pair)
                 view = self._view(clipped, sides, origin)
+                seen = {name: drawn[name] for name in self._slots}
+                if parts > 1:
+                    self._draw_shape(drawn, "shape", view)
+                    seen["shape"] = drawn["shape"]
                 for turn, eye in enumerate(eyes):
                     self._draw(drawn, depths, view, eye)
-                    seen = {name: drawn[name] for name in self._slots}
                     seen["depth"] = drawn[depths[0]]
                     slot = turn * len(planes) + number
-                    layers.pack(seen, number, made, clipped, plan.projection, slot)
+                    layers.pack(seen, number, made, clipped, plan.projection, slot, parts)
                 if plan.layered.peeled:
                     depths = depths[::-1]
         return made
@@ -165,13 +173,28 @@ class _Slices:
         """
         shown = np.array([raster.width, raster.height]) / raster.fine
         sides = np.ceil(shown * min(1.0, MEASURED_SIDE / shown.max())).astype(int).tolist()
-        with self.draw(raster, sides, [planes], np.zeros((1, 2))) as made:
+        projection, origin = self._shown(raster, sides)
+        clipped = clipped_projection(projection, *planes)
+        specs = [TargetSpec("color", "RGBA32F"), TargetSpec("depth", "DEPTH_COMPONENT32F")]
+        made = Targets(*sides, layers.specs(*sides, 1))
+        with made, Targets(*sides, specs) as drawn:
+            self._draw_shape(drawn, "depth", self._view(clipped, sides, origin))
+            seen = {name: drawn[name] for name in ("color", "depth")}
+            layers.pack(seen, 0, made, clipped, self._plan.projection)
             layers.build_pyramids(made, *sides, 1, False)
             least, largest = layers.depth_range(made, *sides)
         if least > largest:
             return None
         found = (depth_in_window(self._plan, value) for value in (least, largest))
         return tuple(float(np.clip(depth, *planes)) for depth in found)
+
+    def _draw_shape(self, drawn, name, view):
+        framebuffer = drawn.framebuffer(depth=name)
+        with framebuffer.bind():
+            framebuffer.clear(depth=1.0)
+            state.opaque()
+            surface.draw_sample(self._shapes, view, self._instances, (0.0,) * 4, 0)
+        self.times += 1
 
     def _draw(self, drawn, depths, view, eye):
         depth, front = depths
@@ -192,6 +215,12 @@ class _Slices:
                 **self._resources,
             )
         self.times += 1
+
+    def _shown(self, raster, sides):
+        """Return the projection of a raster, and where it begins in the picture, texels."""
+        plan, shown = self._plan, np.array([raster.width, raster.height]) / raster.fine
+        projection = np.diag([*(plan.width, plan.height) / shown, 1.0, 1.0]) @ plan.projection
+        return projection, (np.array(plan.origin) - raster.margin) * sides / shown
 
     def _view(self, projection, sides, origin):
         plan = self._plan

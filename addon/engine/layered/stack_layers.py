@@ -222,7 +222,9 @@ def _upload(depths, stack):
     colors = np.stack([np.clip(layer.color, -65504.0, 65504.0) for layer in stack.layers])
     textures = Targets(width, height, layers.specs(width, height, count)[2:])
     textures.textures["colors"] = _texels(colors, layers.COLOR_FORMAT)
-    textures.textures["depths"] = _texels(depths[..., None], layers.DEPTH_FORMAT)
+    textures.textures["depths"] = _texels(
+        np.stack([depths, np.ones_like(depths)], axis=-1), layers.DEPTH_FORMAT
+    )
     raster = LayerRaster(width, height, 1, stack.overscan)
     nearest = max(stack.depth_range[0], 1e-6)
     return DeviceLayers(textures, raster, count, nearest, filtered=True)

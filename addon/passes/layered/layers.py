@@ -1,7 +1,8 @@
 """Depth layers on the device, and the pyramids that rays look them up in (methods 7).
 
 Layers are the slices of array textures. A depth is the value that the depth buffer of the whole
-frame would hold; `EMPTY` where a layer has no surface.
+frame would hold, `EMPTY` where a layer has no surface; beside it stands the share of the texel that
+has one, of layers whose colours are no filtered pictures.
 """
 
 import numpy as np
@@ -12,7 +13,7 @@ from ...device.shaders import ShaderInfo, compile_shader, dispatch
 from ...device.targets import TargetSpec
 
 EMPTY = 2.0
-COLOR_FORMAT, DEPTH_FORMAT = "RGBA16F", "R32F"
+COLOR_FORMAT, DEPTH_FORMAT = "RGBA16F", "RG32F"
 
 _GROUP = 8
 COLORS = (COLOR_FORMAT, "FLOAT_2D_ARRAY")
@@ -24,7 +25,7 @@ _RANGES = ("RGBA32F", "FLOAT_2D_ARRAY")
 @variants(mattes=(False, True))
 def _pack_info(mattes=False):
     images = [(*COLORS, "colors_img", ("WRITE",)), (*DEPTHS, "depths_img", ("WRITE",))]
-    samplers = [("FLOAT_2D", "color_tx"), ("FLOAT_2D", "depth_tx")]
+    samplers = [("FLOAT_2D", f"{name}_tx") for name in ("color", "depth", "shape")]
     if mattes:
         images.append((*MATTES, "mattes_img", ("WRITE",)))
         samplers.append(("FLOAT_2D", "mattes_tx"))
@@ -38,6 +39,7 @@ def _pack_info(mattes=False):
             ("INT", "color_layer"),
             ("VEC4", "slice"),
             ("VEC4", "whole"),
+            ("INT", "parts"),
         ),
         defines=(("MATTES", "1"),) * mattes,
         local_size=(_GROUP, _GROUP, 1),
@@ -122,13 +124,14 @@ def depth_rows(projection):
     return tuple(np.asarray(projection)[2:, 2:].ravel().tolist())
 
 
-def pack(drawn, layer, textures, slice_projection, projection, color_layer=None):
+def pack(drawn, layer, textures, slice_projection, projection, color_layer=None, parts=1):
     """Put a drawn slice into a layer.
 
     Parameters
     ----------
     drawn : dict of str to GPUTexture
-        ``color``, ``depth`` and, with mattes, ``mattes`` of the slice.
+        ``color``, ``depth`` and, with mattes, ``mattes`` of the slice; with parts ``shape``, the
+        depths of its opaque surfaces.
     layer : int
     textures : Targets
         Of `specs`.
@@ -136,6 +139,8 @@ def pack(drawn, layer, textures, slice_projection, projection, color_layer=None)
         Of the slice's depth buffer, and of the frame's.
     color_layer : int, optional
         Slice of ``colors`` that the colour goes to; default: `layer`.
+    parts : int
+        Texels of the shape along each side of one of the layer.
     """
     mattes = "mattes" in textures
     shader = compile_shader(_pack_info(mattes))
@@ -144,6 +149,7 @@ def pack(drawn, layer, textures, slice_projection, projection, color_layer=None)
     shader.image("depths_img", textures["depths"])
     shader.uniform_sampler("color_tx", drawn["color"])
     shader.uniform_sampler("depth_tx", drawn["depth"])
+    shader.uniform_sampler("shape_tx", drawn["shape" if parts > 1 else "depth"])
     if mattes:
         shader.image("mattes_img", textures["mattes"])
         shader.uniform_sampler("mattes_tx", drawn["mattes"])
@@ -151,7 +157,9 @@ def pack(drawn, layer, textures, slice_projection, projection, color_layer=None)
     shader.uniform_int("color_layer", layer if color_layer is None else color_layer)
     shader.uniform_float("slice", depth_rows(slice_projection))
     shader.uniform_float("whole", depth_rows(projection))
-    dispatch(shader, -(-drawn["depth"].width // _GROUP), -(-drawn["depth"].height // _GROUP))
+    shader.uniform_int("parts", parts)
+    depths = textures["depths"]
+    dispatch(shader, -(-depths.width // _GROUP), -(-depths.height // _GROUP))
 
 
 def build_pyramids(textures, width, height, layers, alpha_covers, eyes=1):

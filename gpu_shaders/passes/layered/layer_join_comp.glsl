@@ -1,6 +1,6 @@
 // Joins a layer with the one in front of it where a surface goes on from the one into the other, but
-// they have no texel in common: the layer gets the texels at the open end of the one in front. Between
-// texels side by side in one layer no ray passes.
+// they have no whole texel in common: the layer gets the texels at the open end of the one in front, and
+// those that it has a part of whole. Between texels side by side in one layer no ray passes.
 // An edge of an object where something behind ends by chance looks alike: the surface is one if the step
 // in depth is no more than what it rises by in a few texels on both sides.
 // Inputs: layer (from 1), layers, eyes (places on the lens that colours are seen from).
@@ -9,52 +9,64 @@
 // Source: none; layers/joining.py does the same where texels are covered in part.
 
 #define EMPTY 1.5
-// Texels on each side in which a surface's rise is looked for.
-#define REACH 2
+// How far texels of the open end lie from whole ones of the layer: one of which each has a part may be
+// between; and texels on each side in which a surface's rise is looked for.
+#define NEAR 2
+#define REACH 3
+#define WHOLE 0.999
 
-float depth_at(ivec2 texel, int slice)
+// Depth, and the share of the texel that has a surface, 0 without one.
+vec2 depth_at(ivec2 texel, int slice)
 {
-  return imageLoad(depths_img, ivec3(texel, slice)).x;
+  vec2 found = imageLoad(depths_img, ivec3(texel, slice)).xy;
+  return (found.x < EMPTY) ? found : vec2(2.0 * EMPTY, 0.0);
 }
 
 void main()
 {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(depths_img).xy;
-  if (any(greaterThanEqual(texel, size)) || depth_at(texel, layer) < EMPTY) {
+  if (any(greaterThanEqual(texel, size))) {
     return;
   }
-  float here = depth_at(texel, layer - 1);
-  if (here > EMPTY) {
+  vec2 own = depth_at(texel, layer), here = depth_at(texel, layer - 1);
+  if (own.y > WHOLE || here.y == 0.0) {
     return;
   }
   // Most texels are far from any open end: the step is asked for first.
   float step_to = 2.0 * EMPTY;
-  for (int i = 0; i < 9; i++) {
-    ivec2 place = clamp(texel + ivec2(i % 3, i / 3) - 1, ivec2(0), size - 1);
-    float behind = depth_at(place, layer);
-    if (behind < EMPTY && depth_at(place, layer - 1) > EMPTY) {
-      step_to = min(step_to, abs(behind - here));
+  for (int y = -NEAR; y <= NEAR; y++) {
+    for (int x = -NEAR; x <= NEAR; x++) {
+      ivec2 place = clamp(texel + ivec2(x, y), ivec2(0), size - 1);
+      vec2 behind = depth_at(place, layer);
+      if (behind.y > WHOLE && depth_at(place, layer - 1).y == 0.0) {
+        step_to = min(step_to, abs(behind.x - here.x));
+      }
     }
   }
   if (step_to > EMPTY) {
     return;
   }
-  vec2 near_range = vec2(here), far_range = vec2(EMPTY, -EMPTY);
+  if (own.y > 0.0) {
+    step_to = max(step_to, abs(own.x - here.x));
+  }
+  vec2 near_range = vec2(here.x), far_range = vec2(EMPTY, -EMPTY);
   for (int y = -REACH; y <= REACH; y++) {
     for (int x = -REACH; x <= REACH; x++) {
       ivec2 place = clamp(texel + ivec2(x, y), ivec2(0), size - 1);
-      float front = depth_at(place, layer - 1);
-      if (front < EMPTY) {
-        near_range = vec2(min(near_range.x, front), max(near_range.y, front));
-        continue;
+      vec2 front = depth_at(place, layer - 1), behind = depth_at(place, layer);
+      if (front.y > 0.0) {
+        near_range = vec2(min(near_range.x, front.x), max(near_range.y, front.x));
       }
-      float behind = depth_at(place, layer);
-      if (behind < EMPTY) {
-        far_range = vec2(min(far_range.x, behind), max(far_range.y, behind));
+      if (front.y == 0.0 && behind.y > WHOLE) {
+        far_range = vec2(min(far_range.x, behind.x), max(far_range.y, behind.x));
       }
     }
   }
   if (step_to > near_range.y - near_range.x + far_range.y - far_range.x) {
+    return;
+  }
+  if (own.y > 0.0) {
+    imageStore(depths_img, ivec3(texel, layer), vec4(own.x, 1.0, 0.0, 0.0));
     return;
   }
   for (int eye = 0; eye < eyes; eye++) {
@@ -64,5 +76,5 @@ void main()
 #ifdef MATTES
   imageStore(mattes_img, ivec3(texel, layer), imageLoad(mattes_img, ivec3(texel, layer - 1)));
 #endif
-  imageStore(depths_img, ivec3(texel, layer), vec4(here, 0.0, 0.0, 0.0));
+  imageStore(depths_img, ivec3(texel, layer), vec4(here.x, 1.0, 0.0, 0.0));
 }

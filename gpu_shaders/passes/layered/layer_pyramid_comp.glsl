@@ -1,7 +1,7 @@
 // One level of the pyramids of all layers: mean colour, and least, largest and mean depth and coverage
 // over squares twice as wide as in the level before.
 // Inputs: colors_tx, depths_tx (the layers); level (from 1); alpha_covers (1: the colour's alpha is the
-// coverage; 0: a texel with a surface is covered); eyes (places on the lens that colours are seen from).
+// coverage; 0: the share beside the depth); eyes (places on the lens that colours are seen from).
 // Outputs: means_img (premultiplied colour); ranges_img (x, y: least and largest depth of what is
 // covered, 2 and -1 if nothing is; z: mean depth of what is covered; w: coverage).
 // Source: methods 7 (LES09 section 5); Decoret, N-buffers, EG 2005.
@@ -30,7 +30,9 @@ vec4 mean_color(ivec2 square, int layer, int color_layer)
       color += imageLoad(means_img, ivec3(from + texel, color_layer));
     }
     else if (texelFetch(depths_tx, ivec3(texel, layer), 0).x <= 1.0) {
-      color += texelFetch(colors_tx, ivec3(texel, color_layer), 0);
+      // Those of filtered pictures are premultiplied.
+      float share = (alpha_covers == 1) ? 1.0 : texelFetch(depths_tx, ivec3(texel, layer), 0).y;
+      color += share * texelFetch(colors_tx, ivec3(texel, color_layer), 0);
     }
   }
   return color / shares;
@@ -54,9 +56,10 @@ vec4 depth_range(ivec2 square, int layer)
       continue;
     }
     ivec3 place = ivec3(texel, layer);
-    float z = texelFetch(depths_tx, place, 0).x;
+    vec2 found = texelFetch(depths_tx, place, 0).xy;
+    float z = found.x;
     if (z <= 1.0) {
-      float share = (alpha_covers == 1) ? clamp(texelFetch(colors_tx, place, 0).a, 0.0, 1.0) : 1.0;
+      float share = (alpha_covers == 1) ? clamp(texelFetch(colors_tx, place, 0).a, 0.0, 1.0) : found.y;
       covered += share;
       depth += share * z;
       range = vec2(min(range.x, z), max(range.y, z));

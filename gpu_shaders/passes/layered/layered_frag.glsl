@@ -15,6 +15,7 @@
 // COUNTED: instead, how many layers there were to look into (x), how many were looked into (y), and
 // how often a depth was read on the way of a ray (z).
 // Source: methods 7 (LES09 sections 4 and 5).
+#include "lib/hash_lib.glsl"
 #include "lib/lens_sets_lib.glsl"
 #include "lib/pyramid_atlas_lib.glsl"
 #include "lib/bokeh/sweep_lib.glsl"
@@ -34,6 +35,7 @@
 #define FALSE_POSITIONS 3
 // How often the depths that a ray may meet are asked for again.
 #define APPROACHES 2
+#define GOLDEN 0.6180339887
 // A surface is met where its texels part by no more than this on the ray's way, in texels.
 #define SURFACE_STRETCH 1.0
 // Texels show one surface to a part of the lens if they move alike across it, in texels.
@@ -52,12 +54,18 @@ ivec2 texel_at(vec2 place)
   return clamp(ivec2(floor(place)), ivec2(0), size - 1);
 }
 
+// Which texels that a surface has a part of it fills, for this ray: those with at least that share. In
+// every second layer it is one less it, so that of a surface that one layer has a part of and the next the
+// rest no ray misses both.
+float least_share;
+
 float depth_at(vec2 place, int layer)
 {
   reads++;
   // What is empty lies far behind everything.
-  float depth = texelFetch(depths_tx, ivec3(texel_at(place), layer), 0).x;
-  return (depth > EMPTY) ? 4.0 : depth;
+  vec2 found = texelFetch(depths_tx, ivec3(texel_at(place), layer), 0).xy;
+  float least = ((layer & 1) == 1 && !unordered) ? 1.0 - least_share : least_share;
+  return (found.x > EMPTY || found.y < least) ? 4.0 : found.x;
 }
 
 // A texel of a level of a layer's pyramid; level 0 is the layer.
@@ -302,6 +310,8 @@ void main()
 #ifdef EYES
   seen_from = lens * layered_buf.eyes.xy;
 #endif
+  // Golden section steps from sample to sample, from another place in every pixel.
+  least_share = fract(hash_unit(hash_combine(uint(pixel.x), uint(pixel.y))) + GOLDEN * float(sample_index));
   Hit nearest;
   // The last level of a layer's pyramid is one square.
   ivec2 whole = level_origin(size, int(layered_buf.sampling.y));
