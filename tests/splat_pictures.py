@@ -33,9 +33,11 @@ def plan_of(
         lens_views=((0.0, 0.0),),
         colors=None,
         draft=False,
+        artist=None,
     )
     return SimpleNamespace(
         bokeh=bokeh,
+        chromatic=None,
         focus_distance=focus,
         coc_scale=radius * focal_px,
         orthographic=False,

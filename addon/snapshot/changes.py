@@ -118,12 +118,17 @@ def same_camera(old, new):
         and _same_array(old.projection, new.projection)
         and (old.lens, old.orthographic) == (new.lens, new.orthographic)
         and old.bokeh == new.bokeh
-        and old.real_lens == new.real_lens
-        and (old.artist, old.f_number) == (new.artist, new.f_number)
+        # What is sharp all over shows no lens.
+        and (new.lens is None or _glass(old) == _glass(new))
         and (old.chromatic, old.field_radius) == (new.chromatic, new.field_radius)
         and _same_pose(old.previous, new.previous)
         and _same_pose(old.next, new.next)
     )
+
+
+def _glass(camera):
+    """Return what bends a camera's rays beside a thin lens."""
+    return camera.real_lens, camera.artist, camera.artist and camera.f_number
 
 
 def _same_pose(old, new):

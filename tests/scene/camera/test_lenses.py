@@ -2,6 +2,7 @@
 
 import pytest
 
+from addon.lens_bokeh.tables.artist_lens import ArtistLens
 from addon.lens_io.lens_shelf import LensShelf
 from addon.scene.camera.camera import read_camera, sensor_diagonal
 from addon.scene.camera.lenses import read_real_lens, user_folder
@@ -69,13 +70,15 @@ def test_a_clamp_restarts_the_picture_and_a_lens_without_effect_does_not(camera,
         return SceneExtractor().extract(aplanat_bpy.context.evaluated_depsgraph_get())
 
     camera.aplanat.bokeh.use = False
-    camera.dof.aperture_fstop = 4.0
+    camera.dof.aperture_fstop, camera.dof.use_dof = 4.0, False
     thin = snapshot()
     camera.aplanat.lens = "tessar-50mm-f2.8"
     assert not compare(thin, snapshot()) & Change.CAMERA
+    camera.dof.use_dof = True
+    closed = snapshot()
     camera.dof.aperture_fstop = 1.4
     wide = snapshot()
-    assert compare(thin, wide) & Change.CAMERA
+    assert compare(closed, wide) & Change.CAMERA
     camera.aplanat.lens = "planar-50mm-f1.4"
     assert compare(wide, snapshot()) & Change.CAMERA
 
@@ -154,3 +157,20 @@ def test_the_diagonal_is_that_of_the_part_of_the_sensor_that_is_used(
     camera.sensor_width, camera.sensor_height, camera.sensor_fit = 36.0, 24.0, fit
     empty_scene.render.resolution_x, empty_scene.render.resolution_y = size
     assert sensor_diagonal(camera, empty_scene) == pytest.approx(diagonal, abs=0.01)
+
+
+def test_aberrations_restart_the_picture_and_belong_to_a_thin_lens(camera, aplanat_bpy):
+    def snapshot():
+        return SceneExtractor().extract(aplanat_bpy.context.evaluated_depsgraph_get())
+
+    camera.dof.use_dof = True
+    thin = snapshot()
+    assert thin.camera.artist is None
+    camera.aplanat.spherical = 2.0
+    soft = snapshot()
+    assert soft.camera.artist == ArtistLens(spherical=2.0)
+    assert compare(thin, soft) & Change.CAMERA
+    camera.aplanat.lens = "planar-50mm-f1.4"
+    assert snapshot().camera.artist is None
+    camera.aplanat.lens, camera.type = "", "ORTHO"
+    assert snapshot().camera.artist is None
