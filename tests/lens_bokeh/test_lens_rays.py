@@ -6,10 +6,11 @@ import pytest
 from addon.errors import FocusError, PrescriptionError
 from addon.lens_bokeh.samples.field_grid import field_grid
 from addon.lens_bokeh.samples.landing import spread_places
-from addon.lens_bokeh.samples.lens_rays import lens_rays, undistorted
+from addon.lens_bokeh.samples.lens_rays import lens_rays
 from addon.lens_bokeh.samples.sample_tables import sample_tables
 from addon.lens_bokeh.samples.stop_rays import StopAim
 from addon.lens_bokeh.samples.stop_shapes import paraxial_pupil, stop_shapes
+from addon.lens_bokeh.tables.undistorted import undistorted
 from addon.lens_io.lens_shelf import LensShelf
 from addon.optics.lens_facts import squeeze
 from addon.optics.rays.aiming import aim
@@ -161,6 +162,48 @@ def test_an_even_world_is_as_bright_as_traced_from_the_sensor(name, f_number):
     # The outermost rays of the Sonnar are about to be reflected totally, and land far away.
     near = 0.02 if "sonnar" in name else 0.006
     assert ours / ours[0] == pytest.approx(np.array(theirs) / theirs[0], abs=near)
+
+
+@pytest.mark.parametrize("name", ["petzval-51mm-f1.4", "petzval-100mm-f2.2"])
+def test_a_wall_in_focus_is_blurred_over_the_field_as_by_traced_rays(name):
+    f_number = _prescription(name).f_number
+    lens, rays, tables, half = _tables(name, f_number)
+    positions = spread_places(1000) * tables.aperture_radius
+    moves = tables.moves(positions)
+    light = tables.light(positions, np.sqrt(np.pi / 1000)).reshape(1000, -1)
+    axis = (np.arange(60) + 0.5) / 30.0 - 1.0
+    places = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2) * 1.3 * lens.pupil_radius
+    start = np.column_stack([places, np.full(len(places), lens.pupil)])
+    radii = []
+    for share in (0.0, 0.3, 0.6, 0.9):
+        eye = np.array([[*(share * half * FOCUS), -FOCUS]])
+        seen = np.array(
+            [
+                tables.displaced(eye, table, position)[0, :2] / FOCUS
+                for table, position in zip(moves, positions, strict=True)
+            ]
+        )
+        index, weights = tables.light_grid.taps(seen)
+        weight = (np.take_along_axis(light, index, axis=1) * weights).sum(axis=1)
+        towards = start - [*(eye[0, :2] * 1000.0), lens.pupil - FOCUS * 1000.0]
+        bundle = Rays(start, towards / np.linalg.norm(towards, axis=1)[:, None])
+        traced = trace(lens.configuration, bundle, LINE)
+        landing = traced.at_plane(lens.configuration.sensor)[traced.passed] / lens.scale
+        away = np.hypot(*landing.T)
+        landing *= (undistorted(rays.distorted, away) / np.maximum(away, 1e-12))[:, None]
+        flux = bundle.directions[traced.passed, 2] ** 3
+        radii.append([_spread(seen, weight), _spread(landing, flux)])
+    ours, theirs = np.array(radii).T * 480 / (2.0 * half[0])
+    assert np.all(np.abs(ours - theirs) < np.maximum(0.25, 0.05 * theirs)), (ours, theirs)
+    # There is a blur to be compared.
+    assert theirs.max() > 1.0
+
+
+def _spread(places, weights):
+    """Root mean square distance from the mean."""
+    weights = weights / weights.sum()
+    mean = weights @ places
+    return np.sqrt(weights @ np.sum((places - mean) ** 2, axis=1))
 
 
 def test_points_land_where_rays_traced_through_cylinders_do():

@@ -25,6 +25,7 @@ from ..tables.pupil_beam import (
 )
 from ..tables.ray_map import lagrange_weights
 from ..tables.spline import spline_matrix
+from ..tables.undistorted import undistorted
 from .opening import LEAST_BLUR, extent
 from .tile_drawing import RAYS, STOP_OFFSET, STOP_SCALE, HalfGrid, blur_matrix, draw_tile
 
@@ -39,6 +40,8 @@ AZIMUTHS = 48
 _STEP, _PLACES = 2, 128
 _VERGENCES = 7
 _LEAST_LIGHT = 1e-3
+# Terms that the scale of the picture changes by over the field; fields that tell distortion.
+_SCALE_TERMS, _LEAST_FIELDS = 3, 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +121,40 @@ class PupilBeams:
         self._image = np.array(self._image)
         self._rest = np.array(self._rest, np.float32)
 
-    def grids(self, field, vergences, shift):
+    def distorted(self, shift, vergence):
+        """Return where points in focus are drawn, to be taken away from the patterns.
+
+        Parameters
+        ----------
+        shift : float
+            As of `grids`.
+        vergence : float
+            Of the focus, 1/mm.
+
+        Returns
+        -------
+        scale : float
+            Of the picture near its axis, mm a tangent.
+        pairs : ndarray of shape (FIELDS, 2)
+            As `undistorted` has them; fewer where the lens turns the picture back.
+        """
+        (mix,), _ = self._mixed([vergence])
+        heights = []
+        for image, rest in zip(self._image, self._rest, strict=True):
+            column = image.shape[2] // 2
+            landing = image[..., column, 1] + image[..., column, 3] * shift
+            heights.append(_at_zero(mix @ rest[..., column, 1].astype(float), mix @ landing))
+        tangents, heights = self.tangents[1:], np.array(heights[1:])
+        scale = np.polyfit(tangents**2, heights / tangents, _SCALE_TERMS)[-1]
+        pairs = np.column_stack([self.tangents, np.append(0.0, heights / scale)])
+        falling = np.flatnonzero(np.diff(pairs[:, 1]) <= 0.0)
+        return float(scale), pairs[: falling[0] + 1] if len(falling) else pairs
+
+    def _mixed(self, vergences):
+        count = len(self._nodes)
+        return np.array([lagrange_weights(self._nodes, v, count)[0] for v in vergences]), count
+
+    def grids(self, field, vergences, shift, distorted=None):
         """Return the rays of a field's beams on a fine grid.
 
         Parameters
@@ -127,6 +163,8 @@ class PupilBeams:
         vergences : sequence of float
         shift : float
             Sensor's distance behind the sensor plane of the tables, mm.
+        distorted : tuple or None
+            Of `distorted`: the picture is straightened by it.
 
         Returns
         -------
@@ -136,10 +174,14 @@ class PupilBeams:
             Where the rays through the middle of the stop land: the points' pinhole pictures, mm
             from an origin that is the same for all.
         """
-        count = len(self._nodes)
-        mix = np.array([lagrange_weights(self._nodes, v, count)[0] for v in vergences])
+        mix, count = self._mixed(vergences)
         image = self._image[field]
         landing = image[..., :2] + image[..., 2:] * shift
+        if distorted is not None and len(distorted[1]) >= _LEAST_FIELDS:
+            scale, pairs = distorted
+            away = np.hypot(landing[..., 0], landing[..., 1]) / abs(scale)
+            straight = undistorted(pairs, away.ravel()).reshape(away.shape)
+            landing *= (straight / np.maximum(away, 1e-12))[..., None]
         side = landing.shape[1]
         # The meridional column of rays.
         heights = mix @ landing[:, :, side // 2, 1]
@@ -165,7 +207,8 @@ class PupilBeams:
         """Return the largest half width of a focused point's patterns over the fields, mm."""
         widths = []
         for field in range(FIELDS):
-            grids, _ = self.grids(field, np.array([vergence]), shift)
+            distorted = self.distorted(shift, vergence)
+            grids, _ = self.grids(field, np.array([vergence]), shift, distorted)
             _, (_, *halves) = draw_tile(grids[0], SHARP, reach(BLURS[0]))
             widths += halves
         return float(max(widths))
@@ -224,12 +267,13 @@ def pupil_tiles(beams, shift, blur, soft, w_range):
     vergences = np.maximum((signed - blur[0]) / blur[1], 0.0)
     sizes = np.abs(signed) + soft
     spans = [reach(width) for width in BLURS]
+    distorted = beams.distorted(shift, -blur[0] / blur[1])
     matrices = [
         blur_matrix(width, SHARP, spans[0], SOFT, span)
         for width, span in zip(BLURS[1:], spans[1:], strict=True)
     ]
     for i in range(FIELDS):
-        grids, centers = beams.grids(i, vergences, shift)
+        grids, centers = beams.grids(i, vergences, shift, distorted)
         for j, grid in enumerate(grids):
             tile, (middle, half_x, half_y) = draw_tile(grid, SHARP, spans[0])
             places[i, j, :3] = np.array([middle - centers[j], half_x, half_y]) / sizes[j]

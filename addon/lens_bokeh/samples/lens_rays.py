@@ -29,9 +29,10 @@ from ...optics.focus import focused
 from ...optics.glass import REFERENCE_WAVELENGTH_NM as _LINE
 from ...optics.paraxial import first_order
 from ..tables.spline import spline_matrix
+from ..tables.undistorted import undistorted
 from .cylinder_rays import cylinder_rays
 from .lens_colors import LensColors, trace_colors, traced_wavelengths
-from .ray_fan import RayFan, undistorted
+from .ray_fan import RayFan
 from .stop_rays import StopAim
 from .stop_shapes import paraxial_pupil, stop_shapes
 

@@ -4,7 +4,7 @@ from copy import copy
 
 import numpy as np
 
-from ..tables.spline import spline_matrix
+from ..tables.undistorted import undistorted
 from .disc_terms import disc_orders, radial_terms
 
 _MM = 1000.0
@@ -257,28 +257,6 @@ class RayFan:
         result[used] = np.linalg.solve(normal, matrix.T @ goal + size * before)
         last[key] = result
         return result
-
-
-def undistorted(distorted, places):
-    """Return the field of each distance from the axis on the sensor; odd, and linear far out.
-
-    Parameters
-    ----------
-    distorted : ndarray of shape (M, 2)
-        As of `LensRays`.
-    places : ndarray of shape (P,)
-
-    Returns
-    -------
-    ndarray of shape (P,)
-    """
-    fields, landing = distorted.T
-    nodes, values = (np.concatenate([-each[:0:-1], each]) for each in (landing, fields))
-    last = landing[-1]
-    inner = spline_matrix(nodes, np.minimum(places, last)) @ values
-    end = spline_matrix(nodes, np.array([last * (1.0 - 1e-4)])) @ values
-    slope = (fields[-1] - end[0]) / (1e-4 * last)
-    return inner + slope * np.maximum(places - last, 0.0)
 
 
 def _turned(places):

@@ -4,10 +4,18 @@ Five depths and three fields; the point's ray through the middle of the stop lan
 the picture, as a pinhole camera in the entrance pupil has it.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from addon.lens_bokeh.samples.field_grid import field_grid
+from addon.lens_bokeh.samples.landing import spread_places
+from addon.lens_bokeh.samples.lens_rays import lens_rays
+from addon.lens_bokeh.samples.sample_tables import sample_tables
+from addon.lens_bokeh.tables.undistorted import undistorted
 from addon.optics.focus import focused
+from benchmarks.referees.osl_lens import osl_lens
 from benchmarks.reference.traced_beam import counted_picture, traced_beam
 from benchmarks.reference.traced_bokeh import psnr
 from tests.splat_pictures import FOCUS, library_lens, plan_of, splatted
@@ -21,6 +29,8 @@ SIZE, FOCAL_PX = 160, 6000.0
 # The reference counts rays in this many texels along a pixel; odd.
 FINE = 5
 FILTER = 1.4
+# Side of a square lamp, in the reference's cells; an odd number of pixels.
+LAMP = 3 * FINE
 # Of a small pattern and of a large one, where fewer would leave more noise than there is error.
 RAYS, MANY_RAYS = 1 << 19, 1 << 21
 
@@ -47,12 +57,25 @@ def traced(plan, lens, depth, tangent):
     linear = reference[0] + (plane - state.ray_map.plane) * reference[1]
     k0 = abs(profile.stop_fraction(lens.f_number) * state.ray_map.pupil_radius * linear)[0]
     pixel = k0 / (plan.coc_scale / plan.focus_distance)
-    fine = counted_picture(beam, shift, SIZE * FINE, 0.5 * SIZE * pixel, centre)
+    # Straight lines in focus are straight in the picture.
+    straight = lens_rays(lens.prescription, None, FOCUS, lens.f_number, 0.5).distorted
+    scale = abs(osl_lens(lens.prescription, None, FOCUS, lens.f_number).scale)
+    landing, centre = (
+        _straightened(places, straight, scale)
+        for places in (beam.landing + beam.slopes * shift, centre[None])
+    )
+    beam = replace(beam, landing=landing)
+    fine = counted_picture(beam, 0.0, SIZE * FINE, 0.5 * SIZE * pixel, centre[0])
     width = round(FILTER * FINE)
     for axis in (0, 1):
         fine = np.apply_along_axis(np.convolve, axis, fine, np.ones(width) / width, "same")
     picture = fine[FINE // 2 :: FINE, FINE // 2 :: FINE] * FINE**2
     return picture / fine.sum()
+
+
+def _straightened(places, straight, scale):
+    away = np.hypot(*places.T) / scale
+    return places * (undistorted(straight, away) / np.maximum(away, 1e-12))[:, None]
 
 
 def compared(depth, tangent, vignetting):
@@ -73,3 +96,45 @@ def test_a_point_through_a_real_lens_is_drawn_as_its_rays_fall(depth, tangent):
     drawn, wanted = compared(depth, tangent, "LENS")
     peak = np.quantile(wanted[wanted > 0.02 * wanted.max()], 0.99)
     assert psnr(drawn / peak, wanted / peak) >= 30.0
+
+
+def sampled(plan, lens, depth, tangent, count=4096):
+    """Picture of a point by lens samples of a real lens, normalised, with the splats' filter."""
+    prescription = lens.prescription
+    rays = lens_rays(prescription, None, FOCUS, lens.f_number, 1.3 * np.sqrt(2.0) * tangent)
+    radius = plan.coc_scale / FOCAL_PX
+    # Where the disc lies, and the point.
+    middle, side = np.array([0.0, tangent]), 0.5 * SIZE / FOCAL_PX
+    around = field_grid(middle - side, middle + side)
+    tables = sample_tables(rays, around, field_grid(middle - side, middle + 0.01 * side), radius)
+    positions = np.append(spread_places(count) * radius, np.zeros((1, 2)), axis=0)
+    index, weights = tables.moves_grid.taps(middle[None])
+    moves = tables.moves(positions).reshape(len(positions), -1, 4, 2)[:, index[0]]
+    powers = np.minimum(1.0 / depth / tables.largest_vergence, 1.0) ** np.arange(4)
+    moves = np.einsum("t,k,ntkc->nc", weights[0], powers, moves)
+    seen = middle + positions * (1.0 / FOCUS - 1.0 / depth) + moves
+    chief, seen = seen[-1], seen[:-1]
+    light = tables.light(positions[:-1], np.sqrt(np.pi / count)).reshape(count, -1)
+    index, weights = tables.light_grid.taps(seen)
+    light = (np.take_along_axis(light, index, axis=1) * weights).sum(axis=1)
+    x, y = ((seen - chief) * (FOCAL_PX * FINE)).T + 0.5 * SIZE * FINE
+    edges = np.arange(SIZE * FINE + 1)
+    fine = np.histogram2d(y, x, bins=(edges, edges), weights=light)[0]
+    # As wide as the filter and a lamp: samples are few beside the cells.
+    for width in (round(FILTER * FINE), LAMP):
+        for axis in (0, 1):
+            fine = np.apply_along_axis(np.convolve, axis, fine, np.ones(width) / width, "same")
+    return fine[FINE // 2 :: FINE, FINE // 2 :: FINE] * FINE**2 / fine.sum()
+
+
+def test_a_disc_behind_the_focus_is_what_lens_samples_draw():
+    lens, depth, tangent = library_lens(LENS), 40.0, 0.18
+    plan = plan_of(size=SIZE, focal_px=FOCAL_PX, lens=lens, vignetting="LENS", filter_width=FILTER)
+    plan.bokeh.projection[[0, 1], [0, 1]] = np.sqrt(2.0) / TANGENTS[-1]
+    drawn = splatted(plan, depth, chief=(0.0, tangent))[..., 1].astype(float)
+    wide = np.ones(LAMP // FINE) / (LAMP // FINE)
+    for axis in (0, 1):
+        drawn = np.apply_along_axis(np.convolve, axis, drawn, wide, "same")
+    wanted = sampled(plan, lens, depth, tangent)
+    peak = wanted.max()
+    assert psnr(drawn / peak, wanted / peak) >= 35.0

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from addon.lens_bokeh.samples.field_grid import field_grid
-from addon.lens_bokeh.samples.lens_rays import lens_rays, undistorted
+from addon.lens_bokeh.samples.lens_rays import lens_rays
 from addon.lens_bokeh.samples.sample_tables import sample_tables
+from addon.lens_bokeh.tables.undistorted import undistorted
 from addon.lens_io.lens_shelf import LensShelf
 from addon.optics.focal_shift import equivalent_focal_lengths
 from addon.optics.rays.aiming import aim
