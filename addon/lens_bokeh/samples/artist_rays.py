@@ -10,6 +10,8 @@ from .landing import spread_places
 
 # The nearest point is so many times as near as the focus; nearer ones go on as they went.
 _NEAREST = 4.0
+# Fields so many times as far out as the picture's corner move as those there.
+_FARTHEST = 4.0
 _DEGREE = 3
 _PLACES = 32
 _ORDERS = disc_orders(_DEGREE)
@@ -52,6 +54,15 @@ class ArtistRays:
     def largest_vergence(self):
         """1/m."""
         return _NEAREST * self.focus_vergence
+
+    @property
+    def farthest(self):
+        """The farthest field that is looked at, as a tangent."""
+        return _FARTHEST * self.corner
+
+    def places_shown(self, fields):
+        """Return where fields are shown in focus; as of `LensRays`."""
+        return fields
 
     def moves(self, nodes):
         """Lay out the aberrations over places of the field; as of `LensRays`."""
