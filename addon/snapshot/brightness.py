@@ -13,6 +13,10 @@ _REFLECTANCE = 1.1
 # Blend modes whose result is never above both colours and their product.
 _BOUNDED_BLENDS = frozenset({"MIX", "DARKEN", "LIGHTEN", "MULTIPLY", "HUE", "COLOR", "VALUE"})
 _SORTING_KINDS = frozenset({"luminance", "separate", "combine"})
+# Closures that mirror.
+_MIRRORS = frozenset({"glossy", "metallic", "glass"})
+# Roughness that stands for what a texture gives.
+_TYPICAL_ROUGHNESS = 0.5
 # Largest gain of a glossy surface with a colour above 1 by multiple scattering.
 _REPEATED = 2.0
 
@@ -54,11 +58,30 @@ def mirrors(graph):
     bool
         False for surfaces that also emit: their emission outshines their reflections.
     """
-    return not emits(graph) and any(
-        node.kind in {"glossy", "metallic", "glass"}
-        or (node.kind == "principled" and not _is_matt(node))
-        for node in graph.nodes
+    return not emits(graph) and any(_mirrors(node) for node in graph.nodes)
+
+
+def sharpest_gloss(graph):
+    """Return the least roughness of the reflections of a surface that mirrors.
+
+    Parameters
+    ----------
+    graph : SurfaceGraph
+
+    Returns
+    -------
+    float
+        0 to 1; 0.5 where a texture gives it.
+    """
+    sources = [dict(node.inputs).get("Roughness") for node in graph.nodes if _mirrors(node)]
+    return min(
+        (s.value[0] if isinstance(s, Constant) else _TYPICAL_ROUGHNESS for s in sources),
+        default=1.0,
     )
+
+
+def _mirrors(node):
+    return node.kind in _MIRRORS or (node.kind == "principled" and not _is_matt(node))
 
 
 def emits(graph):

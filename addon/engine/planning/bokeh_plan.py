@@ -14,7 +14,7 @@ from ...levels.choosing import coc_radius, extents
 from ...sampling.highlights import highlight_share, least_coc
 from ...sampling.iris import Iris
 from ...sampling.pixel_filter import filter_density
-from ...snapshot.brightness import brightest, mirrors
+from ...snapshot.brightness import brightest, mirrors, sharpest_gloss
 from ...snapshot.camera import BokehSettings, LensSettings
 from ...snapshot.surface_graph import Constant
 from .bokeh_colors import BokehColors, colors_of_frame
@@ -27,6 +27,7 @@ from .bokeh_search import (
     part_of,
     rectangles_of,
     rows_of,
+    subpixels_of_glints,
     subpixels_of_lamps,
     subpixels_of_triangles,
 )
@@ -69,7 +70,7 @@ class BokehPlan:
     subpixels : int
         Along each side of a pixel of the peeled raster.
     small_mirrors : int
-        As `subpixels`, for the sake of small mirroring objects.
+        As `subpixels`, for the sake of small mirroring objects and small glints.
     part : tuple of 4 int
         x, y, width and height of the part of the raster that holds all shining surfaces that do
         not mirror, px.
@@ -260,8 +261,12 @@ def plan_bokeh(snapshot, plan):
             subpixels_of_triangles(snapshot.content, plan, rows, of_group, size),
             subpixels_of_lamps(steady, part),
         ),
-        small_mirrors=subpixels_of_lamps(
-            seen_in_raster(mirroring), (0, 0, *size), _views_across(settings) ** 2
+        small_mirrors=_subpixels_of_mirrors(
+            snapshot.content,
+            mirroring,
+            seen_in_raster(mirroring),
+            size,
+            _views_across(settings) ** 2,
         ),
         part=part,
         world=world,
@@ -314,6 +319,16 @@ def _shining(content, threshold):
 def _mirroring(content, shining):
     """Return the surfaces whose reflections depend on the place on the lens."""
     return frozenset(key for key in shining if mirrors(graph_of(content, key)))
+
+
+def _subpixels_of_mirrors(content, mirroring, rectangles, size, views):
+    """Return the sub-pixels that small mirroring objects and small glints need."""
+    part = (0, 0, *size)
+    found = subpixels_of_lamps(rectangles, part, views)
+    if any(light.highlights for light in content.lights):
+        gloss = min((sharpest_gloss(graph_of(content, key)) for key in mirroring), default=1.0)
+        found = max(found, subpixels_of_glints(rectangles, gloss, part, views))
+    return found
 
 
 def _uneven(content, shining):

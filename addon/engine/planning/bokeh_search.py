@@ -18,6 +18,12 @@ _HITS_A_SIDE = 6.0
 # Sub-pixels across a single lamp: its light is found to one per cent. The error with m sub-pixels
 # on a lamp falls with m^(3/4); that of the sum of k lamps as if each had k^(2/3) times as many.
 _HITS_A_LAMP = 45.0
+# Sub-pixels across a glint, the image of a lamp in a glossy surface, of all views together: its
+# light is found to some per mille. With fewer than one it is found or missed by chance.
+_HITS_A_GLINT = 5.0
+# Width of the lobe of GGX at half of its height, as angle of the normal over the squared roughness:
+# on a ball, glints are half as wide as that angle times the ball.
+_LOBE = 2.0 * np.sqrt(np.sqrt(2.0) - 1.0)
 # Parallax over the lens beyond which a surface hides no highlight from all of it, px: more than
 # hiding_lib.glsl and visibility_lib.glsl ask for.
 _HIDING_PARALLAX = 2.0
@@ -193,3 +199,27 @@ def subpixels_of_lamps(rectangles, part, views=1):
     wanted = np.ceil(_HITS_A_LAMP / (width * np.cbrt(len(lower)) * np.sqrt(views)))
     affordable = int(np.sqrt(_FINE_RASTER / (max(part[2] * part[3], 1) * views)))
     return int(min(wanted, affordable, _FINEST))
+
+
+def subpixels_of_glints(rectangles, roughness, part, views=1):
+    """Return the sub-pixels of the search, so that glints on round surfaces keep their light.
+
+    Parameters
+    ----------
+    rectangles, part, views
+        As of `subpixels_of_lamps`, of mirroring instances.
+    roughness : float
+        The least of them.
+
+    Returns
+    -------
+    int
+    """
+    lower, upper, _ = rectangles
+    if len(lower) == 0:
+        return 1
+    width = max(float((upper - lower).max(axis=1).min()), 1e-3)
+    glint = max(0.5 * _LOBE * roughness**2 * width, 1e-6)
+    wanted = np.ceil(_HITS_A_GLINT / (glint * np.cbrt(len(lower)) * np.sqrt(views)))
+    affordable = int(np.sqrt(_FINE_RASTER / (max(part[2] * part[3], 1) * views)))
+    return max(1, int(min(wanted, affordable, _FINEST)))
