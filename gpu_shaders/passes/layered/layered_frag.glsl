@@ -234,14 +234,14 @@ vec4 color_at(vec2 place, int layer, out float covered)
 }
 
 // The colour of a surface over the part of it that a ray's part of the lens brings to the pixel, and
-// how much of a texel it covers. A ray is as thick as half the way to its neighbours; the mean is that
-// of what is covered, over squares of texels whose surface moves alike across the ray's part.
-// What is covered is decided by the thin ray: the front and the back of a body lie in several layers
+// how much of a texel it covers. A ray is as thick as the way to its neighbours, half of it on each side;
+// the mean is that of what is covered, over squares of texels whose surface moves alike across the ray's
+// part. What is covered is decided by the thin ray: the front and the back of a body lie in several layers
 // with one outline, whose blurred coverages would add up to a wider body.
 vec4 cone_color(Hit hit, int layer, vec2 wide, out float covered)
 {
   vec4 light = color_at(hit.place, layer, covered);
-  float diameter = 0.5 * abs(wide.x + wide.y * hit.depth);
+  float diameter = abs(wide.x + wide.y * hit.depth);
   int level = min(int(floor(log2(max(diameter, 1.0)) + 0.5)), int(layered_buf.sampling.y));
   for (; level > 0; level--) {
     vec4 range = range_of(texel_at(hit.place) >> level, level, layer);
