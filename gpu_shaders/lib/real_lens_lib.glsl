@@ -26,6 +26,23 @@ vec2 real_lens_move(sampler2D moves_tx, vec2 place, float vergence, int slot, Re
   return move * max((vergence - params.vergence.y) * params.vergence.z, 1.0);
 }
 
+// Place of a field in a table of its own at the same nodes, 0 to 1.
+vec2 real_lens_place(vec2 place, RealLensParams params)
+{
+  vec2 size = params.table.xy;
+  return (clamp((place - params.grid.xy) * params.grid.zw, 0.0, 1.0) * (size - 1.0) + 0.5) / size;
+}
+
+// What the lens adds to the signed radius of a point's circle of confusion, px.
+float real_lens_blur(sampler2D blur_tx, vec3 eye, RealLensParams params)
+{
+  float depth = max(-eye.z, 1e-6);
+  vec4 blur = textureLod(blur_tx, real_lens_place(eye.xy / depth, params), 0.0);
+  float v = min(params.vergence.x / depth, 1.0);
+  float added = blur.x + v * (blur.y + v * (blur.z + v * blur.w));
+  return added * max((1.0 / depth - params.vergence.y) * params.vergence.z, 1.0);
+}
+
 // What a point of camera space is moved by, m. At the camera's plane and behind it: as just before it.
 vec2 real_lens_shift(sampler2D moves_tx, vec3 eye, int slot, RealLensParams params)
 {

@@ -197,6 +197,8 @@ class FramePictures:
         if not names:
             return {}
         plan = self._plan
+        # What is infinitely far has a circle of confusion of its own in each place of a real lens.
+        beside = ("Depth",) if self._lens is not None and "CoC" in names else ()
         slots = data.targets(names)
         draws = self._drawing.full_detail_draws(data.target(names, self._lens is not None))
         bindings = [("data_buf", data.data_params(
@@ -223,8 +225,13 @@ class FramePictures:
             self._drawing.counts.draw_calls += len(draws)
             pictures = {
                 name: readback.read_color(targets.framebuffer(name), plan.width, plan.height)
-                for name in {data.PLACES[name][0] for name in names}
+                for name in {data.PLACES[name][0] for name in {*names, *beside}}
             }
+        if beside:
+            depth = _channels(pictures, *data.PLACES["Depth"])
+            added = np.where(depth == data.EMPTY_DEPTH, self._lens.blur_at_infinity(), 0.0)
+            target, channel, _ = data.PLACES["CoC"]
+            pictures[target][..., channel:] += added
         if plan.distortion:
             pictures = {name: self._picked(pixels) for name, pixels in pictures.items()}
         found = {name: _channels(pictures, *data.PLACES[name]) for name in names}

@@ -37,7 +37,9 @@ class LensTables:
         self.follow(plan)
         falloff = real_lens.light_texture(self._lens.falloff[None])
         light = real_lens.SampleLight(falloff, self._table(1))
-        self._middle = real_lens.LensSample(0, self._upload(np.zeros((1, 2))), light)
+        self._blur = None
+        middle = self._upload(np.zeros((1, 2)))
+        self._middle = real_lens.LensSample(0, middle, light, blur=self._blurred)
 
     def follow(self, plan):
         """Go on with a plan that has more samples."""
@@ -54,7 +56,7 @@ class LensTables:
         moves, light, tables, turns = self._part(index // self._together)
         slot = index % self._together * self._sets
         light = real_lens.SampleLight(light, self._table(len(tables), slot), self._sets)
-        return real_lens.LensSample(slot, moves, light, turns, self._sets)
+        return real_lens.LensSample(slot, moves, light, turns, self._sets, blur=self._blurred)
 
     def discs(self, bokeh):
         """Return the `LensSample` of a `BokehPlan`'s discs: the middle, for each band."""
@@ -123,6 +125,32 @@ class LensTables:
         sums = self._sums.copy()
         sums[..., :3] /= np.maximum(self._lens.falloff, _LEAST)[..., None]
         return np.maximum(sums, _LEAST * max(float(self._sums.max()), 1e-30))
+
+    def blur_at_infinity(self):
+        """Return what the lens adds to the circle of confusion of what is infinitely far.
+
+        Returns
+        -------
+        ndarray of shape (height, width, 1)
+            In the middle of the raster's pixels, px.
+        """
+        size = np.array([self._plan.width, self._plan.height])
+        x, y = (np.arange(count) + 0.5 for count in size)
+        shares = np.stack(np.meshgrid(x, y), axis=-1) / size
+        shown, tables = self._lens.grid, self._lens.tables
+        index, weights = tables.moves_grid.taps(shown.low + shares * (shown.high - shown.low))
+        found = (tables.blur[..., 0].ravel()[index] * weights).sum(axis=-1, keepdims=True)
+        return found * self._focal_px
+
+    @property
+    def _focal_px(self):
+        return self._plan.coc_scale / self._lens.tables.aperture_radius
+
+    def _blurred(self):
+        if self._blur is None:
+            blur = self._lens.tables.blur * np.float32(self._focal_px)
+            self._blur = real_lens.blur_texture(blur)
+        return self._blur
 
     def _table(self, count, first=0):
         grid = self._lens.grid

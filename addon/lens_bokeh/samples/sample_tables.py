@@ -29,6 +29,8 @@ _GRADIENT_PLACES, _NUDGE = 96, 1e-3
 _PADDING = 4
 # Width of a rim's edge over the distance of samples: it takes noise away, but more would darken.
 _SOFT = 0.5
+# Places of the iris that a blur is fitted to.
+_BLUR_PLACES = 64
 # Clearance of rims that never cut, at the places that the slope is found for.
 _CLEAR = 0.1
 
@@ -105,6 +107,24 @@ class SampleTables:
                 found += share[:, None, None, None] * chief
         terms = terms[:-1].reshape(len(lens_positions), -1)
         return found, self._seen.reach(terms, found[:, -self._seen.count :])
+
+    @cached_property
+    def blur(self):
+        """What the lens adds to the thin lens' signed radius of the circle of confusion.
+
+        The radius is that of the disc that displacements over the whole iris are nearest to, in
+        least squares: aberrations that make no disc larger or smaller do not count.
+
+        Returns
+        -------
+        ndarray of float32, shape (rows, columns, 4)
+            As a tangent: coefficients of the powers of V over the largest vergence.
+        """
+        places = spread_places(_BLUR_PLACES) / (self.ratio, 1.0)
+        moves = self.moves(places * self.aperture_radius)
+        # The thin lens' own are -places times the radius.
+        found = -np.einsum("nyxkc,nc->yxk", moves, places) / np.square(places).sum()
+        return found.astype(np.float32)
 
     def turns(self, lens_positions, colors=None):
         """Tables of how displacements change with the place on the lens.

@@ -37,6 +37,7 @@ _STILL = surface_target.SurfaceTarget(
     structs=DATA_PARAMS.source,
     uniforms=(("DataParams", "data_buf"),),
     shades=False,
+    blurs=True,
 )
 
 

@@ -16,6 +16,8 @@ UNIFORMS = (("RealLensParams", "real_lens_buf"),)
 SAMPLERS = (("FLOAT_2D", "moves_tx"),)
 PUSH_CONSTANTS = (("INT", "lens_slot"),)
 DEFINES = (("REAL_LENS", "1"),)
+# Of passes that tell or weigh the circle of confusion.
+BLUR_SAMPLERS = (("FLOAT_2D", "blur_tx"),)
 # Of passes that weigh samples, or divide by their weights, over the picture.
 LIGHT_SAMPLERS = (("FLOAT_2D", "light_tx"),)
 LIGHT_CONSTANTS = (("VEC4", "light_table"), ("INT", "light_sets"))
@@ -41,6 +43,8 @@ class LensSample:
     tables : int
         Number of the tables that are drawn one after the other, from its own on: of the middle of
         the lens one for each band of wavelengths.
+    blur : callable or None
+        Returns the `blur_texture`, for passes that have one.
     """
 
     slot: int
@@ -49,11 +53,14 @@ class LensSample:
     turns: object = None
     sets: int = 1
     tables: int = 1
+    blur: object = None
 
     def bind(self, shader):
         """Set what `declared` has declared in a bound shader."""
         for name, resource in self.resources:
             bind_resource(shader, name, resource)
+        if shader.declares("blur_tx"):
+            shader.uniform_sampler("blur_tx", self.blur())
         shader.uniform_int("lens_slot", self.slot)
 
 
@@ -154,6 +161,25 @@ def resources(moves, tables, size):
     )
     texture = _in_halves(moves.reshape(*moves.shape[:3], 2, 4))
     return (("real_lens_buf", uniform_buffer(block)), ("moves_tx", texture))
+
+
+def blur_texture(blur):
+    """Upload what a lens adds to the signed radius of the circle of confusion.
+
+    Parameters
+    ----------
+    blur : ndarray of float32, shape (rows, columns, 4)
+        At the nodes of the displacements, px: coefficients of the powers of the vergence over the
+        largest.
+
+    Returns
+    -------
+    GPUTexture
+    """
+    texture = texture_2d(blur)
+    texture.filter_mode(True)
+    texture.extend_mode("EXTEND")
+    return texture
 
 
 def turns_texture(turns):

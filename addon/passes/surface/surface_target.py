@@ -40,6 +40,8 @@ class SurfaceTarget:
         Group and slot of surfaces whose light it does not split.
     seen : bool
         It is drawn through the lens: reads ``view_buf``, `lens_sample` and `sample_index`.
+    blurs : bool
+        It tells the circle of confusion.
     vertex : str
         Its vertex shader below ``gpu_shaders/``; it must call ``forward_attributes()``.
     """
@@ -60,6 +62,7 @@ class SurfaceTarget:
     splits: bool = False
     unsplit: frozenset[tuple[int, int]] = frozenset()
     seen: bool = True
+    blurs: bool = False
     vertex: str = "passes/surface/surface_vert.glsl"
 
 
@@ -127,11 +130,12 @@ def in_wavelengths(target):
 
 def through_lens(target):
     """Return a target whose surfaces are drawn through a real lens."""
+    blurs = target.blurs or "MATTES" in target.defines
     return replace(
         target,
         defines=(*target.defines, *(name for name, _ in real_lens.DEFINES)),
         structs=target.structs + real_lens.REAL_LENS_PARAMS.source,
         uniforms=(*target.uniforms, *real_lens.UNIFORMS),
-        samplers=(*target.samplers, *real_lens.SAMPLERS),
+        samplers=(*target.samplers, *real_lens.SAMPLERS, *real_lens.BLUR_SAMPLERS * blurs),
         push_constants=(*target.push_constants, *real_lens.PUSH_CONSTANTS),
     )

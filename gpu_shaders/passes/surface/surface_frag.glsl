@@ -4,7 +4,8 @@
 // Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads. HIGHLIGHTS:
 // highlight_buf; the light that is splatted as bokeh is left out; with CHROMATIC also chromatic_buf and
 // field_tx, so that the splatted share is the same at all wavelengths. OF_LAYER: front_tx (depths that
-// it must lie behind) and eye (place on the lens that it is shaded for, m).
+// it must lie behind) and eye (place on the lens that it is shaded for, m). MATTES with REAL_LENS:
+// real_lens_buf, blur_tx (what the lens adds to the circle of confusion).
 // Outputs: premultiplied scene-linear colour; with MATTES also Cryptomatte ids of object (x) and
 // material (y), and the focus matte (w).
 // Source: methods 1; stochastic transparency after Enderton et al., I3D 2010.
@@ -14,6 +15,9 @@
 #endif
 #if defined(MATTES) || defined(HIGHLIGHTS)
 #include "lib/lens_lib.glsl"
+#endif
+#if defined(MATTES) && defined(REAL_LENS)
+#include "lib/real_lens_lib.glsl"
 #endif
 #ifdef HIGHLIGHTS
 #include "lib/bokeh/highlight_lib.glsl"
@@ -92,9 +96,13 @@ void main()
 #endif
   out_color = vec4(closure.radiance, 1.0 - hole);
 #ifdef MATTES
-  float depth = -(view_buf.view * vec4(world_position, 1.0)).z;
+  vec3 point = (view_buf.view * vec4(world_position, 1.0)).xyz;
+  float coc = coc_radius_px(-point.z, view_buf.lens);
+#ifdef REAL_LENS
+  coc += real_lens_blur(blur_tx, point, real_lens_buf);
+#endif
   float object_id = texelFetch(instances_tx, instance_texel(instance_row, 3), 0).x;
-  float sharp = focus_share(coc_radius_px(depth, view_buf.lens), view_buf.lens.w);
+  float sharp = focus_share(coc, view_buf.lens.w);
   out_mattes = vec4(object_id, material_id, 0.0, sharp);
 #endif
 #endif
