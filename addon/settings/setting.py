@@ -2,8 +2,8 @@
 
 From the sections of this room follow Blender's properties and what is stored in a file
 (`ui.properties`), fields of the snapshot that take a setting as it is (`scene`), bounds of the
-command line, what statistics tell, what presets keep, and the page docs/settings.md. Where a
-setting is drawn is decided by the panels; a test holds them to draw every one.
+command line, what statistics tell, what presets keep, and the page docs/reference/settings.md.
+Where a setting is drawn is decided by the panels; a test holds them to draw every one.
 """
 
 from collections.abc import Mapping

@@ -19,7 +19,7 @@ def test_links_of_the_pages_in_the_zip_lead_somewhere(extension_zip):
     with zipfile.ZipFile(extension_zip) as file:
         names = set(file.namelist())
         pages = {name: file.read(name).decode() for name in names if name.endswith(".md")}
-    assert "docs/settings.md" in pages
+    assert "docs/reference/settings.md" in pages
     # README says of these that only a checkout has them.
     text, _, sources = pages["README.md"].partition("In a checkout of the sources")
     assert links("README.md", sources) >= {"docs/architecture.md", "docs/design-notes.md"}

@@ -1,10 +1,17 @@
 """Panels and properties: what is shown for the engine, and that it goes when Aplanat goes."""
 
+import importlib.util
+from pathlib import Path
+from types import SimpleNamespace
+
 import pytest
 
 from addon.capture.settings import ENGINES
 from addon.registration import _MODULES
+from addon.ui.panels import render_panels
 from addon.ui.panels.capture_panel import APLANAT_RENDER_PT_layers
+
+from .panel_drawing import draw
 
 
 @pytest.fixture
@@ -103,3 +110,43 @@ def test_switching_a_pass_on_changes_the_compositors_sockets(scene, aplanat_bpy)
     layer.aplanat.use_pass_coc = False
     enabled = {socket.name for socket in node.outputs if socket.enabled}
     assert "CoC" not in enabled
+
+
+def test_every_panel_of_blender_that_is_not_shown_has_a_reason_in_the_docs(aplanat_bpy):
+    page = _script("panels_page")
+    unexplained = [
+        panel.__name__
+        for listed in page.panels().values()
+        for panel, shown in listed
+        if not shown and page.reason(panel.__name__) is None
+    ]
+    assert unexplained == []
+    assert page.PAGE.read_text() == page.write(), "run scripts/pages/panels_page.py"
+
+
+def _script(name):
+    path = Path(__file__).resolve().parents[2] / "scripts" / "pages" / f"{name}.py"
+    spec = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_panels_of_ours_draw_what_is_followed(scene, aplanat_bpy):
+    bpy = aplanat_bpy
+    light = bpy.data.lights.new("lamp", "POINT")
+    context = SimpleNamespace(
+        engine="APLANAT", scene=scene, view_layer=scene.view_layers[0], light=light
+    )
+    drawn = {
+        name
+        for panel in (
+            render_panels.APLANAT_VIEWLAYER_PT_filter,
+            render_panels.APLANAT_VIEWLAYER_PT_override,
+            render_panels.APLANAT_LIGHT_PT_influence,
+            render_panels.APLANAT_RENDER_PT_performance,
+        )
+        for _, name in draw(panel, context).drawn
+    }
+    assert {"use_sky", "use_solid", "material_override", "world_override"} <= drawn
+    assert {"diffuse_factor", "specular_factor", "preview_pixel_size"} <= drawn

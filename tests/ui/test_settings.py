@@ -291,11 +291,11 @@ def test_statistics_tell_what_was_set(context):
 
 
 def test_the_page_names_every_setting():
-    path = REPOSITORY / "scripts" / "settings_page.py"
+    path = REPOSITORY / "scripts" / "pages" / "settings_page.py"
     spec = importlib.util.spec_from_file_location(path.stem, path)
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
     page = script.PAGE.read_text(encoding="utf-8")
-    assert page == script.write(), "run scripts/settings_page.py"
+    assert page == script.write(), "run scripts/pages/settings_page.py"
     for _, setting in ALL:
         assert f"| `{setting.name}` |" in page

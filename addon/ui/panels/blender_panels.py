@@ -40,13 +40,14 @@ _LEFT_OUT_WORDS = ("lightprobe", "RENDER_PT_simplify")
 
 def fitting_panels():
     """Return the classes of Blender's panels that fit, as they are registered now."""
-    return [panel for panel in _subclasses(bpy.types.Panel) if _fits(panel)]
+    return [panel for panel in subclasses(bpy.types.Panel) if _fits(panel)]
 
 
-def _subclasses(base):
+def subclasses(base):
+    """Yield the subclasses of a class, and theirs."""
     for cls in base.__subclasses__():
         yield cls
-        yield from _subclasses(cls)
+        yield from subclasses(cls)
 
 
 def _fits(panel):

@@ -62,6 +62,7 @@ class APLANAT_RENDER_PT_performance(EnginePanel, bpy.types.Panel):
         column = self.column()
         column.prop(context.scene.aplanat, "chunk_milliseconds")
         render = context.scene.render
+        column.prop(render, "preview_pixel_size", text="Viewport Pixel Size")
         compositor = column.column()
         compositor.prop(render, "compositor_device", text="Compositor")
         compositor.prop(render, "compositor_precision", text="Precision")
@@ -140,6 +141,51 @@ class APLANAT_VIEWLAYER_PT_cryptomatte(EnginePanel, bpy.types.Panel):
         levels.prop(layer, "pass_cryptomatte_depth", text="Levels")
 
 
+class APLANAT_VIEWLAYER_PT_filter(EnginePanel, bpy.types.Panel):
+    """What a view layer is made of."""
+
+    bl_label = "Filter"
+    bl_context = "view_layer"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw those of Blender's switches that are followed."""
+        column = self.column()
+        include = column.column(heading="Include")
+        include.prop(context.view_layer, "use_sky", text="Environment")
+        include.prop(context.view_layer, "use_solid", text="Surfaces")
+
+
+class APLANAT_VIEWLAYER_PT_override(EnginePanel, bpy.types.Panel):
+    """What a view layer shows in the place of materials and of the world."""
+
+    bl_label = "Override"
+    bl_context = "view_layer"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw those of Blender's settings that are followed."""
+        column = self.column()
+        column.prop(context.view_layer, "material_override")
+        column.prop(context.view_layer, "world_override")
+
+
+class APLANAT_LIGHT_PT_influence(EnginePanel, bpy.types.Panel):
+    """How strongly a light is seen in reflections of each kind."""
+
+    bl_label = "Influence"
+    bl_context = "data"
+    bl_parent_id = "DATA_PT_EEVEE_light"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw those of Blender's settings that are followed."""
+        column = self.column()
+        column.use_property_decorate = True
+        column.prop(context.light, "diffuse_factor", text="Diffuse")
+        column.prop(context.light, "specular_factor", text="Glossy")
+
+
 class APLANAT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
     """Whether the camera sees an object."""
 
@@ -215,8 +261,11 @@ CLASSES = (
     APLANAT_RENDER_PT_simplify,
     APLANAT_VIEWLAYER_PT_data,
     APLANAT_VIEWLAYER_PT_cryptomatte,
+    APLANAT_VIEWLAYER_PT_filter,
+    APLANAT_VIEWLAYER_PT_override,
     APLANAT_OBJECT_PT_ray_visibility,
     APLANAT_MATERIAL_PT_settings,
+    APLANAT_LIGHT_PT_influence,
     APLANAT_LIGHT_PT_bokeh,
     APLANAT_WORLD_PT_whites,
 )

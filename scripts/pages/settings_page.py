@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes docs/settings.md from the declarations in addon/settings.
+"""Writes docs/reference/settings.md from the declarations in addon/settings.
 
-Usage: scripts/settings_page.py
+Usage: scripts/pages/settings_page.py
 
 Run it again when a setting changes: a test compares the page with what this script writes.
 """
@@ -9,7 +9,7 @@ Run it again when a setting changes: a test compares the page with what this scr
 import sys
 from pathlib import Path
 
-REPO = Path(__file__).resolve().parents[1]
+REPO = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPO))
 
 from addon.settings.bokeh_settings import BOKEH  # noqa: E402  (after the path is set)
@@ -25,7 +25,7 @@ from addon.settings.scene_part_settings import (  # noqa: E402
 )
 from addon.settings.scene_settings import CAPTURE, SCENE, VIEW_LAYER  # noqa: E402
 
-PAGE = REPO / "docs" / "settings.md"
+PAGE = REPO / "docs" / "reference" / "settings.md"
 # By what it starts with in Python.
 PARTS = {
     "scene.aplanat": ("Scene", SCENE),
@@ -41,10 +41,11 @@ PARTS = {
 }
 HEAD = """# All settings
 
-Written by `scripts/settings_page.py` from the declarations that Blender's properties, the readers,
-the command line and the statistics follow, too. *Kept* settings are those that presets set; of a
-camera also those that it remembers for each real lens. The last column is the key in `settings` of
-`--stats` that tells the setting, or what came of it; see [command-line.md](command-line.md).
+Written by `scripts/pages/settings_page.py` from the declarations that Blender's properties, the
+readers, the command line and the statistics follow, too. *Kept* settings are those that presets
+set; of a camera also those that it remembers for each real lens. The last column is the key in
+`settings` of `--stats` that tells the setting, or what came of it; see
+[command-line.md](../command-line.md).
 """
 
 
