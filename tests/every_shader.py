@@ -116,6 +116,16 @@ GRAPHS = {
     "rarer closures": _rarer(),
     "attribute": _LIT_BY_ATTRIBUTE,
 }
+# Graphs on meshes that between them read all that shaders can read: what a target changes in one of
+# the others it changes in these. The others are tried with the plain targets.
+_TELLING = {
+    ("nothing", "bare"),
+    ("emission", "whole"),
+    ("mixed", "bare"),
+    ("rarer closures", "whole"),
+    ("attribute", "bare"),
+}
+_PLAIN = (surface_target.COLOR, surface_target.COLOR_AND_MATTES)
 # With and without what a mesh may lack.
 MESHES = {
     "bare": {},
@@ -128,6 +138,8 @@ def surface_infos():
     for (target_name, target), (graph_name, graph), (mesh_name, mesh) in product(
         surface_targets(), GRAPHS.items(), MESHES.items()
     ):
+        if (graph_name, mesh_name) not in _TELLING and target not in _PLAIN:
+            continue
         code = surface_code.generate(graph, mesh)
         for holdout, deforms, glow in product((False, True), repeat=3):
             if glow and (holdout or not code.glows):

@@ -11,7 +11,7 @@ from tests import surface_scenes
 from tests.pictures import ssim
 
 REPO = Path(__file__).resolve().parents[2]
-SIZE, SAMPLES = "160x90", 8
+SIZE, SAMPLES = "112x63", 4
 
 
 def combined(path):

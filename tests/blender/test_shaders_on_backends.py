@@ -1,4 +1,4 @@
-"""Every shader in every variant on OpenGL and on Vulkan, in the real Blender."""
+"""Every shader in every variant on Vulkan, in the real Blender; on OpenGL tests/gpu tries them."""
 
 from pathlib import Path
 
@@ -23,8 +23,8 @@ assert tried > 150, tried
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("backend", ["opengl", "vulkan"])
-def test_every_variant_compiles_and_takes_all_that_it_declares(blender, backend):
+def test_every_variant_compiles_and_takes_all_that_it_declares(blender):
+    backend = "vulkan"
     code = CODE.format(repo=str(REPO), backend=backend.upper())
     # Vulkan compiles three hundred pipelines in software.
     blender.run_code(code, options=("--gpu-backend", backend), timeout=900)
