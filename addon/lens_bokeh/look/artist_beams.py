@@ -44,7 +44,11 @@ class ArtistBeams:
         grids = (self.grids(field, [self._focus], 0.0)[0][0] for field in range(FIELDS))
         return max(max(grid.bounds()[1:]) for grid in grids)
 
-    def grids(self, field, vergences, _shift):
+    def distorted(self, _shift, _vergence):
+        """Return what bends straight lines, as `PupilBeams` does: nothing."""
+        return None
+
+    def grids(self, field, vergences, _shift, _distorted=None):
         """Return the rays of a field's beams, and where those through the middle land.
 
         Parameters
