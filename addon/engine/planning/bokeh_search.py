@@ -192,13 +192,7 @@ def subpixels_of_lamps(rectangles, part, views=1):
     -------
     int
     """
-    lower, upper, _ = rectangles
-    if len(lower) == 0:
-        return 1
-    width = max(float((upper - lower).max(axis=1).min()), 1e-3)
-    wanted = np.ceil(_HITS_A_LAMP / (width * np.cbrt(len(lower)) * np.sqrt(views)))
-    affordable = int(np.sqrt(_FINE_RASTER / (max(part[2] * part[3], 1) * views)))
-    return int(min(wanted, affordable, _FINEST))
+    return _subpixels(_HITS_A_LAMP, rectangles, 1.0, part, views)
 
 
 def subpixels_of_glints(rectangles, roughness, part, views=1):
@@ -215,11 +209,16 @@ def subpixels_of_glints(rectangles, roughness, part, views=1):
     -------
     int
     """
+    # A glint is as small beside its surface as its lobe.
+    return _subpixels(_HITS_A_GLINT, rectangles, 0.5 * _LOBE * roughness**2, part, views)
+
+
+def _subpixels(hits, rectangles, share, part, views):
+    """Return sub-pixels with which a share of the smallest instance is hit so often; at least 1."""
     lower, upper, _ = rectangles
     if len(lower) == 0:
         return 1
-    width = max(float((upper - lower).max(axis=1).min()), 1e-3)
-    glint = max(0.5 * _LOBE * roughness**2 * width, 1e-6)
-    wanted = np.ceil(_HITS_A_GLINT / (glint * np.cbrt(len(lower)) * np.sqrt(views)))
+    width = max(share * max(float((upper - lower).max(axis=1).min()), 1e-3), 1e-6)
+    wanted = np.ceil(hits / (width * np.cbrt(len(lower)) * np.sqrt(views)))
     affordable = int(np.sqrt(_FINE_RASTER / (max(part[2] * part[3], 1) * views)))
     return max(1, int(min(wanted, affordable, _FINEST)))
