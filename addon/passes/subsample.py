@@ -24,6 +24,7 @@ _INFO = ShaderInfo(
         ("VEC2", "spread"),
         ("VEC2", "depths"),
         ("VEC2", "jitter"),
+        ("VEC2", "apart"),
         ("FLOAT", "cell"),
         ("FLOAT", "weight"),
         ("INT", "top"),
@@ -47,6 +48,7 @@ def blur(
     spread,
     depths,
     jitter,
+    apart,
     cell,
     top,
     levels,
@@ -63,8 +65,9 @@ def blur(
     ----------
     fullscreen : GPUBatch
     textures : sequence of 5 GPUTexture
-        Colour and depth of the sample; offsets, one row a sample; means and ranges of the sample's
-        pyramid.
+        Colour and depth of the sample; subsamples, one row a sample: places on the lens relative to
+        the sample's, m, and from a pixel's centre to the place that is looked at, texels of the
+        sample; means and ranges of the sample's pyramid.
     sweep : sequence of 4 float
         See ``lib/bokeh/sweep_lib.glsl``.
     spread : sequence of 2 float
@@ -72,7 +75,10 @@ def blur(
     depths : sequence of 2 float
         Least and largest value that the depth buffer may have.
     jitter : sequence of 2 float
-        From a pixel's centre to the place that the sample has of it, texels; less than half of one.
+        From a pixel's centre to the place that is looked at where the picture ends too near for
+        those of the subsamples, texels; less than half of one.
+    apart : sequence of 2 float
+        Largest of the subsamples' distances from a pixel's centre, along x and y, texels.
     cell : float
         Side of the part of the lens that a subsample's ray stands for, m.
     top : int
@@ -102,6 +108,7 @@ def blur(
     shader.uniform_float("spread", tuple(spread))
     shader.uniform_float("depths", tuple(depths))
     shader.uniform_float("jitter", tuple(jitter))
+    shader.uniform_float("apart", tuple(apart))
     shader.uniform_float("cell", cell)
     shader.uniform_float("weight", weight)
     shader.uniform_int("top", top)

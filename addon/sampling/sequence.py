@@ -9,10 +9,12 @@ import numpy as np
 
 from .halton import halton
 from .iris import iris_points
-from .pixel_filter import filter_offsets, movement_size
+from .pixel_filter import filter_offsets, movement_size, texel_offsets
 
 LENS_BASES = (2, 7)
 PIXEL_BASES = (3, 5)
+# Ratio of the plastic sequence: the real root of x^3 = x + 1.
+_PLASTIC = 1.3247179572447460
 
 
 def _shift(seed, dimensions, stream):
@@ -61,3 +63,33 @@ def pixel_offsets(first, count, kind, size_px, seed=0, subpixels=1):
     """
     uniform = halton(first, count, PIXEL_BASES, _shift(seed, 2, 2))
     return filter_offsets(uniform, kind, movement_size(kind, size_px, subpixels))
+
+
+def subsample_places(counts, kind, size_px, seed=0):
+    """Return the places in the pixel that subsamples look at.
+
+    They run on from sample to sample: the subsamples of one sample, and those of all samples, are
+    evenly spread over the pixel filter. They do not depend on what samples follow.
+
+    Parameters
+    ----------
+    counts : ndarray of shape (N,)
+        int; number of subsamples of each sample.
+    kind : {'BLACKMAN_HARRIS', 'BOX'}
+    size_px : float
+    seed : int
+
+    Returns
+    -------
+    ndarray of shape (N, K, 2)
+        Offsets from the pixel's centre, in pixels, for a look-up by the nearest texel (see
+        `pixel_filter.texel_offsets`).
+
+    References
+    ----------
+    Roberts, *The unreasonable effectiveness of quasirandom sequences*, 2018: the sequence R2.
+    """
+    most = int(np.max(counts, initial=0))
+    index = (np.cumsum(counts) - counts)[:, None] + np.arange(most)
+    uniform = index[..., None] * np.array([1.0 / _PLASTIC, 1.0 / _PLASTIC**2])
+    return texel_offsets(np.mod(uniform + _shift(seed, 2, 4), 1.0), kind, size_px)

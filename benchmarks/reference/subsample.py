@@ -34,7 +34,7 @@ def pyramid(color, depth, count):
     return levels
 
 
-def subsample_sum(levels, top, offsets, sweep, cell, jitter=(0.0, 0.0)):
+def subsample_sum(levels, top, offsets, sweep, cell, shifts, jitter=(0.0, 0.0)):
     """Sum of a lens sample's picture and of those seen from places beside its own.
 
     Parameters
@@ -48,8 +48,10 @@ def subsample_sum(levels, top, offsets, sweep, cell, jitter=(0.0, 0.0)):
     sweep : ndarray of shape (4,)
     cell : float
         Side of the part of the lens that a place stands for, m.
+    shifts : ndarray of shape (K, 2)
+        From a pixel's centre to the place that is looked at, texels.
     jitter : sequence of 2 float
-        From a pixel's centre to the place that the sample has of it, texels.
+        As `shifts`, near the picture's edges.
 
     Returns
     -------
@@ -60,17 +62,21 @@ def subsample_sum(levels, top, offsets, sweep, cell, jitter=(0.0, 0.0)):
     color, depth = levels[0][0], levels[0][1][..., 0]
     total = np.zeros(color.shape)
     margin = np.full(depth.shape, np.inf)
-    spread = np.abs(offsets).max(axis=0)
+    spread, apart = np.abs(offsets).max(axis=0), np.abs(shifts).max(axis=0)
+    last = np.array(depth.shape)[::-1] - 1
     for y, x in np.ndindex(depth.shape):
-        in_reach, reach, sure = _depths_in_reach(levels, (y, x), spread, sweep, jitter)
+        in_reach, reach, sure = _depths_in_reach(levels, (y, x), spread, sweep, apart)
         margin[y, x] = sure
         if reach == 0:
             total[y, x] = color[y, x] * (len(offsets) + 1)
             continue
         total[y, x], sure = _cell_color(levels, top, (y, x), sweep, cell)
         margin[y, x] = min(margin[y, x], sure)
-        for move in offsets:
-            texel, sure = seen_texel(levels, (y, x), in_reach, move, sweep, jitter)
+        pixel = np.array([x, y])
+        inside = np.minimum(pixel, last - pixel) + 0.5 > apart
+        for move, shift in zip(offsets, shifts, strict=True):
+            center = pixel + 0.5 + np.where(inside, shift, jitter)
+            texel, sure = seen_texel(levels, center, in_reach, move, sweep)
             seen, sure_of_color = _cell_color(levels, top, texel, sweep, cell)
             total[y, x] += seen
             margin[y, x] = min(margin[y, x], sure, sure_of_color)
@@ -109,14 +115,14 @@ def _seen_depths(levels, a, b):
     return np.array([met[..., 0].min(), met[..., 1].max()])
 
 
-def _depths_in_reach(levels, texel, spread, sweep, jitter, approaches=3):
+def _depths_in_reach(levels, texel, spread, sweep, apart, approaches=3):
     """Return the depths of what may come to a pixel, from how far, and the margin of none."""
     depth = levels[0][1]
     found = np.array([depth.min(), 1.0])
     texel, last = np.array(texel), np.array(depth.shape[:2]) - 1
     for i in range(approaches + 1):
         moved = np.max([np.abs(sweep_px(spread, sweep, d)) for d in found], axis=0)
-        moved = (moved + np.abs(jitter) + 0.5).max()
+        moved = (moved + apart + 0.5).max()
         reach = int(min(moved, max(depth.shape)))
         if reach == 0 or i == approaches:
             break
@@ -146,21 +152,19 @@ def _way(center, size, move, sweep, depths):
     return start, along, part, ends
 
 
-def seen_texel(levels, texel, in_reach, move, sweep, jitter=(0.0, 0.0), stretch=1.0):
-    """Find what is seen in a pixel from a place on the lens beside the sample's.
+def seen_texel(levels, center, in_reach, move, sweep, stretch=1.0):
+    """Find what is seen at a place of the picture from a place on the lens beside the sample's.
 
     Parameters
     ----------
     levels : list of (ndarray, ndarray)
-    texel : tuple of 2 int
-        Row and column of the pixel.
+    center : ndarray of shape (2,)
+        The place, x and y, in texels of the sample.
     in_reach : sequence of 2 float
         Least and largest depth of what may come there.
     move : ndarray of shape (2,)
         From the sample's place on the lens to the other, m.
     sweep : ndarray of shape (4,)
-    jitter : sequence of 2 float
-        As of `subsample_sum`.
     stretch : float
         Neighbours are one surface if the move parts them by no more texels.
 
@@ -172,7 +176,7 @@ def seen_texel(levels, texel, in_reach, move, sweep, jitter=(0.0, 0.0), stretch=
         See `subsample_sum`.
     """
     depth = levels[0][1][..., 0]
-    center, size = np.array(texel)[::-1] + 0.5 - jitter, np.array(depth.shape[::-1])
+    size = np.array(depth.shape[::-1])
     depths = np.array(in_reach, float)
     start, along, part, ends = _way(center, size, move, sweep, depths)
     place = start + along * part[0]

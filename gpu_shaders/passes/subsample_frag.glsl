@@ -2,10 +2,11 @@
 // from subsamples, places on the lens near the sample's, are cast through its own colour and depth.
 // Each ray stands for a cell of the lens, and takes the mean colour that reaches the pixel through it.
 // Inputs: sample_tx, depth_tx (the sample); depths (least and largest that it may have); offsets_tx
-// (row: sample; column: place on the lens relative to the sample's, m); means_tx, ranges_tx (pyramid
-// of the sample: `top` levels of means, `levels` of ranges); sample_index, count; spread (largest
-// offset, m); cell (side of a cell of the lens, m); sweep; jitter (from a pixel's centre to the place that
-// the sample has of it, texels); weight.
+// (row: sample; column: place on the lens relative to the sample's, m, and from a pixel's centre to
+// the place that is looked at, texels of the sample); means_tx, ranges_tx (pyramid of the sample: `top`
+// levels of means, `levels` of ranges); sample_index, count; spread (largest offset, m); cell (side of a
+// cell of the lens, m); sweep; jitter (the place that is looked at near the picture's edges); apart
+// (largest distance of any place along x and y, texels); weight.
 // CHROMATIC: as in surface_vert, and gain (of the sweep, by 1 / focus distance), tint (weights of the
 // channels).
 // REAL_LENS: as in surface_vert; turns_tx (how the lens' displacements change with the place on it:
@@ -133,17 +134,17 @@ vec2 square_depths(ivec2 square, int level)
 }
 
 // The texel that a ray sees. Each texel is a square that moves with its surface; the ray ends at the
-// nearest that comes to cover the pixel's centre. So a surface of one depth covers as many pixels as
-// it has texels, wherever it moves to, and one in focus stays as it is.
-// The colour of a texel is that at its centre plus the sample's jitter, so squares are centred there. The
-// place in the pixel that a ray sees then varies from sample to sample as its filter does, and movements
-// below a texel are blurred by their mean, not by none or by one texel.
+// nearest that comes to cover `center`, the place that is looked at. So a surface of one depth covers
+// as many pixels as it has texels, wherever it moves to.
+// The colour of a texel is that at its centre plus the sample's jitter, so squares are centred there, and
+// lie elsewhere in each sample. Places that are looked at are spread so much less than the pixel filter
+// that with a square's own extent they are spread as the filter: edges are as wide in any blur, and
+// movements below a texel are blurred by their mean, not by none or by one texel.
 // As the depth goes from the least in reach to the largest, the texel that would come to the pixel runs
 // along a straight path. A texel is hit if its depth lies between those at which the path enters and
 // leaves it. Whole squares of the pyramid in front of or behind the path's depths are skipped.
-ivec2 seen_texel(ivec2 pixel, ivec2 size, vec2 move, vec2 in_reach)
+ivec2 seen_texel(vec2 center, ivec2 size, vec2 move, vec2 in_reach)
 {
-  vec2 center = vec2(pixel) + 0.5 - jitter;
   vec2 start = center - moved_px(move, in_reach.x);
   vec2 along = center - moved_px(move, in_reach.y) - start;
   vec2 part = vec2(0.0, 1.0);
@@ -236,7 +237,7 @@ vec2 depths_in_reach(ivec2 pixel, ivec2 size, out int reach)
   for (int i = 0; i <= APPROACHES; i++) {
     vec2 moved = max(reach_px(spread, found.x), reach_px(spread, found.y));
     // Up to the edge of its square, the pixel's own texel is seen.
-    moved += abs(jitter) + 0.5;
+    moved += apart + 0.5;
     reach = int(min(max(moved.x, moved.y), float(max(size.x, size.y))));
     if (reach == 0 || i == APPROACHES) {
       break;
@@ -276,9 +277,14 @@ void main()
   }
   else {
     total = cell_color(pixel, size);
+    // What lies beyond the picture's edges cannot be looked at: there, the place in the pixel is the
+    // sample's own, as far as it is not a matter of whole texels.
+    vec2 to_edge = vec2(min(pixel, size - 1 - pixel)) + 0.5;
+    bvec2 inside = greaterThan(to_edge, apart);
     for (int i = 0; i < count; i++) {
-      vec2 move = texelFetch(offsets_tx, ivec2(i, sample_index), 0).xy;
-      total += cell_color(seen_texel(pixel, size, move, in_reach), size);
+      vec4 subsample = texelFetch(offsets_tx, ivec2(i, sample_index), 0);
+      vec2 center = vec2(pixel) + 0.5 + mix(jitter, subsample.zw, inside);
+      total += cell_color(seen_texel(center, size, subsample.xy, in_reach), size);
     }
   }
 #ifdef CHROMATIC

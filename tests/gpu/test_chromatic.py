@@ -134,6 +134,7 @@ def test_each_sample_draws_points_where_the_numpy_model_does(preset, parallel):
             subpixel_weights=plan.subpixel_weights[alone],
             subsample_offsets=plan.subsample_offsets[alone],
             subsample_counts=plan.subsample_counts[alone],
+            subsample_places=plan.subsample_places[alone],
             chromatic=replace(
                 plan.chromatic,
                 wavelengths_nm=plan.chromatic.wavelengths_nm[alone],

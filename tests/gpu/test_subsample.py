@@ -7,6 +7,8 @@ from addon.device import geometry, readback
 from addon.device.targets import Targets, TargetSpec
 from addon.device.textures import texture_2d
 from addon.passes import pyramid, subsample
+from addon.sampling.pixel_filter import filter_density
+from addon.sampling.sequence import pixel_offsets, subsample_places
 from benchmarks.reference import subsample as twin
 
 pytestmark = pytest.mark.usefixtures("gpu_context")
@@ -58,11 +60,11 @@ def test_pyramid_equals_its_twin():
                 assert np.abs(found - values).max() < 1e-6
 
 
-def blurred(color, depth, offsets, cell=0.0, jitter=(0.0, 0.0)):
+def blurred(color, depth, offsets, cell=0.0, shifts=(0.0, 0.0), jitter=(0.0, 0.0)):
     """Blur a sample on the device over places on the lens."""
     height, width = depth.shape
     table = np.zeros((1, len(offsets), 4), np.float32)
-    table[0, :, :2] = offsets
+    table[0, :, :2], table[0, :, 2:] = offsets, shifts
     with Targets(width, height, [TargetSpec("sum", "RGBA32F")]) as targets:
         targets.clear("sum", (0.0, 0.0, 0.0, 0.0))
         sample = pyramid_on_device(targets, color, depth)
@@ -75,6 +77,7 @@ def blurred(color, depth, offsets, cell=0.0, jitter=(0.0, 0.0)):
                 spread=np.abs(offsets).max(axis=0),
                 depths=(float(depth.min()), 1.0),
                 jitter=jitter,
+                apart=np.abs(table[0, :, 2:]).max(axis=0),
                 cell=cell,
                 top=TOP,
                 levels=LEVELS,
@@ -86,22 +89,24 @@ def blurred(color, depth, offsets, cell=0.0, jitter=(0.0, 0.0)):
 
 
 # With the wide cell, means of up to 8 texels are taken.
-@pytest.mark.parametrize("jitter", [(0.0, 0.0), (0.375, -0.21)])
+@pytest.mark.parametrize("apart", [0.0, 0.45, 1.7])
 @pytest.mark.parametrize(("places", "cell"), [(1, 0.0), (5, 0.0), (4, 0.1)])
-def test_subsample_blur_equals_its_twin(places, cell, jitter):
+def test_subsample_blur_equals_its_twin(places, cell, apart):
     rng = np.random.default_rng(7)
     depth = stepped_depth()
     color = rng.random((HEIGHT, WIDTH, 4)).astype(np.float32)
     offsets = rng.uniform(-0.02, 0.02, (places, 2)).astype(np.float32)
-    found = blurred(color, depth, offsets, cell, jitter)
+    shifts = rng.uniform(-apart, apart, (places, 2)).astype(np.float32)
+    ways = shifts, (-0.375, 0.21)
+    found = blurred(color, depth, offsets, cell, *ways)
     levels = twin.pyramid(color, depth, LEVELS)
-    total, margin = twin.subsample_sum(levels, TOP, offsets, SWEEP, cell, jitter)
+    total, margin = twin.subsample_sum(levels, TOP, offsets, SWEEP, cell, *ways)
     # Where a decision hangs on less than rounding, it may turn out otherwise.
     sure = margin > 1e-4
     assert sure.mean() > 0.8
     assert np.abs(found - total)[sure].max() < 2e-5
     if cell:
-        plain, _ = twin.subsample_sum(levels, TOP, offsets, SWEEP, 0.0, jitter)
+        plain, _ = twin.subsample_sum(levels, TOP, offsets, SWEEP, 0.0, *ways)
         assert (np.abs(total - plain).max(axis=-1) > 0.1).mean() > 0.2
 
 
@@ -116,8 +121,7 @@ def test_a_bright_spot_keeps_its_light_wherever_it_moves(lamp, side):
     depth[spot], color[spot] = lamp, 1000.0
     for _ in range(8):
         offsets = rng.uniform(-0.1, 0.1, (6, 2)).astype(np.float32)
-        jitter = rng.uniform(-0.499, 0.499, 2)
-        found = blurred(color, depth, offsets, jitter=jitter)
+        found = blurred(color, depth, offsets, shifts=rng.uniform(-1.9, 1.9, (6, 2)))
         # Each place sees it whole.
         assert found[..., 0].sum() == pytest.approx(7 * 1000.0 * side**2, rel=1e-5)
 
@@ -133,7 +137,7 @@ def test_an_edge_in_focus_stays_as_it_is_beside_what_is_blurred():
     # Neither axis has its focus exactly there: movements of 0.06 texels are left, less than to the
     # edge of a square from any place that the sample has of a pixel.
     offsets = np.array([[0.02, 0.01], [-0.03, 0.02], [0.04, -0.04], [-0.01, -0.03]], np.float32)
-    found = blurred(color, depth, offsets, jitter=(0.43, -0.42))
+    found = blurred(color, depth, offsets, shifts=(-0.43, 0.42))
     beside = slice(12, None)
     assert np.array_equal(found[:, beside], 5.0 * color[:, beside])
     # The blurred strip moves by up to 2.8 texels: it has moved.
@@ -153,7 +157,32 @@ def test_an_edge_that_moves_by_less_than_texels_is_blurred_by_that(furthest):
     for place in places:
         color = np.zeros((HEIGHT, WIDTH, 4), np.float32)
         color[:, columns + 0.5 + place > edge] = 1.0
-        mean += blurred(color, depth, offsets, jitter=(place, 0.0))[9, :, 0] / len(places)
+        mean += blurred(color, depth, offsets, shifts=(-place, 0.0))[9, :, 0] / len(places)
     expected = sum(np.clip(columns + 1.0 - move - edge, 0.0, 1.0) for move in (0.0, *moves))
     # Each place is met to a thirty-second; the outermost columns continue what is not there.
     assert np.abs(mean - expected)[3:-3].max() < 5 / 32
+
+
+@pytest.mark.parametrize(
+    ("kind", "size_px"), [("BLACKMAN_HARRIS", 1.5), ("BLACKMAN_HARRIS", 3.0), ("BOX", 2.0)]
+)
+@pytest.mark.parametrize("move", [0.0, 0.5, 2.3])
+def test_an_edge_is_as_wide_as_the_pixel_filter_however_far_it_moves(kind, size_px, move):
+    depth = np.full((HEIGHT, WIDTH), 0.93, np.float32)
+    offsets = np.full((64, 2), [move / (SWEEP[0] + SWEEP[2] * 0.93), 0.0], np.float32)
+    edge, columns = 18.3, np.arange(WIDTH)
+    own = pixel_offsets(0, 64, kind, size_px)
+    looks = subsample_places(np.full(64, 64), kind, size_px)
+    mean = np.zeros(WIDTH)
+    for place, look in zip(own, looks, strict=True):
+        color = np.zeros((HEIGHT, WIDTH, 4), np.float32)
+        color[:, columns + 0.5 + place[0] > edge] = 1.0
+        found = blurred(color, depth, offsets, shifts=look - place)[9, :, 0]
+        # Without the sample itself, which has not moved.
+        mean += (found - color[9, :, 0]) / (64 * len(own))
+    u = np.linspace(-4.0, 4.0, 8001)
+    share = np.cumsum(filter_density(u, kind, size_px)) * (u[1] - u[0])
+    expected = np.interp(columns + 0.5 - move - edge, u, share)
+    # Squares lie at 64 places: measured up to 0.008. When the subsamples of a sample looked at one
+    # place of its pixel, edges that moved by half a pixel were off by 0.056 with the first filter.
+    assert np.abs(mean - expected)[4:-4].max() < 0.012

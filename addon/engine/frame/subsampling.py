@@ -15,9 +15,8 @@ from ...sampling.spectral_samples import GROUP
 # Most levels of the pyramid's means: footprints wider than 64 texels are sampled too coarsely for
 # means to help.
 _MOST_LEVELS = 6
-# Largest jitter that subsamples follow, in texels: below half of one, so that a surface in focus is
-# not moved. What is more are whole texels, by which the sample is another picture of the same kind:
-# its rays fall where the filter has its places, whatever its width.
+# Most that the sample's place in a pixel is off whole texels, in texels: below half of one, so that
+# a surface in focus is not moved.
 _MOST_JITTER = 0.499
 # Lens samples whose movements through a real lens bound those of all, and what is added to be sure.
 _TYPICAL, _SURE = 64, 1.25
@@ -50,9 +49,14 @@ class SubsampleBlur:
         if wavelengths:
             self._sweep, self._gain = plan.sweep_parts
         self._nearest = float(self._window_depth(max(nearest, 0.0)))
-        offsets = np.zeros((*plan.subsample_offsets.shape[:2], 4))
-        offsets[..., :2] = plan.subsample_offsets
-        self._offsets = texture_2d(offsets)
+        own = self._own_places()
+        # With subsamples a pixel has one texel.
+        shifts = plan.subsample_places - own[:, None]
+        self._offsets = texture_2d(np.concatenate([plan.subsample_offsets, shifts], axis=-1))
+        taken = np.arange(shifts.shape[1]) < plan.subsample_counts[:, None]
+        self._apart = np.max(np.abs(shifts), axis=1, where=taken[..., None], initial=0.0)
+        # Whole texels of its place make a sample another picture of the same kind.
+        self._jitter = np.clip(np.rint(own) - own, -_MOST_JITTER, _MOST_JITTER)
         self._spread = np.abs(plan.subsample_offsets[plan.first :]).max(axis=(0, 1))
         blur = max(abs(self._coc(self._nearest)), abs(self._coc(1.0)))
         places = plan.samples + int(plan.subsample_counts.sum())
@@ -93,25 +97,26 @@ class SubsampleBlur:
     @property
     def reach(self):
         """Largest distance from a pixel at which the sample's colours are read, in texels."""
-        moved = max(self._coc(depth, self._spread) for depth in (self._nearest, 1.0))
         # Plus a texel on either side, and the texels of a mean of the top level.
-        moved += _MOST_JITTER
-        return int(np.ceil(moved)) + 2 + (2 << self._top)
+        return int(np.ceil(self._farthest())) + 2 + (2 << self._top)
+
+    def _farthest(self):
+        """Return how far from a pixel its rays may begin or end at most, in texels."""
+        moved = max(self._coc(depth, self._spread) for depth in (self._nearest, 1.0))
+        return moved + float(self._apart.max(initial=_MOST_JITTER))
 
     def _levels_in_reach(self):
         """Return how many levels of depth ranges cover all texels that a pixel's ray may meet."""
         plan = self._plan
-        reach = max(self._coc(depth, self._spread) for depth in (self._nearest, 1.0))
-        reach += 1.0 + _MOST_JITTER
-        side = min(2.0 * reach, max(plan.width, plan.height) * plan.subpixels)
+        side = min(2.0 * (self._farthest() + 1.0), max(plan.width, plan.height) * plan.subpixels)
         return int(np.ceil(np.log2(side)))
 
-    def _jitter(self, index):
+    def _own_places(self):
+        """Return the places in the pixel that the samples see, from its centre, in texels."""
         plan = self._plan
-        texels = plan.subpixels * np.array([plan.width, plan.height])
+        texels = np.array([plan.width, plan.height])
         # The jitter moves the picture, in clip units: the place in the pixel is opposite to it.
-        place = -0.5 * plan.jitter[index] * texels
-        return np.clip(place - np.rint(place), -_MOST_JITTER, _MOST_JITTER)
+        return -0.5 * plan.jitter * texels
 
     def limit(self, earlier):
         """Use no more levels than an earlier round, whose render targets are used.
@@ -150,7 +155,8 @@ class SubsampleBlur:
             sweep=self._sweep,
             spread=self._spread,
             depths=(self._nearest, 1.0),
-            jitter=self._jitter(index),
+            jitter=self._jitter[index],
+            apart=self._apart[index],
             cell=self._cell,
             top=self._top,
             levels=self._levels,

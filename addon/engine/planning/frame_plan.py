@@ -62,6 +62,8 @@ class FramePlan:
         in m.
     subsample_counts : ndarray of shape (N,)
         int; number of subsamples of each sample.
+    subsample_places : ndarray of shape (N, K, 2)
+        From the pixel's centre to where each subsample looks in a sample's raster, px.
     level_bias : float or None
         Subtracted from the level of detail; None draws everything at full detail.
     least_triangles : int
@@ -122,6 +124,7 @@ class FramePlan:
     subpixel_weights: np.ndarray
     subsample_offsets: np.ndarray
     subsample_counts: np.ndarray
+    subsample_places: np.ndarray
     level_bias: float | None
     least_triangles: int
     reuse_grid: int

@@ -8,7 +8,7 @@ from ...sampling.chromatic import ChromaticAberration
 from ...sampling.halton import halton
 from ...sampling.pixel_filter import subpixel_weights
 from ...sampling.rounds import FURTHER_PLACES
-from ...sampling.sequence import PIXEL_BASES, lens_samples, pixel_offsets
+from ...sampling.sequence import PIXEL_BASES, lens_samples, pixel_offsets, subsample_places
 from ...sampling.spectral_samples import SpectralSamples, wavelengths_for
 from ...sampling.subsamples import subsample_offsets
 from ...sampling.thin_lens import ThinLens
@@ -28,6 +28,8 @@ class FrameSamples:
         See `sampling.pixel_filter.subpixel_weights`.
     subsample_offsets, subsample_counts : ndarray
         See `sampling.subsamples.subsample_offsets`; in m.
+    subsample_places : ndarray of shape (N, K, 2)
+        From the pixel's centre to where each subsample looks, px.
     colors : SpectralSamples or None
     """
 
@@ -36,6 +38,7 @@ class FrameSamples:
     subpixel_weights: np.ndarray
     subsample_offsets: np.ndarray
     subsample_counts: np.ndarray
+    subsample_places: np.ndarray
     colors: SpectralSamples | None
 
     def arrays(self, width, height):
@@ -57,6 +60,7 @@ class FrameSamples:
             "subpixel_weights": self.subpixel_weights,
             "subsample_offsets": self.subsample_offsets,
             "subsample_counts": self.subsample_counts,
+            "subsample_places": self.subsample_places,
         }
 
 
@@ -140,6 +144,9 @@ class SampleSource:
             subpixel_weights=np.stack(weights, axis=1),
             subsample_offsets=offsets[taken],
             subsample_counts=counts[taken],
+            subsample_places=subsample_places(
+                counts, self.filter_kind, self.filter_size_px, self.seed
+            )[taken],
             colors=colors,
         )
 
