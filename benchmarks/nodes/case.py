@@ -28,6 +28,8 @@ class Case:
     exempt : float
         Share of the pixels that may differ: where a step of the function lies at the pixel's own
         value, rounding decides.
+    gain : float
+        What is shown is multiplied by it, where it is brighter than a picture.
     reason : str
         Why it is not exact, for the docs.
     """
@@ -39,6 +41,7 @@ class Case:
     prepare: object = None
     shape: str = "card"
     exempt: float = 0.0
+    gain: float = 1.0
     reason: str = ""
 
     @property

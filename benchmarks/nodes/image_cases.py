@@ -20,6 +20,12 @@ def _picture(width, height, alpha=False, is_float=True, space="Non-Color"):
     return prepare
 
 
+def _sky(kind, gain, vector="place", **settings):
+    inputs = {"Vector": vector} if vector else {}
+    shown = {"sky_type": kind, "sun_disc": False, **settings}
+    return Case("TexSky", "Color", inputs, shown, shape="dome", gain=gain)
+
+
 # Few texels, so that a pixel's footprint is small: Cycles reads coarser pictures where it is not.
 _SMALL = _picture(4, 3)
 
@@ -64,4 +70,14 @@ CASES = [
         for p in ("EQUIRECTANGULAR", "MIRROR_BALL")
     ),
     Case("TexEnvironment", "Color", {}, {}, _SMALL, "dome"),
+    _sky("MULTIPLE_SCATTERING", 0.1, "signed"),
+    _sky("MULTIPLE_SCATTERING", 0.1, None),
+    _sky("MULTIPLE_SCATTERING", 0.1, "bent", sun_elevation=0.03, altitude=3000.0, air_density=2.0),
+    _sky("MULTIPLE_SCATTERING", 0.1, "bent", sun_rotation=1.3, sun_elevation=1.2),
+    _sky("SINGLE_SCATTERING", 0.1, "signed"),
+    _sky("SINGLE_SCATTERING", 0.1, "bent", sun_elevation=0.03, aerosol_density=3.0),
+    _sky("SINGLE_SCATTERING", 0.1, "bent", sun_rotation=1.3, sun_elevation=1.2, ozone_density=4.0),
+    _sky("PREETHAM", 0.3, "signed", turbidity=4.0, sun_direction=(0.3, 0.4, 0.6)),
+    _sky("HOSEK_WILKIE", 1.5, "signed", turbidity=4.3, sun_direction=(0.3, 0.4, 0.6)),
+    _sky("HOSEK_WILKIE", 3.0, "bent", ground_albedo=0.9, sun_direction=(0.3, -0.4, 0.2)),
 ]

@@ -169,6 +169,7 @@ def _fill(bpy, tree, case, image):
         links.new(shown, output.inputs["Surface"])
         return
     links.new(shown, emission.inputs["Color"])
+    emission.inputs["Strength"].default_value = case.gain
 
 
 def _socket(sockets, name):

@@ -36,7 +36,6 @@ STATED = {
     "Bevel": (FALLBACK, "the normal as it is"),
     "Wireframe": (FALLBACK, "0"),
     "Raycast": (FALLBACK, "the value of the socket that it feeds"),
-    "TexSky": (FALLBACK, "the value of the socket that it feeds"),
     "TexIES": (FALLBACK, "the value of the socket that it feeds"),
     "RadialTiling": (FALLBACK, "the value of the socket that it feeds"),
     "ShaderToRGB": (FALLBACK, "the value of the socket that it feeds; Cycles has none"),

@@ -62,7 +62,9 @@ ROOMS = {
     "passes": ("device", "sampling", "passes.surface", "passes.bokeh"),
     # Blender's data read into a snapshot.
     "scene.images": ("snapshot",),
-    "scene.nodes": ("sampling", "snapshot", "scene.images"),
+    # Blender's skies in plain numpy.
+    "scene.skies": ("sampling",),
+    "scene.nodes": ("sampling", "snapshot", "scene.images", "scene.skies"),
     "scene.camera": (
         *("optics", "optics.rays", "sampling", "lens_bokeh.openings", "lens_bokeh.look"),
         "lens_bokeh.tables",

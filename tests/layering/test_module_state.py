@@ -42,6 +42,8 @@ MEMOS = {
     "scene.camera.distortion": ("_terms_of_lens",),
     "scene.camera.drawn_curves": ("_kept", "_lock"),
     "scene.images.color_spaces": ("_luminance_weights", "_processor", "bundled_module"),
+    "scene.skies.fitted_skies": ("_hosek_table",),
+    "scene.skies.multiple_scattering": ("_transmittances",),
     "snapshot.cryptomatte": ("cryptomatte_hash",),
     "ui.previews.aberration_previews": ("aberration_pictures",),
     "ui.previews.bokeh_previews": ("_speckles", "disc_pictures"),

@@ -15,6 +15,12 @@ DATA_SPACES = frozenset({"Non-Color", "Raw"})
 REC709 = "Linear Rec.709"
 # A role of Blender's configuration: CIE XYZ with the white of D65.
 _XYZ = "cie_xyz_d65_interchange"
+# From CIE 1931 XYZ (white of D65) to linear Rec.709.
+_XYZ_TO_REC709 = (
+    (3.2404542, -1.5371385, -0.4985314),
+    (-0.9692660, 1.8760108, 0.0415560),
+    (0.0556434, -0.2040259, 1.0572252),
+)
 
 
 def working_space():
@@ -128,3 +134,25 @@ def convert(pixels, source, target):
     converted = np.ascontiguousarray(pixels, np.float32).copy()
     processor.applyRGBA(converted)
     return converted
+
+
+def from_xyz(xyz, space):
+    """Convert CIE 1931 XYZ (white of D65) to a scene-linear space; negative light is left out.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (height, width, 3)
+    space : str
+        As of `working_space`.
+
+    Returns
+    -------
+    ndarray of shape (height, width, 4)
+        float32; the fourth channel is 1.
+    """
+    pixels = np.ones((*xyz.shape[:2], 4), np.float32)
+    pixels[..., :3] = xyz @ np.array(_XYZ_TO_REC709, xyz.dtype).T
+    if space != REC709:
+        converted = convert(pixels, REC709, space)
+        pixels = pixels if converted is None else converted
+    return np.maximum(pixels, 0.0)

@@ -123,6 +123,31 @@ class ImageReader:
             self.report += [f"image '{image.name}': {note}" for note in entry.notes]
         return use
 
+    def computed(self, key, name, compute):
+        """Return how to use an image that is computed, once as long as a reader uses it.
+
+        Parameters
+        ----------
+        key : hashable
+            All that the pixels depend on.
+        name : str
+        compute : callable
+            Returns pixels of shape (height, width, 4), float32, scene linear.
+
+        Returns
+        -------
+        ImageUse
+        """
+        if key not in self._seen:
+            entry = self._entries.get(key)
+            if entry is None:
+                snapshot = ImageSnapshot(next_uid(), name, compute())
+                use = ImageUse(snapshot.uid, srgb=False, associated=False)
+                entry = self._entries[key] = _Entry(key, use, snapshot, ())
+            self._seen[key] = entry.use
+            self.images[entry.use.uid] = entry.snapshot
+        return self._seen[key]
+
     def _read(self, key, image, image_user, frame):
         repaints = self._repaints.get(image.session_uid, 0)
         signature = (repaints, *_signature(image, image_user, frame))

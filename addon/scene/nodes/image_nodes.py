@@ -1,7 +1,11 @@
 """Readers of Blender's nodes that look up images."""
 
+import math
+
 from ...snapshot.surface_graph import MISSING_IMAGE_COLOR, Constant, Link
-from .tree_reader import reader_registry
+from ..images import color_spaces
+from ..skies.sky_image import Sky, sky_xyz
+from .tree_reader import input_socket, reader_registry
 
 READERS, reads = reader_registry()
 
@@ -36,6 +40,63 @@ def _environment_texture(reader, node, groups):
         vector = Link(reader.add("geometry"), "Position")
     settings = (("projection", node.projection), *_sampling(node, use, "REPEAT"))
     return reader.add("image_texture", [("Vector", vector)], settings, use.uid)
+
+
+@reads("TEX_SKY")
+def _sky_texture(reader, node, groups):
+    use = sky_use(reader, node)
+    if use is None:
+        return {"Color": Constant(MISSING_IMAGE_COLOR)}
+    # With the sun's disc Blender hides the input, and reads nothing of it.
+    if input_socket(node, "Vector").enabled and reader.linked(node, "Vector", groups):
+        vector = reader.value(node, "Vector", groups)
+    else:
+        vector = Link(reader.add("generated"), "Generated")
+    settings = (("projection", "SKY"), ("interpolation", "Linear"))
+    found = reader.add("image_texture", [("Vector", vector)], settings, use.uid)
+    return {"Color": Link(found, "Color")}
+
+
+def sky_use(reader, node):
+    """Return the `ImageUse` of a Sky Texture's sky, which is computed where it is new.
+
+    Parameters
+    ----------
+    reader : TreeReader
+    node : bpy.types.ShaderNodeTexSky
+
+    Returns
+    -------
+    ImageUse or None
+        None to draw magenta.
+    """
+    sky, space = _sky(node), color_spaces.working_space()
+    return reader.computed_image(
+        (sky, space), "sky", lambda: color_spaces.from_xyz(sky_xyz(sky), space)
+    )
+
+
+def _sky(node):
+    if node.sky_type in {"PREETHAM", "HOSEK_WILKIE"}:
+        return Sky(
+            node.sky_type,
+            tuple(node.sun_direction.normalized()),
+            turbidity=node.turbidity,
+            albedo=node.ground_albedo,
+        )
+    # The sun rises over +y, and turns clockwise.
+    up, turn = node.sun_elevation, node.sun_rotation
+    across = math.cos(up)
+    return Sky(
+        node.sky_type,
+        (across * math.sin(turn), across * math.cos(turn), math.sin(up)),
+        node.air_density,
+        node.aerosol_density,
+        node.ozone_density,
+        node.altitude,
+        node.sun_size if node.sun_disc else 0.0,
+        node.sun_intensity,
+    )
 
 
 def _sampling(node, use, extension):

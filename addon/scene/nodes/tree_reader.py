@@ -163,7 +163,13 @@ class TreeReader:
 
     def use_image(self, node):
         """Return the `ImageUse` of a node's image, or None to draw magenta."""
-        use = self.images.read(node.image, node.image_user)
+        return self._within_limit(self.images.read(node.image, node.image_user))
+
+    def computed_image(self, key, name, compute):
+        """Return the `ImageUse` of `ImageReader.computed`, or None to draw magenta."""
+        return self._within_limit(self.images.computed(key, name, compute))
+
+    def _within_limit(self, use):
         if use is None:
             return None
         if use.uid not in self._image_uids and len(self._image_uids) == MAX_IMAGES:

@@ -199,12 +199,6 @@ def _curves(reader, node, groups):
     return _as(reader, node, "curves", inputs, settings, {"Result": output}, tuple(table))
 
 
-# From CIE 1931 XYZ (white of D65) to linear Rec.709.
-_XYZ_TO_REC709 = (
-    (3.2404542, -1.5371385, -0.4985314),
-    (-0.9692660, 1.8760108, 0.0415560),
-    (0.0556434, -0.2040259, 1.0572252),
-)
 # Between these temperatures, in K, Cycles' black bodies change.
 _COLDEST, _HOTTEST = 800.0, 12000.0
 # What Cycles divides the colours of wavelengths by.
@@ -232,12 +226,8 @@ def _wavelength_table(space):
 
 
 def _rows(xyz, space):
-    rgb = xyz @ np.array(_XYZ_TO_REC709).T
-    pixels = np.concatenate([rgb, np.ones((len(rgb), 1))], axis=1).astype(np.float32)[None]
-    if space != color_spaces.REC709:
-        converted = color_spaces.convert(pixels, color_spaces.REC709, space)
-        pixels = pixels if converted is None else converted
-    return tuple(tuple(float(max(v, 0.0)) for v in row) for row in pixels[0])
+    pixels = color_spaces.from_xyz(xyz[None], space)
+    return tuple(tuple(map(float, row)) for row in pixels[0])
 
 
 @reads("BLACKBODY")

@@ -12,8 +12,9 @@ from ...snapshot.content import World
 from ...snapshot.surface_graph import LARGEST_RADIANCE, MISSING_IMAGE_COLOR, Constant, Link
 from ..images import color_spaces
 from ..nodes import input_nodes, value_nodes
+from ..nodes.image_nodes import sky_use
 from ..nodes.node_tree import inlined, source_of
-from ..nodes.tree_reader import TreeReader, constant, constant_number, numbers_of
+from ..nodes.tree_reader import TreeReader, constant, constant_number, input_socket, numbers_of
 from ..nodes.vector_nodes import euler_matrix, mapping_matrix
 
 # How far a Mapping may be from a rotation.
@@ -186,6 +187,9 @@ class _WorldReader:
             return values * 3 if len(values) == 1 else values, 0, nothing.rotation, None
         if kind == "TEX_ENVIRONMENT":
             return (*self._environment(source.node, inner), None)
+        if kind == "TEX_SKY":
+            use = sky_use(TreeReader("", self._images, {}), source.node)
+            return (1.0, 1.0, 1.0), use.uid, self._rotation(source.node, inner), None
         if kind in value_nodes.READERS:
             computed = self._computed(node, groups)
             if computed is not None:
@@ -199,6 +203,7 @@ class _WorldReader:
             **{kind: input_nodes.READERS[kind] for kind in ("RGB", "VALUE")},
             **value_nodes.READERS,
             "TEX_ENVIRONMENT": self._read_environment,
+            "TEX_SKY": self._read_sky,
             "LIGHT_PATH": self._read_light_path,
         }
         reader = TreeReader(f"world '{self._name}'", self._images, readers)
@@ -220,6 +225,14 @@ class _WorldReader:
         inputs = [(axis, Constant(row)) for axis, row in rows]
         settings = (("encoding", "srgb" if use.srgb else ""),)
         return reader.add("environment_texture", inputs, settings, use.uid)
+
+    def _read_sky(self, reader, node, groups):
+        use = sky_use(reader, node)
+        if use is None:
+            return {"Color": Constant(MISSING_IMAGE_COLOR)}
+        rows = zip("XYZ", self._rotation(node, groups), strict=True)
+        inputs = [(axis, Constant(row)) for axis, row in rows]
+        return reader.add("environment_texture", inputs, (), use.uid)
 
     def _read_light_path(self, reader, node, groups):
         self._tells_rays = True
@@ -244,8 +257,9 @@ class _WorldReader:
 
     def _rotation(self, node, groups):
         identity = World().rotation
-        source, inner = source_of(node.inputs["Vector"], groups)
-        if not source.is_output:
+        vector = input_socket(node, "Vector")
+        source, inner = source_of(vector, groups)
+        if not vector.enabled or not source.is_output:
             return identity
         matrix = np.eye(3)
         while source.is_output and source.node.type == "MAPPING":

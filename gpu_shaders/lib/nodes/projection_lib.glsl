@@ -34,6 +34,14 @@ vec2 project_equirectangular(vec3 direction)
   return vec2(0.5 - longitude / (2.0 * PROJECTION_PI), latitude / PROJECTION_PI + 0.5);
 }
 
+// Of a sky, as Cycles looks it up: the height alone tells the latitude, whatever the vector's length.
+vec2 project_sky(vec3 direction)
+{
+  float longitude = atan(direction.y, direction.x);
+  float latitude = asin(clamp(direction.z, -1.0, 1.0));
+  return vec2(0.5 - longitude / (2.0 * PROJECTION_PI), latitude / PROJECTION_PI + 0.5);
+}
+
 // Of a photograph of a mirror ball, seen along +y.
 vec2 project_mirror_ball(vec3 direction)
 {

@@ -1,0 +1,1 @@
+"""Skies of Blender's Sky Texture, computed on the CPU: plain numpy."""
