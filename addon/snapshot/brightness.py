@@ -14,6 +14,8 @@ _REFLECTANCE = 1.1
 _BOUNDED_BLENDS = frozenset({"MIX", "DARKEN", "LIGHTEN", "MULTIPLY", "HUE", "COLOR", "VALUE"})
 _SORTING_KINDS = frozenset({"luminance", "separate", "combine"})
 # Closures that mirror.
+# How much more than Lambert's a rough diffuse surface may reflect at an angle.
+_ROUGH = 2.0
 _MIRRORS = frozenset({"glossy", "metallic", "glass"})
 # Roughness that stands for what a texture gives.
 _TYPICAL_ROUGHNESS = 0.5
@@ -155,6 +157,8 @@ def _graph_bound(graph, mesh, images, reflected):
             # Edges of metals are white; thin glass mirrors with two faces.
             if node.kind in {"metallic", "glass"}:
                 color = max(color, 1.0) * (2.0 if node.kind == "glass" else 1.0)
+            if node.kind == "diffuse" and "Roughness" in inputs:
+                color *= _ROUGH
             bound = _product(color, reflected)
             if node.kind == "glossy" and color > 1.0:
                 bound *= _REPEATED
@@ -162,8 +166,9 @@ def _graph_bound(graph, mesh, images, reflected):
             # A metal, or the coat of the diffuse part, is never brighter than white.
             color, strength = of(inputs["Emission Color"]), of(inputs["Emission Strength"])
             reflectance = max(of(inputs["Base Color"]), 1.0)
-            if "Coat Weight" in inputs:
-                reflectance += 1.0
+            reflectance += ("Coat Weight" in inputs) + ("Sheen Weight" in inputs)
+            if "Diffuse Roughness" in inputs:
+                reflectance *= _ROUGH
             bound = _product(reflectance, reflected) + _product(color, strength)
         elif node.kind == "mix_shader":
             bound = max(of(inputs["Shader"]), of(inputs["Shader_001"]))

@@ -78,7 +78,12 @@ class SurfaceGraph:
 
 
 # Closures whose light depends on the normal.
-LIT_KINDS = frozenset({"diffuse", "glossy", "principled", "translucent", "metallic", "glass"})
+LIT_KINDS = frozenset(
+    {
+        *("diffuse", "glossy", "principled", "translucent", "metallic", "glass"),
+        *("sheen", "toon", "hair"),
+    }
+)
 _NORMAL_KINDS = LIT_KINDS | {
     *("geometry", "texture_coordinate", "fresnel", "layer_weight", "tangent", "bump", "normal_map"),
     "displacement",
@@ -112,6 +117,8 @@ def attributes_read(graph):
             node.kind == "tangent" and not node.setting("axis")
         ):
             keys.add(f"tangent:{name}")
+        elif node.kind == "hair":
+            keys.add("tangent:")
         elif node.kind == "uv":
             keys.add(f"uv:{name}")
         elif node.kind == "color_attribute":

@@ -79,14 +79,15 @@ def compare(cases, ours, cycles):
     for number, case in enumerate(cases):
         row, column = divmod(number, columns)
         inner = tuple(slice(i * CELL_PX + 1, (i + 1) * CELL_PX - 1) for i in (row, column))
-        a, b = (_encoded(picture[::-1][inner][..., :3]) for picture in (ours, cycles))
+        a, b = (encoded(picture[::-1][inner][..., :3]) for picture in (ours, cycles))
         difference = np.sort(np.abs(a - b).max(axis=2).ravel())
         left_out = int(case.exempt * difference.size)
         found.append(float(difference[difference.size - 1 - left_out]))
     return found
 
 
-def _encoded(linear):
+def encoded(linear):
+    """Return linear colours as the displayed picture has them, 0 to 255."""
     x = np.clip(np.nan_to_num(linear.astype(np.float64), posinf=1e6), 0.0, 1.0)
     encoded = np.where(x <= 0.0031308, x * 12.92, 1.055 * np.maximum(x, 1e-9) ** (1 / 2.4) - 0.055)
     return 255.0 * encoded

@@ -22,7 +22,70 @@ def _emission(node, writer):
 @generates("diffuse")
 def _diffuse(node, writer):
     members = {"color": writer.value(node.input("Color"), "vec3")}
+    roughness = dict(node.inputs).get("Roughness")
+    if roughness is not None:
+        members["shape"] = _shape(writer, "ROUGH", writer.value(roughness, "float"))
     return writer.lit_closure("BSDF", "BSDF_DIFFUSE", members | _normal(node, writer))
+
+
+def _shape(writer, kind, *numbers, tangent="vec3(0.0)"):
+    """Return a shape of diffuse light; see lib/surface/shapes_lib.glsl."""
+    writer.features.add("SHAPES")
+    numbers = ", ".join([*numbers, *["0.0"] * (4 - len(numbers))])
+    return f"Shape(SHAPE_{kind}, vec4({numbers}), {tangent})"
+
+
+@generates("sheen")
+def _sheen(node, writer):
+    roughness = f"clamp({writer.value(node.input('Roughness'), 'float')}, 0.0, 1.0)"
+    members = {
+        "color": writer.value(node.input("Color"), "vec3"),
+        "shape": _shape(writer, node.setting("distribution"), roughness),
+    }
+    return writer.lit_closure("BSDF", "BSDF_DIFFUSE", members | _normal(node, writer))
+
+
+@generates("toon")
+def _toon(node, writer):
+    # Shares of a right angle.
+    size, smooth = (
+        f"1.5707963 * clamp({writer.value(node.input(name), 'float')}, {least}, 1.0)"
+        for name, least in (("Size", "1e-5"), ("Smooth", "0.0"))
+    )
+    members = {
+        "color": writer.value(node.input("Color"), "vec3"),
+        "shape": _shape(writer, node.setting("component"), size, smooth),
+    }
+    return writer.lit_closure("BSDF", "BSDF_DIFFUSE", members | _normal(node, writer))
+
+
+@generates("hair", "lib/nodes/input_nodes_lib.glsl")
+def _hair(node, writer):
+    writer.normal()
+    along, around = (writer.value(node.input(f"Roughness{a}"), "float") for a in "UV")
+    given = dict(node.inputs).get("Tangent")
+    if given is None:
+        tangent = f"tangent_of({writer.attribute('tangent:')}.xyz)"
+    else:
+        tangent = f"unit_or({writer.value(given, 'vec3')}, vec3(0.0))"
+    members = {
+        "color": writer.value(node.input("Color"), "vec3"),
+        "shape": _shape(writer, node.setting("component"), along, around, tangent=tangent),
+    }
+    return writer.lit_closure("BSDF", "BSDF_DIFFUSE", members)
+
+
+@generates("hair_color")
+def _hair_color(node, writer):
+    absorbed, roughness = (
+        writer.let("vec3", writer.value(node.input("Absorption"), "vec3")),
+        writer.let("float", writer.value(node.input("Roughness"), "float")),
+    )
+    # Chiang et al., A practical and controllable hair and fur model, 2016: colour of many strands.
+    terms = "5.969 + r * (-0.215 + r * (2.532 + r * (-10.73 + r * (5.574 + r * 0.245))))"
+    spread = writer.let("float", terms.replace("r ", f"{roughness} "))
+    color = f"exp(-sqrt(max({absorbed}, vec3(0.0))) * {spread})"
+    return {"Color": ("color", writer.let("vec3", color))}
 
 
 @generates("glossy")
@@ -60,6 +123,10 @@ _ON_TOP = {
     "coat_roughness": ("Coat Roughness", "float"),
     "coat_ior": ("Coat IOR", "float"),
     "coat_tint": ("Coat Tint", "vec3"),
+    "coat_normal": ("Coat Normal", "vec3"),
+    "sheen": ("Sheen Weight", "float"),
+    "sheen_roughness": ("Sheen Roughness", "float"),
+    "sheen_tint": ("Sheen Tint", "vec3"),
 }
 
 
@@ -74,6 +141,11 @@ def _principled(node, writer):
             members[member] = writer.value(given[name], kind)
     if "Coat Weight" in given:
         writer.features.add("COATED")
+    if "Sheen Weight" in given:
+        writer.features |= {"SHEEN", "SHAPES"}
+    if "Diffuse Roughness" in given:
+        rough = writer.value(given["Diffuse Roughness"], "float")
+        members["shape"] = _shape(writer, "ROUGH", rough)
     surface = writer.lit_closure("BSDF", "BSDF_PRINCIPLED", members | _normal(node, writer))
     if "Transmission Weight" in given:
         _see_through(writer, surface)

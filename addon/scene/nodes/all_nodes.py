@@ -1,9 +1,18 @@
 """All readers of Blender's nodes, by Blender's name of the kind of node."""
 
-from . import closure_nodes, image_nodes, input_nodes, pattern_nodes, value_nodes, vector_nodes
+from . import (
+    closure_nodes,
+    fibre_nodes,
+    image_nodes,
+    input_nodes,
+    pattern_nodes,
+    value_nodes,
+    vector_nodes,
+)
 
 READERS = (
     closure_nodes.READERS
+    | fibre_nodes.READERS
     | image_nodes.READERS
     | input_nodes.READERS
     | pattern_nodes.READERS

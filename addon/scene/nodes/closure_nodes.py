@@ -22,10 +22,7 @@ def _note_linked(reader, node, groups, *identifiers):
 
 # Inputs of the Principled BSDF that are not drawn, and the value at which they have no effect.
 _PRINCIPLED_LEFT_OUT = {
-    "Subsurface Weight": 0.0,
-    "Sheen Weight": 0.0,
     "Anisotropic": 0.0,
-    "Diffuse Roughness": 0.0,
     "Thin Film Thickness": 0.0,
 }
 
@@ -40,7 +37,9 @@ def _principled(reader, node, groups):
         if source.is_output or not is_constant(constant(source), default):
             name = identifier.removesuffix(" Weight").lower()
             reader.note(f"{name} is not drawn")
-    _note_linked(reader, node, groups, "Coat Normal", "Tangent")
+    _note_linked(reader, node, groups, "Tangent")
+    if not is_constant(reader.value(node, "Subsurface Weight", groups), 0.0):
+        reader.note(_AS_ENTERED)
     inputs = reader.values(
         node,
         (
@@ -60,6 +59,15 @@ def _principled(reader, node, groups):
     if not is_constant(coat, 0.0):
         names = ("Coat Roughness", "Coat IOR", "Coat Tint")
         inputs += [("Coat Weight", coat), *reader.values(node, names, groups)]
+        if reader.linked(node, "Coat Normal", groups):
+            inputs += reader.values(node, ("Coat Normal",), groups)
+    sheen = reader.value(node, "Sheen Weight", groups)
+    if not is_constant(sheen, 0.0):
+        names = ("Sheen Roughness", "Sheen Tint")
+        inputs += [("Sheen Weight", sheen), *reader.values(node, names, groups)]
+    rough = reader.value(node, "Diffuse Roughness", groups)
+    if not is_constant(rough, 0.0):
+        inputs.append(("Diffuse Roughness", rough))
     transmission = reader.value(node, "Transmission Weight", groups)
     if not is_constant(transmission, 0.0):
         inputs.append(("Transmission Weight", transmission))
@@ -72,24 +80,19 @@ def _principled(reader, node, groups):
 
 _THROUGH_GLASS = "glass does not bend what is seen through it, nor blur it"
 
-# Shader nodes that are drawn as a diffuse surface, with a warning.
-_AS_DIFFUSE = {
-    "SUBSURFACE_SCATTERING": "Color",
-    "BSDF_SHEEN": "Color",
-    "BSDF_TOON": "Color",
-    "BSDF_HAIR": "Color",
-}
+_AS_ENTERED = "light below a surface leaves it where it enters: it is drawn as diffuse"
 
 
-@reads("BSDF_DIFFUSE", *_AS_DIFFUSE)
+@reads("BSDF_DIFFUSE", "SUBSURFACE_SCATTERING")
 def _diffuse(reader, node, groups):
-    if node.type in _AS_DIFFUSE:
-        reader.note(f"node '{node.bl_label}' is drawn as a diffuse surface")
-    elif not is_constant(reader.value(node, "Roughness", groups), 0.0):
-        reader.note("roughness of a diffuse surface is not drawn")
-    color = reader.value(node, _AS_DIFFUSE.get(node.type, "Color"), groups)
-    inputs = [("Color", color), *reader.normal(node, groups)]
-    return Link(reader.add("diffuse", inputs), "BSDF")
+    inputs = [*reader.values(node, ("Color",), groups), *reader.normal(node, groups)]
+    if node.type == "SUBSURFACE_SCATTERING":
+        reader.note(_AS_ENTERED)
+    else:
+        rough = reader.value(node, "Roughness", groups)
+        if not is_constant(rough, 0.0):
+            inputs.append(("Roughness", rough))
+    return {node.outputs[0].identifier: Link(reader.add("diffuse", inputs), "BSDF")}
 
 
 def _multiple(node):

@@ -9,6 +9,7 @@
 #define BSDF_TRANSLUCENT 3
 #define BSDF_METALLIC 4
 #define BSDF_GLASS 5
+#include "lib/surface/shapes_lib.glsl"
 
 struct Bsdf {
   int kind;
@@ -27,6 +28,11 @@ struct Bsdf {
   float coat_roughness;
   float coat_ior;
   vec3 coat_tint;
+  vec3 coat_normal;    // 0 for the normal below
+  float sheen;         // share that has fibres on top
+  float sheen_roughness;
+  vec3 sheen_tint;
+  Shape shape;         // of the diffuse part
 };
 
 Bsdf bsdf_of_kind(int kind)
@@ -48,6 +54,11 @@ Bsdf bsdf_of_kind(int kind)
   bsdf.coat_roughness = 0.03;
   bsdf.coat_ior = 1.5;
   bsdf.coat_tint = vec3(1.0);
+  bsdf.coat_normal = vec3(0.0);
+  bsdf.sheen = 0.0;
+  bsdf.sheen_roughness = 0.5;
+  bsdf.sheen_tint = vec3(1.0);
+  bsdf.shape = Shape(SHAPE_LAMBERT, vec4(0.0), vec3(0.0));
   return bsdf;
 }
 

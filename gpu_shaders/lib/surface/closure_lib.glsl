@@ -48,6 +48,14 @@ Closure closure_add(Closure a, Closure b)
                  a.unsplit + b.unsplit);
 }
 
+// The light and the transmittance of a surface, made less by what lies on top.
+Closure closure_scaled(Closure a, float share)
+{
+  Closure scaled = closure_mix(closure_none(), a, share);
+  scaled.holdout = a.holdout;
+  return scaled;
+}
+
 // A surface of opacity `alpha`.
 Closure closure_cover(Closure a, float alpha)
 {

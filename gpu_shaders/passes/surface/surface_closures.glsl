@@ -21,8 +21,23 @@ Lobe metal(vec3 weight, vec3 color, vec3 tint)
   return Lobe(weight, f0, 0.0, true, edge * (1.0 - min(tint, vec3(1.0))) / (c * m5 * m));
 }
 
+// The surface's shading with its shape of diffuse light.
+Shading shaped(Shading s, Bsdf bsdf)
+{
+#ifdef SHAPES
+  s.shape = bsdf.shape;
+  s.shape.numbers = vec4(number_or_zero(bsdf.shape.numbers.xyz), 0.0);
+  if (s.shape.kind == SHAPE_ROUGH) {
+    s.shape.numbers.x = clamp(s.shape.numbers.x, 0.0, 1.0);
+    s.shape.numbers.y = dot(clamp(number_or_zero(bsdf.color), 0.0, 1.0), vec3(1.0 / 3.0));
+  }
+#endif
+  return s;
+}
+
 Closure closure_diffuse(Shading s, Bsdf bsdf)
 {
+  s = shaped(s, bsdf);
   Reflected reflected = diffuse_light(s);
   // Negative colours reflect nothing, as in Cycles; negative lamps do take light away.
   vec3 c = max(number_or_zero(bsdf.color), vec3(0.0));
@@ -45,6 +60,10 @@ Closure closure_glossy(Shading s, Bsdf bsdf)
 // A clear layer on top: it mirrors, tints what passes it twice, and takes what it mirrors from below.
 Closure coated(Shading s, Bsdf bsdf, Closure below)
 {
+  if (dot(bsdf.coat_normal, bsdf.coat_normal) > 0.0) {
+    s.normal = normalize(bsdf.coat_normal);
+    s.cos_view = clamp(dot(s.normal, s.view), 1e-4, 1.0);
+  }
   float r = clamp(number_or_zero(bsdf.coat_roughness), 0.0, 1.0);
   float share = clamp(number_or_zero(bsdf.coat), 0.0, 1.0);
   float eta = max(number_or_zero(bsdf.coat_ior), 1.0);
@@ -59,6 +78,22 @@ Closure coated(Shading s, Bsdf bsdf, Closure below)
   above.unsplit += below.unsplit * left;
   above.transmittance = below.transmittance * left;
   return above;
+}
+#endif
+
+#ifdef SHEEN
+// Fibres on top: they scatter light at the edge, and take what they scatter from below.
+Closure sheened(Shading s, Bsdf bsdf, Closure below)
+{
+  float weight = clamp(number_or_zero(bsdf.sheen), 0.0, 1.0);
+  float roughness = clamp(number_or_zero(bsdf.sheen_roughness), 0.0, 1.0);
+  vec3 tint = max(number_or_zero(bsdf.sheen_tint), vec3(0.0)) * weight;
+  bsdf.shape = Shape(SHAPE_MICROFIBER, vec4(roughness, 0.0, 0.0, 0.0), vec3(0.0));
+  bsdf.color = tint;
+  Closure above = closure_diffuse(s, bsdf);
+  vec3 taken = tint * microfiber_albedo(s.cos_view, roughness);
+  below = closure_scaled(below, max(1.0 - max(taken.r, max(taken.g, taken.b)), 0.0));
+  return closure_add(below, above);
 }
 #endif
 
@@ -89,7 +124,7 @@ Closure closure_principled(Shading s, Bsdf bsdf)
     vec3 taken = lobe_albedo(dielectric, albedo, s.cos_view);
     float left = (1.0 - share) * clamp(1.0 - max(taken.r, max(taken.g, taken.b)), 0.0, 1.0);
     float glass = clamp(number_or_zero(bsdf.transmission), 0.0, 1.0);
-    Reflected diffuse = diffuse_light(s);
+    Reflected diffuse = diffuse_light(shaped(s, bsdf));
     reflected.light += base * left * (1.0 - glass) * diffuse.light;
     reflected.unsplit += base * left * (1.0 - glass) * diffuse.unsplit;
     // Half of the tint at each of two faces.
@@ -99,6 +134,9 @@ Closure closure_principled(Shading s, Bsdf bsdf)
   closure.transmittance = passed;
 #ifdef COATED
   closure = coated(s, bsdf, closure);
+#endif
+#ifdef SHEEN
+  closure = sheened(s, bsdf, closure);
 #endif
   closure.radiance += finite_light(bsdf.emission_color * bsdf.emission_strength);
   return closure;

@@ -40,6 +40,9 @@ struct Shading {
   vec3 normal;  // shading normal on the side that is seen
   vec3 view;    // towards the lens sample
   float cos_view;
+#ifdef SHAPES
+  Shape shape;  // of diffuse light
+#endif
 };
 
 // A reflecting lobe: F = f0 + (1 - f0) rise - dip cos (1 - cos)^6. eta > 0: a dielectric's rise, else
@@ -70,6 +73,9 @@ Shading surface_shading(vec3 bent)
   float size = length(normal);
   s.normal = (size > 0.0) ? normal / size : s.view;
   s.cos_view = clamp(dot(s.normal, s.view), 1e-4, 1.0);
+#ifdef SHAPES
+  s.shape = Shape(SHAPE_LAMBERT, vec4(0.0), vec3(0.0));
+#endif
   return s;
 }
 
@@ -80,14 +86,40 @@ vec3 environment_direction(vec3 direction)
               dot(environment_buf.rotation_z.xyz, direction));
 }
 
-// Of a white Lambertian surface.
-Reflected diffuse_light(Shading s)
+// A lamp's light that a white surface of the shape reflects, over its irradiance.
+float diffuse_response(Shading s, vec3 towards, float sin2)
+{
+#ifdef SHAPES
+  if (s.shape.kind != SHAPE_LAMBERT) {
+    return shape_response(s.shape, s.normal, s.view, towards);
+  }
+#endif
+  return horizon_cosine(dot(s.normal, towards), sin2) / PI;
+}
+
+// The world that a white surface of the shape reflects.
+vec3 diffuse_world(Shading s)
 {
   vec3 sum = environment_buf.color.rgb;
+  vec3 axis = s.normal;
+#ifdef SHAPES
+  if (s.shape.kind != SHAPE_LAMBERT) {
+    sum *= shape_albedo(s.shape, s.cos_view);
+    axis = (s.shape.kind == SHAPE_HAIR_THROUGH) ? -axis : axis;
+    axis = (s.shape.kind == SHAPE_TOON_GLOSSY) ? 2.0 * dot(axis, s.view) * axis - s.view : axis;
+  }
+#endif
   if (environment_buf.color.w > 0.5) {
-    vec2 place = direction_to_octahedron(environment_direction(s.normal));
+    vec2 place = direction_to_octahedron(environment_direction(axis));
     sum *= environment_level(environment_levels_tx, place, ENVIRONMENT_DIFFUSE);
   }
+  return sum;
+}
+
+// Of a white surface.
+Reflected diffuse_light(Shading s)
+{
+  vec3 sum = diffuse_world(s);
   vec3 unsplit = vec3(0.0);
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
@@ -95,8 +127,8 @@ Reflected diffuse_light(Shading s)
       continue;
     }
     Illumination incoming = light_illuminate(light, s.position);
-    float cosine = horizon_cosine(dot(s.normal, incoming.towards), incoming.sin2);
-    vec3 reflected = incoming.irradiance * (light.factors.x * cosine / PI);
+    vec3 reflected = incoming.irradiance *
+                     (light.factors.x * diffuse_response(s, incoming.towards, incoming.sin2));
     sum += reflected;
     unsplit += reflected * light.unsplit;
   }
