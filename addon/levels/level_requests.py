@@ -88,8 +88,9 @@ class LevelRequests:
             self.done.pop(mesh.uid, None)
 
     def is_small(self, mesh):
-        """Whether a mesh has too few triangles for a level of detail."""
-        return len(mesh.triangles) < 2 * self.least_triangles
+        """Whether a mesh has too few triangles for a level, or such as are seen by themselves."""
+        few = len(mesh.triangles) < 2 * self.least_triangles
+        return few or "barycentric" in mesh.attributes
 
     def levels_of(self, uid, made):
         """Return the levels of a wanted mesh as `LevelHandle.ready` does."""

@@ -101,10 +101,10 @@ def attributes_read(graph):
     Returns
     -------
     frozenset of str
-        ``"normal"``, ``"generated"``, ``"uv:NAME"``, ``"tangent:NAME"`` of a UV map, and
-        ``"color:NAME"``; an empty NAME is the active one. A node that reads an attribute of any
-        kind by its name gives both keys; meshes
-        need only have those that exist.
+        ``"normal"``, ``"generated"``, ``"uv:NAME"``, ``"tangent:NAME"`` of a UV map,
+        ``"color:NAME"``, ``"pointiness"``, ``"island"`` (a random number) and ``"barycentric"``;
+        an empty NAME is the active one. A node that reads an attribute of any kind by its name
+        gives both keys; meshes need only have those that exist.
     """
     keys = set()
     for node in graph.nodes:
@@ -117,6 +117,10 @@ def attributes_read(graph):
             node.kind == "tangent" and not node.setting("axis")
         ):
             keys.add(f"tangent:{name}")
+        elif node.kind in {"pointiness", "island"}:
+            keys.add(node.kind)
+        elif node.kind == "wireframe":
+            keys.add("barycentric")
         elif node.kind == "hair":
             keys.add("tangent:")
         elif node.kind == "uv":

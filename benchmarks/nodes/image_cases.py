@@ -26,6 +26,26 @@ def _sky(kind, gain, vector="place", **settings):
     return Case("TexSky", "Color", inputs, shown, shape="dome", gain=gain)
 
 
+# A street lamp's file: three half planes, five angles from straight down to up.
+IES = """IESNA:LM-63-1995
+[TEST] lamp
+TILT=NONE
+1 1000 1 5 3 1 1 0 0 0
+1 1 100
+0 30 60 90 180
+0 90 180
+100 80 50 20 10
+100 60 40 30 5
+100 90 20 10 0
+"""
+
+
+def _lamp(bpy, node):
+    node.mode = "INTERNAL"
+    node.ies = bpy.data.texts.new("lamp.ies")
+    node.ies.write(IES)
+
+
 # Few texels, so that a pixel's footprint is small: Cycles reads coarser pictures where it is not.
 _SMALL = _picture(4, 3)
 
@@ -70,6 +90,10 @@ CASES = [
         for p in ("EQUIRECTANGULAR", "MIRROR_BALL")
     ),
     Case("TexEnvironment", "Color", {}, {}, _SMALL, "dome"),
+    *(
+        Case("TexIES", "Fac", {"Vector": v}, {}, _lamp, "dome", gain=0.2)
+        for v in ("signed", "object", "bent")
+    ),
     _sky("MULTIPLE_SCATTERING", 0.1, "signed"),
     _sky("MULTIPLE_SCATTERING", 0.1, None),
     _sky("MULTIPLE_SCATTERING", 0.1, "bent", sun_elevation=0.03, altitude=3000.0, air_density=2.0),

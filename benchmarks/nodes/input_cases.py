@@ -16,6 +16,15 @@ def _small(output):
 CASES = [
     # Where a pixel lies on the edge of two triangles, either may be seen.
     *(Case("NewGeometry", name, shape="dome", exempt=0.06) for name in _GEOMETRY),
+    Case("NewGeometry", "Pointiness", shape="dome"),
+    Case("NewGeometry", "Random Per Island", shape="dome"),
+    # An edge of a line may run through the middle of a pixel.
+    *(Case("Wireframe", "Fac", {"Size": s}, exempt=0.06) for s in (0.3, 0.7)),
+    Case("Wireframe", "Fac", {"Size": 0.13}, shape="dome", exempt=0.1),
+    *(
+        Case("Wireframe", "Fac", {"Size": s}, {"use_pixel_size": True}, exempt=0.1)
+        for s in (0.8, 1.5)
+    ),
     *(Case("TexCoord", name, shape="dome") for name in _COORDINATES),
     *(Case("ObjectInfo", name) for name in _OBJECT),
     *(Case("CameraData", name) for name in ("View Vector", "View Z Depth", "View Distance")),

@@ -135,4 +135,21 @@ GABOR = [
         for output, a in (("Value", 1.0), ("Value", 0.3), ("Phase", 0.6), ("Intensity", 0.0))
     ),
 ]
-CASES = NOISE + VORONOI + OTHERS + GABOR
+TILING = [
+    *(
+        Case("RadialTiling", name, {**_PLACE, "Sides": sides}, {"normalize": n})
+        for sides, n in ((5.0, False), (5.0, True), (4.5, False))
+        for name in (*("Segment Coordinates", "Segment ID", "Segment Width", "Segment Rotation"),)
+    ),
+    *(
+        Case("RadialTiling", name, {**_PLACE, "Roundness": 1.0}, {"normalize": n})
+        for n in (False, True)
+        for name in ("Segment Coordinates", "Segment Width")
+    ),
+]
+# Between sharp and round corners the two differ.
+ROUND_TILING = [
+    Case("RadialTiling", "Segment Coordinates", {**_PLACE, "Roundness": 0.5}, {"normalize": n})
+    for n in (False, True)
+]
+CASES = NOISE + VORONOI + OTHERS + GABOR + TILING

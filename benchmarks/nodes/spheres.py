@@ -103,7 +103,9 @@ def build_spheres(bpy, cases, sun):
     for number, case in enumerate(cases):
         row, column = divmod(number, columns)
         place = (2.0 * column - columns + 1.0, 2.0 * row - columns + 1.0, 0.0)
-        bpy.ops.mesh.primitive_uv_sphere_add(64, 32, radius=_RADIUS, location=place)
+        bpy.ops.mesh.primitive_uv_sphere_add(
+            segments=64, ring_count=32, radius=_RADIUS, location=place
+        )
         ball = bpy.context.object
         ball.data.polygons.foreach_set("use_smooth", np.ones(len(ball.data.polygons), bool))
         # Each by itself.

@@ -45,7 +45,15 @@ def _link_along(tree, socket):
     tree.links.new(parts.outputs["X"], socket)
 
 
+def _glow(bpy, node):
+    tree = node.id_data
+    glow = tree.nodes.new("ShaderNodeEmission")
+    glow.inputs["Color"].default_value = (0.2, 0.5, 0.7, 1.0)
+    tree.links.new(glow.outputs[0], node.inputs[0])
+
+
 CASES = [
+    *(Case("ShaderToRGB", name, {}, {}, _glow, gain=0.5) for name in ("Color", "Alpha")),
     *(
         Case("Math", "Value", {"Value": "x", "Value_001": "y", "Value_002": 0.3}, {"operation": o})
         for o in ("ADD", "MULTIPLY_ADD", "POWER", "SMOOTH_MIN", "SINE", "ARCTAN2")

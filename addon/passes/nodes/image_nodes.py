@@ -22,6 +22,7 @@ _FLAT = {
     "SPHERE": "project_sphere({})",
     "TUBE": "project_tube({})",
     "EQUIRECTANGULAR": "project_equirectangular({})",
+    "IES": "project_photometric({})",
     "SKY": "project_sky({})",
     "MIRROR_BALL": "project_mirror_ball({})",
 }

@@ -61,6 +61,29 @@ def _geometry(node, writer):
     return _let_used(node, writer, outputs)
 
 
+@generates("pointiness")
+def _pointiness(node, writer):
+    # Flat where a mesh has none.
+    known = "pointiness" in writer.available
+    value = f"{writer.attribute('pointiness')}.x" if known else "0.5"
+    return {"Value": ("float", value)}
+
+
+@generates("island")
+def _island(node, writer):
+    return {"Value": ("float", f"{writer.attribute('island')}.x")}
+
+
+@generates("wireframe", "lib/nodes/wireframe_lib.glsl")
+def _wireframe(node, writer):
+    size = writer.value(node.input("Size"), "float")
+    if "barycentric" not in writer.available:
+        return {"Fac": ("float", "0.0")}
+    place = writer.attribute("barycentric")
+    unit = "pixel" if node.setting("pixels") else "world"
+    return {"Fac": ("float", writer.let("float", f"wireframe_{unit}({place}, {size})"))}
+
+
 @generates("texture_coordinate", _INPUT)
 def _texture_coordinate(node, writer):
     writer.normal()

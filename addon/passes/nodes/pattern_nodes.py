@@ -171,3 +171,19 @@ def _gabor(node, writer):
         name: ("float", f"{found}.{axis}")
         for name, axis in zip(("Value", "Phase", "Intensity"), "xyz", strict=True)
     }
+
+
+@generates("radial_tiling", "lib/nodes/tiling_lib.glsl")
+def _radial_tiling(node, writer):
+    vector = writer.value(node.input("Vector"), "vec3")
+    sides, roundness = _floats(node, writer, "Sides", "Roundness")
+    normalizes = "true" if node.setting("normalize") else "false"
+    found = writer.let(
+        "Tiling", f"radial_tiling(({vector}).xy, {sides}, {roundness}, {normalizes})"
+    )
+    return {
+        "Segment Coordinates": ("vec3", f"vec3({found}.place, 0.0)"),
+        "Segment ID": ("float", f"{found}.id"),
+        "Segment Width": ("float", f"{found}.width"),
+        "Segment Rotation": ("float", f"{found}.rotation"),
+    }

@@ -7,7 +7,10 @@ import numpy as np
 from ...device.geometry import attribute_identifier
 from ...snapshot.surface_graph import Constant, Link
 
-_ATTRIBUTE_COMPONENTS = {"normal": 3, "generated": 3, "tangent": 4, "uv": 2, "color": 4}
+_ATTRIBUTE_COMPONENTS = {
+    **{"normal": 3, "generated": 3, "tangent": 4, "uv": 2, "color": 4},
+    **{"pointiness": 2, "island": 2, "barycentric": 2},
+}
 
 
 @dataclass

@@ -13,6 +13,7 @@ from .mesh_attributes import (
     read_tangents,
     without_infinite,
 )
+from .mesh_islands import islands, pointiness, random_numbers
 from .vertex_split import VertexSplit, split_all, split_vertices
 
 
@@ -27,11 +28,14 @@ class MeshReading:
         How corners were split into vertices; `read_moved_positions` needs it.
     notes : tuple of str
         Lines for the report.
+    corners : ndarray of shape (3 T,) or None
+        Where every triangle has vertices of its own: the mesh's corners that were split.
     """
 
     snapshot: MeshSnapshot
     split: VertexSplit | None
     notes: tuple[str, ...] = ()
+    corners: np.ndarray | None = None
 
 
 def read_mesh(mesh, keys, owner, base=None, carried=True):
@@ -79,6 +83,10 @@ def read_mesh(mesh, keys, owner, base=None, carried=True):
         elif kind == "generated":
             known = None if carried else base
             values, domain = _read_generated(mesh, known, positions, corner_vertices), "POINT"
+        elif kind in {"pointiness", "island"}:
+            values, domain = _read_shape(mesh, kind, positions), "POINT"
+        elif kind == "barycentric":
+            continue
         elif kind == "tangent":
             values, domain = read_tangents(mesh, name), "CORNER"
             if values is None:
@@ -98,13 +106,22 @@ def read_mesh(mesh, keys, owner, base=None, carried=True):
             else:
                 values, domain = without_infinite(mesh, values, domain, corner_vertices), "CORNER"
         (vertex_values if domain == "POINT" else corner_values)[key] = values
-    if flat:
+    own_corners = None
+    if "barycentric" in keys:
+        # Each triangle has vertices of its own.
+        own_corners = triangle_corners.reshape(-1)
+        corner_vertices = np.take(corner_vertices, own_corners)
+        corner_values = {k: np.take(v, own_corners, axis=0) for k, v in corner_values.items()}
+        corner_values["barycentric"] = np.tile(_OF_CORNERS, (len(triangle_corners), 1))
+        triangle_corners = np.arange(len(own_corners), dtype=np.int32).reshape(-1, 3)
+        split = split_all(corner_vertices)
+    elif flat:
         split = split_all(corner_vertices)
     else:
         split = split_vertices(corner_vertices, len(positions), list(corner_values.values()))
     attributes = {key: split.of_vertices(values) for key, values in vertex_values.items()}
     attributes |= {key: split.of_corners(values) for key, values in corner_values.items()}
-    rest, _ = _read_rest(mesh, base, positions, corner_vertices)
+    rest, _ = _read_rest(mesh, base, positions, _read_corner_vertices(mesh))
     if not np.isfinite(rest).all() or np.array_equal(rest, positions):
         rest = None
     snapshot = MeshSnapshot(
@@ -116,7 +133,27 @@ def read_mesh(mesh, keys, owner, base=None, carried=True):
         attributes=attributes,
         rest=None if rest is None else split.of_vertices(rest),
     )
-    return MeshReading(snapshot, split, tuple(notes))
+    return MeshReading(snapshot, split, tuple(notes), own_corners)
+
+
+# Barycentric coordinates of a triangle's corners; the third is what is left of 1.
+_OF_CORNERS = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]], np.float32)
+
+
+def _read_shape(mesh, kind, positions):
+    """Return how pointed vertices are, or the random numbers of their islands, shape (V, 2)."""
+    edges = np.empty(2 * len(mesh.edges), np.int32)
+    if len(edges):
+        mesh.attributes[".edge_verts"].data.foreach_get("value", edges)
+    edges = edges.reshape(-1, 2)
+    if kind == "island":
+        values = random_numbers(islands(len(positions), edges))
+    else:
+        normals = np.empty((len(positions), 3), np.float32)
+        if len(normals):
+            mesh.vertex_normals.foreach_get("vector", normals.reshape(-1))
+        values = pointiness(positions, normals, edges)
+    return np.stack([values, np.zeros_like(values)], axis=1)
 
 
 def used_slots(mesh):
@@ -152,9 +189,13 @@ def read_moved_positions(mesh, reading):
         None if the mesh has another topology there, or coordinates that are not finite.
     """
     split = reading.split
-    if len(mesh.loops) != len(split.index):
-        return None
     corner_vertices = _read_corner_vertices(mesh)
+    if reading.corners is not None:
+        if len(reading.corners) and reading.corners.max() >= len(corner_vertices):
+            return None
+        corner_vertices = np.take(corner_vertices, reading.corners)
+    if len(corner_vertices) != len(split.index):
+        return None
     if len(corner_vertices) and not np.array_equal(
         np.take(split.vertices, split.index), corner_vertices
     ):

@@ -1,9 +1,12 @@
 """Readers of Blender's nodes that look up images."""
 
 import math
+from pathlib import Path
+
+import bpy
 
 from ...snapshot.surface_graph import MISSING_IMAGE_COLOR, Constant, Link
-from ..images import color_spaces
+from ..images import color_spaces, ies_file
 from ..skies.sky_image import Sky, sky_xyz
 from .tree_reader import input_socket, reader_registry
 
@@ -97,6 +100,43 @@ def _sky(node):
         node.sun_size if node.sun_disc else 0.0,
         node.sun_intensity,
     )
+
+
+@reads("TEX_IES")
+def _photometric_texture(reader, node, groups):
+    text = _photometric_text(node)
+    use = None
+    if text is not None:
+        try:
+            use = reader.computed_image(("ies", text), "ies", lambda: ies_file.picture(text))
+        except ValueError as error:
+            reader.note(f"node '{node.bl_label}' cannot be read: {error}; 0 is used")
+    if use is None:
+        # As Cycles draws a lamp without a file.
+        return {"Fac": Constant((0.0,))}
+    if reader.linked(node, "Vector", groups):
+        vector = reader.value(node, "Vector", groups)
+    else:
+        vector = Link(reader.add("generated"), "Generated")
+    settings = (("projection", "IES"), ("interpolation", "Linear"), ("extension", "EXTEND"))
+    found = Link(reader.add("image_texture", [("Vector", vector)], settings, use.uid), "Color")
+    strength = reader.value(node, "Strength", groups)
+    product = [("a", found), ("b", strength), ("c", Constant((0.0,)))]
+    return {"Fac": Link(reader.add("math", product, _TIMES), "Value")}
+
+
+_TIMES = (("operation", "MULTIPLY"), ("clamp", ""))
+
+
+def _photometric_text(node):
+    """Return the text of a photometric file, or None."""
+    if node.mode == "INTERNAL":
+        return node.ies.as_string() if node.ies else None
+    try:
+        path = bpy.path.abspath(node.filepath, library=node.id_data.library)
+        return Path(path).read_text(encoding="latin-1")
+    except OSError:
+        return None
 
 
 def _sampling(node, use, extension):

@@ -51,9 +51,8 @@ def _attribute(reader, node, groups):
 
 _LEFT_OUT = {
     "Parametric": ((0.0, 0.0, 0.0), "0 is used"),
-    "Pointiness": ((0.5,), "0.5 is used, as of a flat surface"),
-    "Random Per Island": ((0.0,), "0 is used"),
 }
+_OF_VERTICES = {"Pointiness": "pointiness", "Random Per Island": "island"}
 
 
 @reads("NEW_GEOMETRY")
@@ -62,6 +61,11 @@ def _geometry(reader, node, groups):
     outputs = {}
     for socket in node.outputs:
         outputs[socket.identifier] = Link(index, socket.identifier)
+        if socket.identifier in _OF_VERTICES:
+            kind = _OF_VERTICES[socket.identifier]
+            # Computed only where something reads it.
+            known = Link(reader.add(kind), "Value") if socket.is_linked else Constant((0.0,))
+            outputs[socket.identifier] = known
         if socket.identifier in _LEFT_OUT:
             value, what = _LEFT_OUT[socket.identifier]
             outputs[socket.identifier] = Constant(value)
@@ -144,8 +148,9 @@ def _bevel(reader, node, groups):
 
 @reads("WIREFRAME")
 def _wireframe(reader, node, groups):
-    reader.note(f"node '{node.bl_label}' draws no lines; 0 is used")
-    return {"Fac": Constant((0.0,))}
+    inputs = reader.values(node, ("Size",), groups)
+    settings = (("pixels", "1" if node.use_pixel_size else ""),)
+    return reader.add("wireframe", inputs, settings)
 
 
 @reads("VOLUME_INFO")

@@ -116,3 +116,9 @@ def _gabor(reader, node, groups):
     names = ("Scale", "Frequency", "Anisotropy", turned)
     inputs = [_place(reader, node, groups), *reader.values(node, names, groups)]
     return reader.add("gabor", inputs, (("type", node.gabor_type),))
+
+
+@reads("ShaderNodeRadialTiling")
+def _radial_tiling(reader, node, groups):
+    inputs = reader.values(node, ("Vector", "Sides", "Roundness"), groups)
+    return reader.add("radial_tiling", inputs, (("normalize", "1" if node.normalize else ""),))

@@ -42,6 +42,14 @@ vec2 project_sky(vec3 direction)
   return vec2(0.5 - longitude / (2.0 * PROJECTION_PI), latitude / PROJECTION_PI + 0.5);
 }
 
+// Of a lamp's intensities: around, from -y, and up from straight below.
+vec2 project_photometric(vec3 direction)
+{
+  vec3 d = direction / max(length(direction), 1e-12);
+  float around = atan(d.x, d.y) + PROJECTION_PI;
+  return vec2(around / (2.0 * PROJECTION_PI), acos(clamp(-d.z, -1.0, 1.0)) / PROJECTION_PI);
+}
+
 // Of a photograph of a mirror ball, seen along +y.
 vec2 project_mirror_ball(vec3 direction)
 {
