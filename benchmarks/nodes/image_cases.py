@@ -91,7 +91,8 @@ CASES = [
     ),
     Case("TexEnvironment", "Color", {}, {}, _SMALL, "dome"),
     *(
-        Case("TexIES", "Fac", {"Vector": v}, {}, _lamp, "dome", gain=0.2)
+        # At the file's angles the cubics bend within a texel of the picture.
+        Case("TexIES", "Fac", {"Vector": v}, {}, _lamp, "dome", exempt=0.06, gain=0.2)
         for v in ("signed", "object", "bent")
     ),
     _sky("MULTIPLE_SCATTERING", 0.1, "signed"),

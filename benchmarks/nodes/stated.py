@@ -14,12 +14,12 @@ STATED = {
     "OutputWorld": (EXACT, "Surface; no Volume"),
     "OutputLight": (APPROXIMATE, "one Emission of constant inputs"),
     "BsdfTransparent": (APPROXIMATE, "light that passes keeps its colour, dimmed by the mean"),
-    "BsdfDiffuse": (APPROXIMATE, "no shadows, no light from other surfaces; no roughness"),
+    "BsdfDiffuse": (APPROXIMATE, "no shadows, no light from other surfaces"),
     "BsdfAnisotropic": (APPROXIMATE, "mirrors lights and the world; no anisotropy"),
     "BsdfPrincipled": (
         APPROXIMATE,
-        "base, metal, specular, coat, transmission, emission, alpha, normal; glass does not bend or"
-        " blur; no sheen, subsurface, anisotropy, thin film",
+        "all but anisotropy and thin film; glass does not bend or blur; light below the surface"
+        " leaves where it enters",
     ),
     "BsdfMetallic": (APPROXIMATE, "edges of conductors by Schlick; no anisotropy, no thin film"),
     "BsdfGlass": (APPROXIMATE, "what is behind is seen straight through, not blurred"),

@@ -13,14 +13,14 @@ def aplanat_picture(scene):
     return render_picture(scene)
 
 
-def cycles_picture(scene, filter_px):
-    """Return a picture of Cycles of one sample within a width around each pixel's middle."""
+def cycles_picture(scene, filter_px, samples=1, bounces=0):
+    """Return a picture of Cycles of samples within a width around each pixel's middle."""
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.device = "CPU"
-    cycles.samples = 1
+    cycles.samples = samples
     cycles.use_adaptive_sampling = cycles.use_denoising = False
     cycles.pixel_filter_type = "BLACKMAN_HARRIS"
     cycles.filter_width = filter_px
-    cycles.max_bounces = 0
+    cycles.max_bounces = bounces
     return render_picture(scene)

@@ -4,7 +4,7 @@
     python -m benchmarks.tools.node_table --write  # into the docs
 
 Each node's cases (`benchmarks.nodes`) glow on cards that both engines draw; a node is exact where
-the displayed pictures differ by 2/255 at most.
+the displayed pictures differ by 2/255 at most. Closures are compared on spheres, as means.
 """
 
 import argparse
@@ -59,11 +59,39 @@ def measured(bpy):
     return found
 
 
+def lit(bpy):
+    """Return the mean difference of each closure on lit spheres, in 1/255, by type.
+
+    Parameters
+    ----------
+    bpy : module
+        With Aplanat registered.
+
+    Returns
+    -------
+    dict of str to (float, int)
+        Largest mean of a sphere, and number of spheres.
+    """
+    from benchmarks.nodes import spheres
+    from benchmarks.referees.plain_pictures import aplanat_picture, cycles_picture
+
+    found = {}
+    for sun in (False, True):
+        scene = spheres.build_spheres(bpy, spheres.CASES, sun)
+        ours = aplanat_picture(scene)
+        cycles = cycles_picture(scene, 0.01, samples=64, bounces=2)
+        means = spheres.compare(spheres.CASES, ours, cycles)
+        for case, difference in zip(spheres.CASES, means, strict=True):
+            worst, count = found.get(case.node, (0.0, 0))
+            found[case.node] = max(worst, difference), count + 1
+    return found
+
+
 def table(bpy):
     """Return the lines of the table and the number of nodes by status."""
     from benchmarks.nodes.stated import APPROXIMATE, EXACT, LIMITS, STATED
 
-    differences = measured(bpy)
+    differences, means = measured(bpy), lit(bpy)
     rows, counts = [], {}
     for name in menu_nodes(bpy):
         if name in differences:
@@ -73,7 +101,7 @@ def table(bpy):
             number = f"{worst:.1f} ({cases})"
         else:
             status, note = STATED.get(name, ("fallback", "not read"))
-            number = ""
+            number = "mean {:.1f} ({})".format(*means[name]) if name in means else ""
         counts[status] = counts.get(status, 0) + 1
         label = getattr(bpy.types, f"ShaderNode{name}").bl_rna.name
         rows.append((label, f"| {label} | {status} | {number} | {note} |"))

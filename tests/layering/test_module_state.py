@@ -97,6 +97,7 @@ OTHERS = {
     "passes.nodes.value_nodes": ("makers of GLSL by kind of node", ("generates",)),
     "passes.nodes.vector_nodes": ("makers of GLSL by kind of node", ("generates",)),
     "scene.nodes.closure_nodes": ("readers by kind of node", ("reads",)),
+    "scene.nodes.fibre_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.image_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.input_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.pattern_nodes": ("readers by kind of node", ("reads",)),
