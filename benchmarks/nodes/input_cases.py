@@ -20,6 +20,7 @@ CASES = [
     Case("NewGeometry", "Random Per Island", shape="dome"),
     # An edge of a line may run through the middle of a pixel.
     *(Case("Wireframe", "Fac", {"Size": s}, exempt=0.06) for s in (0.3, 0.7)),
+    Case("Wireframe", "Fac", {"Size": "signed"}, exempt=0.06),
     Case("Wireframe", "Fac", {"Size": 0.13}, shape="dome", exempt=0.1),
     *(
         Case("Wireframe", "Fac", {"Size": s}, {"use_pixel_size": True}, exempt=0.1)
@@ -43,6 +44,7 @@ CASES = [
     Case("UVMap", "UV", settings={"uv_map": "UVMap"}),
     Case("Attribute", "Color", settings={"attribute_name": "Col"}),
     Case("Attribute", "Alpha", settings={"attribute_name": "Col"}),
+    *(Case("Attribute", "Fac", settings={"attribute_name": n}) for n in ("Col", "UVMap")),
     Case("Attribute", "Vector", settings={"attribute_name": "UVMap"}),
     Case("VertexColor", "Color", settings={"layer_name": "Col"}),
     Case("VertexColor", "Alpha", settings={"layer_name": "Col"}),

@@ -43,11 +43,11 @@ def build_sheet(bpy, cases, orthographic=False):
         camera.data.shift_y = 0.2 / (2.0 * columns)
     else:
         camera.location.x = camera.location.y = camera.data.shift_x = camera.data.shift_y = 0.0
-    image = _image(bpy)
+    image = picture(bpy)
     for number, case in enumerate(cases):
         row, column = divmod(number, columns)
         place = (2.0 * column - columns + 1.0, 2.0 * row - columns + 1.0, 0.0)
-        mesh = _dome(bpy) if case.shape == "dome" else _card(bpy)
+        mesh = _dome(bpy) if case.shape == "dome" else card(bpy)
         thing = bpy.data.objects.new(f"card {number}", mesh)
         thing.location = place
         thing.scale = (1.0, 1.0, 0.7)
@@ -79,7 +79,7 @@ def compare(cases, ours, cycles):
     for number, case in enumerate(cases):
         row, column = divmod(number, columns)
         inner = tuple(slice(i * CELL_PX + 1, (i + 1) * CELL_PX - 1) for i in (row, column))
-        a, b = (encoded(picture[::-1][inner][..., :3]) for picture in (ours, cycles))
+        a, b = (encoded(shown[::-1][inner][..., :3]) for shown in (ours, cycles))
         difference = np.sort(np.abs(a - b).max(axis=2).ravel())
         left_out = int(case.exempt * difference.size)
         found.append(float(difference[difference.size - 1 - left_out]))
@@ -93,7 +93,8 @@ def encoded(linear):
     return 255.0 * encoded
 
 
-def _image(bpy):
+def picture(bpy):
+    """Make an image of 4 x 3 random colours."""
     pixels = np.random.default_rng(5).random((3, 4, 4)).astype(np.float32)
     pixels[..., 3] = 1.0
     image = bpy.data.images.new("picture", 4, 3, alpha=True, float_buffer=True)
@@ -127,7 +128,8 @@ def _grid(bpy, steps, height):
     return mesh
 
 
-def _card(bpy):
+def card(bpy):
+    """Make a flat card of 2 x 2 m with a UV map and a colour attribute."""
     return _grid(bpy, 1, 0.0)
 
 
@@ -185,6 +187,10 @@ def _source(tree, name, image):
         return coordinates.outputs[{"uv": "UV"}.get(name, name.capitalize())]
     if name == "place":
         return nodes.new("ShaderNodeNewGeometry").outputs["Position"]
+    if name == "straight up":
+        up = nodes.new("ShaderNodeCombineXYZ")
+        up.inputs["Z"].default_value = 1.0
+        return up.outputs[0]
     if name == "color":
         texture = nodes.new("ShaderNodeTexImage")
         texture.image = image

@@ -28,15 +28,17 @@ def _attribute(node, writer):
     if f"color:{name}" in writer.available:
         value = writer.attribute(f"color:{name}")
         color, alpha = f"{value}.rgb", f"{value}.a"
+        mean = f"dot({color}, vec3(1.0 / 3.0))"
     else:
         # A mesh without the attribute gives zeros, and an alpha of 1 only where there is a value.
         present = f"uv:{name}" in writer.available
         uv = writer.attribute(f"uv:{name}")
         color, alpha = f"vec3({uv}, 0.0)", "1.0" if present else "0.0"
+        mean = f"{uv}.x"
     return {
         "Color": ("color", color),
         "Vector": ("vec3", color),
-        "Fac": ("vec3", color),
+        "Fac": ("float", mean),
         "Alpha": ("float", alpha),
     }
 

@@ -13,6 +13,18 @@ def _stated(reader, node, groups):
     return {node.outputs[0].identifier: reader.constant(node.outputs[0])}
 
 
+# Nodes that Blender puts where it has computed a constant, and the property that holds it.
+_FOLDED = {"INPUT_VECTOR": "vector", "INPUT_INT": "integer", "INPUT_BOOL": "boolean"}
+_FOLDED |= {"INPUT_ROTATION": "rotation_euler"}
+
+
+@reads(*_FOLDED)
+def _folded(reader, node, groups):
+    value = getattr(node, _FOLDED[node.type])
+    numbers = tuple(map(float, value)) if hasattr(value, "__len__") else (float(value),)
+    return {node.outputs[0].identifier: Constant(numbers)}
+
+
 @reads("UVMAP")
 def _uv_map(reader, node, groups):
     return reader.add("uv", settings=(("name", node.uv_map),))

@@ -39,7 +39,9 @@ vec2 project_sky(vec3 direction)
 {
   float longitude = atan(direction.y, direction.x);
   float latitude = asin(clamp(direction.z, -1.0, 1.0));
-  return vec2(0.5 - longitude / (2.0 * PROJECTION_PI), latitude / PROJECTION_PI + 0.5);
+  // Not past the poles: half a texel of the image.
+  float v = clamp(latitude / PROJECTION_PI + 0.5, 0.5 / 1024.0, 1.0 - 0.5 / 1024.0);
+  return vec2(0.5 - longitude / (2.0 * PROJECTION_PI), v);
 }
 
 // Of a lamp's intensities: around, from -y, and up from straight below.

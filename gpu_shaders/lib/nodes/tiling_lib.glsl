@@ -24,7 +24,7 @@ Tiling radial_tiling(vec2 place, float sides, float roundness, bool normalizes)
 {
   float count = max(sides, 2.0), r = clamp(roundness, 0.0, 1.0);
   float whole = TILING_TURN / count;
-  float angle = atan(place.y, place.x);
+  float angle = (place == vec2(0.0)) ? 0.0 : atan(place.y, place.x);
   angle = (angle < 0.0) ? angle + TILING_TURN : angle;
   Tiling tiling;
   tiling.id = floor(angle / whole);

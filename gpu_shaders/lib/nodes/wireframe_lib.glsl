@@ -14,7 +14,7 @@ float wireframe_world(vec2 place, float size)
   // Slopes of the coordinates in the triangle's plane.
   vec3 slope2 = (bx * bx * yy - 2.0 * bx * by * xy + by * by * xx) / det;
   vec3 distance = b * inversesqrt(max(slope2, vec3(1e-30)));
-  return (min(distance.x, min(distance.y, distance.z)) < 0.5 * size) ? 1.0 : 0.0;
+  return (min(distance.x, min(distance.y, distance.z)) < 0.5 * abs(size)) ? 1.0 : 0.0;
 }
 
 // Lines as wide as a number of pixels.
@@ -23,7 +23,7 @@ float wireframe_pixel(vec2 place, float size)
   vec3 b = vec3(place, 1.0 - place.x - place.y);
   vec3 bx = dFdx(b), by = dFdy(b);
   vec3 distance = b * inversesqrt(max(bx * bx + by * by, vec3(1e-30)));
-  return (min(distance.x, min(distance.y, distance.z)) < 0.5 * size) ? 1.0 : 0.0;
+  return (min(distance.x, min(distance.y, distance.z)) < 0.5 * abs(size)) ? 1.0 : 0.0;
 }
 
 #endif

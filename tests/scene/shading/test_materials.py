@@ -294,6 +294,20 @@ def test_groups_in_groups_and_muted_nodes_are_seen_through(bpy):
     assert emission_of(material).input("Strength").value == pytest.approx((0.3,))
 
 
+def test_vectors_that_blender_computes_are_read(bpy):
+    """It puts nodes of other trees in their place."""
+    material, tree = new_material(bpy)
+    made = tree.node("CombineXYZ", {"X": 0.2, "Y": 0.4, "Z": 0.6})
+    turned = tree.node("VectorMath", {"Vector": made.outputs[0], "Vector_001": (1.0, 1.0, 1.0)})
+    varying = tree.node("TexCoord").outputs["UV"]
+    noise = tree.node("TexNoise", {"Vector": turned.outputs[0], "Scale": varying})
+    tree.emission(noise.outputs["Color"])
+    snapshot, reader = read(material)
+    place = next(n for n in snapshot.graph.nodes if n.kind == "noise").input("Vector")
+    assert reader.report == []
+    assert place.value == pytest.approx((1.2, 1.4, 1.6))
+
+
 def test_a_menu_chooses_what_is_drawn(bpy):
     material, tree = new_material(bpy)
     switch = tree.tree.nodes.new("GeometryNodeMenuSwitch")
