@@ -47,6 +47,8 @@ def surface_targets():
             yield f"color {splits=} {disperses=} {bends=}", made
     for target in (surface_target.COLOR, surface_target.COLOR_AND_MATTES):
         yield "layer", surface_target.of_layers(target)
+        split = surface_target.without_highlights(target)
+        yield "layer splits", surface_target.of_layers(split)
     for number in range(3):
         for names in combinations(("Vector", "Detail"), number):
             for bends in (False, True):
@@ -114,6 +116,9 @@ GRAPHS = {
     "lit": _principled(),
     "lit and transparent": _principled(Alpha=(0.5,)),
     "rarer closures": _rarer(),
+    "mirroring": SurfaceGraph(
+        (_node("glossy", Color=(1.0, 1.0, 1.0), Roughness=(0.5,)),), Link(0, "BSDF")
+    ),
     "attribute": _LIT_BY_ATTRIBUTE,
 }
 # Graphs on meshes that between them read all that shaders can read: what a target changes in one of
@@ -123,6 +128,7 @@ _TELLING = {
     ("emission", "whole"),
     ("mixed", "bare"),
     ("rarer closures", "whole"),
+    ("mirroring", "bare"),
     ("attribute", "bare"),
 }
 _PLAIN = (surface_target.COLOR, surface_target.COLOR_AND_MATTES)

@@ -52,8 +52,8 @@ SEARCH = Section("Search and visibility", "Camera Properties > Bokeh > Search an
             " lens", limits=(1, 16), field="lens_views", told="bokeh.lens_views"),
     Setting("overscan", 0.25, "Overscan", "How far outside the picture highlights are searched at"
             " most, as a share of its longer side. Only as far as their discs reach into the"
-            " picture", limits=(0.0, 2.0), soft=(None, 1.0), subtype="FACTOR", field="overscan",
-            told="bokeh.overscan"),
+            " picture; light from farther out is sampled as everything else", limits=(0.0, 2.0),
+            soft=(None, 1.0), subtype="FACTOR", field="overscan", told="bokeh.overscan"),
     Setting("use_world", True, "World", "Find highlights in the world's image, too", field="world",
             told="bokeh.world"),
 ))

@@ -234,9 +234,12 @@ def _set_seed(scene, seed):
 def _as_reference(scene, samples):
     settings = scene.aplanat
     with _kept(settings, ("method", "render_samples", "use_reference_bokeh")):
+        own = settings.method == "REFERENCE"
         settings.method = "REFERENCE"
         settings.render_samples = samples
-        settings.use_reference_bokeh = not has_plain_look(scene.camera.data)
+        # A scene of the reference method says itself whether samples or discs draw its highlights.
+        wanted = settings.use_reference_bokeh or not own
+        settings.use_reference_bokeh = wanted and not has_plain_look(scene.camera.data)
         yield
 
 

@@ -9,8 +9,14 @@
 // Source: methods 1: the ray from the lens' place through the pixel's point of the focus plane.
 #include "lib/surface/environment_lib.glsl"
 #include "lib/surface/texture_lib.glsl"
+#if defined(HIGHLIGHTS) || defined(CHROMATIC)
+#include "lib/lens_lib.glsl"
+#endif
 #if defined(HIGHLIGHTS) || defined(EXCESS)
 #include "lib/bokeh/highlight_lib.glsl"
+#endif
+#ifdef HIGHLIGHTS
+#include "lib/bokeh/searched_lib.glsl"
 #endif
 #ifdef EXCESS
 #include "passes/bokeh/highlights_append.glsl"
@@ -69,6 +75,9 @@ void main()
   }
 #endif
 #endif
+#ifdef HIGHLIGHTS
+  float in_raster = searched(vec4(direction, 0.0), highlight_buf);
+#endif
   direction = mat3(view_buf.view_inverse) * direction;
   vec3 local = vec3(dot(environment_buf.rotation_x.xyz, direction),
                     dot(environment_buf.rotation_y.xyz, direction),
@@ -82,7 +91,7 @@ void main()
 #else
   float share = highlight_buf.world.z;
 #endif
-  radiance = highlight_base(radiance, share, highlight_buf.split.x);
+  radiance = highlight_base(radiance, share * in_raster, highlight_buf.split.x);
 #endif
 #ifdef EXCESS
   vec3 light = highlight_light(radiance, highlight_buf.split.x, highlight_buf.split.z);

@@ -4,4 +4,7 @@ struct HighlightParams {
                         // splatted; w unused
   vec4 world;           // x: depth that stands for infinity, m; y: 1 if the world gives highlights;
                         // z: share of its light above the threshold that is splatted; w unused
+  mat4 raster;          // camera space to clip space of the raster that highlights are searched in
+  vec4 views;           // xy: reach of the lens' opening across and up, m; z: places on the lens that
+                        // mirroring surfaces are searched from, across and up; w unused
 };

@@ -155,6 +155,33 @@ def test_a_picture_that_looks_different_with_the_same_energy_is_seen(scene):
     assert "looks differ" in found.fault
 
 
+@pytest.mark.parametrize(
+    ("method", "separate", "hardness", "expected"),
+    [
+        ("ADAPTIVE", False, 0.5, True),
+        ("ADAPTIVE", True, 0.0, False),
+        ("REFERENCE", False, 0.5, False),
+        ("REFERENCE", True, 0.5, True),
+        ("REFERENCE", True, 0.0, False),
+    ],
+)
+def test_the_reference_draws_discs_where_the_scene_has_discs_of_a_look(
+    scene, method, separate, hardness, expected
+):
+    # Discs that samples of the lens know nothing of are drawn by both methods or by neither.
+    scene.aplanat.method, scene.aplanat.use_reference_bokeh = method, separate
+    scene.camera.data.aplanat.bokeh.hardness = hardness
+    asked = set()
+
+    def render(scene):
+        if scene.aplanat.seed > 1_000_000:
+            asked.add(scene.aplanat.use_reference_bokeh)
+        return pictures_of(0.0, 1e-4)(scene)
+
+    assert not agreement.compare(scene, render, render(scene)).fault
+    assert asked == {expected}
+
+
 def test_settings_are_put_back_after_a_comparison(scene):
     scene.aplanat.level_bias = -3.0
     scene.camera.data.aplanat.bokeh.model = "CLUSTERED"

@@ -7,6 +7,8 @@ was splatted here. A moving view gets a draft, and the whole bokeh in steps when
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from ...device import geometry, readback
 from ...device.targets import Targets, TargetSpec
 from ...device.uniforms import uniform_buffer
@@ -55,23 +57,27 @@ class HighlightCounts:
     splatted: int = 0
 
 
-def highlight_buffer(bokeh):
+def highlight_buffer(plan):
     """Upload the highlight threshold and what else splits light between samples and splats.
 
     Parameters
     ----------
-    bokeh : BokehPlan
+    plan : FramePlan
+        With a `bokeh`.
 
     Returns
     -------
     GPUUniformBuf
         `HighlightParams`.
     """
+    bokeh = plan.bokeh
     settings = bokeh.settings
     return uniform_buffer(
         surface.HIGHLIGHT_PARAMS.pack(
             split=(settings.threshold, bokeh.least_coc, settings.gain, 0.0),
             world=(bokeh.world_depth, float(bokeh.world), bokeh.world_share, 0.0),
+            raster=bokeh.projection,
+            views=(*plan.lens_extent, np.sqrt(len(bokeh.lens_views)), 0.0),
         )
     )
 
@@ -205,7 +211,7 @@ class BokehStage:
         bokeh = with_sharp(self._plan.bokeh)
         plan = replace(self._plan, bokeh=bokeh)
         parts = (self._drawing, self._buffers, self._occluders)
-        return BokehStage(plan, *parts, highlight_buffer(bokeh), self._field, self._lens)
+        return BokehStage(plan, *parts, highlight_buffer(plan), self._field, self._lens)
 
     def _merge(self, sources, count, held):
         """Merge similar highlights as the settings ask for; return the list and its length."""

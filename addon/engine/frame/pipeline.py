@@ -82,7 +82,7 @@ class FrameRenderer(ReadableFrame):
         self._highlights = None
         if plan.bokeh:
             target = surface_target.without_highlights(target, plan.bokeh.unsplit)
-            self._highlights = highlight_buffer(plan.bokeh)
+            self._highlights = highlight_buffer(plan)
         if plan.chromatic:
             target = surface_target.in_wavelengths(target)
         layers_target = target

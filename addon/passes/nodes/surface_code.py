@@ -6,6 +6,7 @@ order, so graphs of one shape generate the same text and share one compiled shad
 
 from dataclasses import dataclass
 
+from ...snapshot.brightness import mirrors
 from ...snapshot.surface_graph import Link
 from . import closure_nodes, image_nodes, input_nodes, pattern_nodes, value_nodes, vector_nodes
 from .writer import Writer
@@ -47,6 +48,8 @@ class SurfaceCode:
         The code reads the varying of the position in object space, ``v_object_position``.
     features : tuple of str
         Defines that its closures need.
+    mirrors : bool
+        Its reflections depend on the place on the lens: see `snapshot.brightness.mirrors`.
     """
 
     source: str
@@ -59,6 +62,7 @@ class SurfaceCode:
     libraries: tuple[str, ...] = ()
     reads_place: bool = False
     features: tuple[str, ...] = ()
+    mirrors: bool = False
 
 
 def generate(graph, available):
@@ -97,4 +101,5 @@ def generate(graph, available):
         libraries=tuple(libraries),
         reads_place=writer.reads_place,
         features=tuple(sorted(writer.features)),
+        mirrors=mirrors(graph),
     )

@@ -4,7 +4,7 @@ One shader a shape of node tree and set of mesh attributes; draws are sorted by 
 material, so that a frame changes state as rarely as it can.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...device import shader_source, state
 from ...device.geometry import attribute_identifier, attribute_type
@@ -141,6 +141,7 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
     if target.splits and shades:
         structs += HIGHLIGHT_PARAMS.source
         uniforms.append(("HighlightParams", "highlight_buf"))
+        defines |= {"MIRRORING": "1"} if code.mirrors else {}
     if "LIT" in defines:
         structs += environment.ENVIRONMENT_PARAMS.source
         uniforms.append(("EnvironmentParams", "environment_buf"))
@@ -252,14 +253,15 @@ def _list_draws(content, buffers, target, glow, wanted=None):
 def _code_and_shader(material, mesh, holdout, target, glow, split):
     """Return a surface's code, its shader or None where it is not drawn, and the kind of shader.
 
-    The kind is that of the target, the same whether the surface's own light is split or not.
+    The kind is that of the target, the same whether and how the surface's own light is split.
     """
     code = surface_code.generate(material.graph, mesh.attributes)
     if glow and (holdout or not code.glows):
         return code, None, None
-    how = (code, mesh.attributes, holdout, mesh.motion is not None, glow)
-    kind = surface_info(target, *how)
-    return code, compile_shader(kind if split else surface_info(whole(target), *how)), kind
+    how = (mesh.attributes, holdout, mesh.motion is not None, glow)
+    kind = surface_info(target, replace(code, mirrors=False), *how)
+    shader = compile_shader(surface_info(target if split else whole(target), code, *how))
+    return code, shader, kind
 
 
 def _levels_of_groups(content, buffers):

@@ -3,7 +3,8 @@
 // opacity without its light (GLOW_APART), then its light on top (GLOW), wherever nothing is in front.
 // Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads. HIGHLIGHTS:
 // highlight_buf; the light that is splatted as bokeh is left out; with CHROMATIC also chromatic_buf and
-// field_tx, so that the splatted share is the same at all wavelengths. OF_LAYER: front_tx (depths that
+// field_tx, so that the splatted share is the same at all wavelengths; with MIRRORING it is searched
+// from several places on the lens. OF_LAYER: front_tx (depths that
 // it must lie behind) and eye (place on the lens that it is shaded for, m). MATTES with REAL_LENS:
 // real_lens_buf, blur_tx (what the lens adds to the circle of confusion).
 // Outputs: premultiplied scene-linear colour; with MATTES also Cryptomatte ids of object (x) and
@@ -21,26 +22,33 @@
 #endif
 #ifdef HIGHLIGHTS
 #include "lib/bokeh/highlight_lib.glsl"
+#include "lib/bokeh/searched_lib.glsl"
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
 #endif
 
 vec3 without_highlights(Closure closure)
 {
-#ifdef CHROMATIC
   vec3 light = closure.radiance - closure.unsplit;
   if (max(light.r, max(light.g, light.b)) <= highlight_buf.split.x) {
     return closure.radiance;
   }
   // The point's true place, not where the wavelength displaces it to.
-  vec3 eye = (view_buf.view * vec4(world_position, 1.0)).xyz;
-  vec2 place = field_place(eye, chromatic_buf);
-  float coc = chromatic_coc_px(field_tx, place, -eye.z, view_buf.lens, chromatic_buf);
+  vec3 point = (view_buf.view * vec4(world_position, 1.0)).xyz;
+#ifdef CHROMATIC
+  vec2 place = field_place(point, chromatic_buf);
+  float coc = chromatic_coc_px(field_tx, place, -point.z, view_buf.lens, chromatic_buf);
 #else
-  float depth = -(view_buf.view * vec4(world_position, 1.0)).z;
-  float coc = coc_radius_px(depth, view_buf.lens);
+  float coc = coc_radius_px(-point.z, view_buf.lens);
 #endif
   float share = highlight_share(coc, highlight_buf.split.y);
+#ifndef MIRRORING
+  share *= searched(vec4(point, 1.0), highlight_buf);
+#elif defined(OF_LAYER)
+  share *= searched_from_views(point, eye, view_buf.lens.x, highlight_buf);
+#else
+  share *= searched_from_views(point, lens_sample.xy, view_buf.lens.x, highlight_buf);
+#endif
   return highlight_base(closure.radiance, closure.unsplit, share, highlight_buf.split.x);
 }
 #endif

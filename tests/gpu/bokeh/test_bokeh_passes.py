@@ -83,6 +83,8 @@ def list_on_device(fragments, scene, raster, capacity=4096):
         surface.HIGHLIGHT_PARAMS.pack(
             split=(1.0, raster.least_coc, 1.0, 0.0),
             world=(0.0, 0.0, 0.0, 0.0),
+            raster=raster.projection,
+            views=(1.0, 1.0, 1.0, 0.0),
         )
     )
     append = compile_shader(
