@@ -72,4 +72,18 @@ vec3 disc_density(vec2 place, out vec2 lens)
 #endif
 }
 
+// Weight of the lens region that the source was seen from: tents over a grid of regions, which sum to 1.
+float region_weight(vec2 lens)
+{
+  if (v_region < 0.5) {
+    return 1.0;
+  }
+  float side = splat_buf.opening.w;
+  float number = v_region - 1.0;
+  vec2 node = vec2(mod(number, side), floor((number + 0.5) / side));
+  vec2 place = clamp((lens * 0.5 + 0.5) * side - 0.5, 0.0, side - 1.0);
+  vec2 hat = max(1.0 - abs(place - node), 0.0);
+  return hat.x * hat.y;
+}
+
 #endif

@@ -60,28 +60,17 @@ float seen_from(vec2 lens)
   return 1.0;
 }
 
-// Weight of the lens region that the source was seen from: tents over a grid of regions, which sum to 1.
-float region_weight(vec2 lens)
-{
-  if (v_region < 0.5) {
-    return 1.0;
-  }
-  float side = splat_buf.opening.w;
-  float number = v_region - 1.0;
-  vec2 node = vec2(mod(number, side), floor((number + 0.5) / side));
-  vec2 place = clamp((lens * 0.5 + 0.5) * side - 0.5, 0.0, side - 1.0);
-  vec2 hat = max(1.0 - abs(place - node), 0.0);
-  return hat.x * hat.y;
-}
-
 void main()
 {
   vec2 lens;
   vec3 density = v_density * disc_density(v_place, lens);
   if (max(density.r, max(density.g, density.b)) > 0.0) {
-    density *= seen_from(lens) * region_weight(lens);
+    density *= seen_from(lens);
 #ifdef CHROMATIC
+    density *= (v_dot > 0.5) ? 1.0 : region_weight(lens);
     density *= max(v_area.x + dot(v_area.yz, lens), 0.0);
+#else
+    density *= region_weight(lens);
 #endif
   }
   out_color = vec4(density, 0.0);

@@ -91,6 +91,11 @@ float band_width(vec2 xy, float depth, vec2 place)
 
 // Discs up to this radius, px, are brought to their energy on the grid of pixels.
 #define GRID_RADIUS 5.0
+// The same for a source that stands for a region of the lens, px for each region along the opening's
+// width: sources of one view all have the same place among the pixels, and their errors add up.
+#define GRID_RADIUS_REGION 3.5
+// Places along the width of a disc from which the share of a region is found.
+#define REGION_PLACES 16
 // Least part of a disc's energy that a grid may show: a disc that is thinner than a pixel may lie
 // between its pixels.
 #define GRID_LEAST 0.25
@@ -106,7 +111,7 @@ float widened(float radius, float blur, float most)
   return sqrt((3.0 * radius * radius + blur * blur) / (3.0 + most * most));
 }
 
-// Sum of the disc's density over pixel centres, whose places on the opening are
+// Sum of the light of the source's region over pixel centres, whose places on the opening are
 // `origin + axes * offset`, with the offset from the disc's centre, px; `reach` in px.
 vec3 grid_sum(vec2 center, vec2 origin, mat2 axes, float reach)
 {
@@ -116,9 +121,27 @@ vec3 grid_sum(vec2 center, vec2 origin, mat2 axes, float reach)
   int count = int(2.0 * reach) + 1;
   for (int i = 0; i < count * count; i++) {
     vec2 offset = low + vec2(i % count, i / count) - center;
-    sum += disc_density(origin + axes * offset, lens);
+    vec3 density = disc_density(origin + axes * offset, lens);
+    sum += density * region_weight(lens);
   }
   return sum;
+}
+
+// Share of the disc's light that belongs to the source's region; as grid_sum.
+vec3 region_share(vec2 origin, mat2 axes, float reach)
+{
+  if (v_region < 0.5) {
+    return vec3(1.0);
+  }
+  vec3 all = vec3(0.0), own = vec3(0.0);
+  vec2 lens;
+  for (int i = 0; i < REGION_PLACES * REGION_PLACES; i++) {
+    vec2 place = (vec2(i % REGION_PLACES, i / REGION_PLACES) + 0.5) / float(REGION_PLACES);
+    vec3 density = disc_density(origin + axes * ((place * 2.0 - 1.0) * reach), lens);
+    all += density;
+    own += density * region_weight(lens);
+  }
+  return own / max(all, vec3(1e-30));
 }
 
 void main()
@@ -229,12 +252,15 @@ void main()
     offset = v_place * tent;
     vec2 sum = tent_sum(center, tent);
     v_density = b.rgb * splat_buf.wavelength.rgb / max(sum.x * sum.y, 1e-6);
+    // No place of a dot is that of a region of the lens.
+    v_density *= region_share(vec2(0.0), mat2(1.0), 1.0);
   }
 #endif
-  if (wide < GRID_RADIUS && !is_dot && v_tile.w != SOURCE_DROP) {
+  float from_grid = (v_region < 0.5) ? GRID_RADIUS : GRID_RADIUS_REGION * splat_buf.opening.w;
+  if (wide < max(from_grid, GRID_RADIUS) && !is_dot && v_tile.w != SOURCE_DROP) {
     // What the sum is where pixels are small.
-    float area = abs(1.0 / determinant(axes));
-    v_density *= area / max(grid_sum(center, origin, axes, farthest), vec3(GRID_LEAST * area));
+    vec3 whole = abs(1.0 / determinant(axes)) * region_share(origin, axes, farthest);
+    v_density *= whole / max(grid_sum(center, origin, axes, farthest), GRID_LEAST * whole + 1e-30);
   }
 #ifdef REAL_LENS
   vec4 table = vec4(real_lens_buf.light.xy, 1.0, 0.0);
