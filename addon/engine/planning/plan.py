@@ -15,6 +15,7 @@ from .frame_plan import AutomaticSampling, FramePlan
 from .frame_samples import SampleSource
 from .layered_plan import plan_layered
 from .lens_plan import plan_real_lens
+from .near_plane import with_near_plane
 from .quality import LEAST_ERROR, settle
 from .stack_bokeh import plan_stack_bokeh
 
@@ -147,6 +148,9 @@ def plan_frame(snapshot):
 
 
 def _plan_raster(snapshot):
+    snapshot = replace(
+        snapshot, camera=replace(snapshot.camera, projection=with_near_plane(snapshot))
+    )
     sampling = snapshot.sampling
     automatic = None
     if sampling.method == "ADAPTIVE" and sampling.target_error is not None:
