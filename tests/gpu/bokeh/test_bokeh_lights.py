@@ -9,7 +9,7 @@ from addon.engine.planning.plan import plan_frame
 
 from ..conftest import render_snapshot
 from .bokeh_scenes import energy
-from .test_lens_views import glossy_ball
+from .search.test_lens_views import glossy_ball
 
 pytestmark = pytest.mark.usefixtures("gpu_context")
 

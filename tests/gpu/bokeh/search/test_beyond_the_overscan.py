@@ -8,8 +8,8 @@ import pytest
 from addon.snapshot.content import ImageSnapshot, World, next_uid
 from addon.snapshot.film import Sampling
 
-from ..conftest import WORLD_COLOR, perspective, render_snapshot, triangles_snapshot
-from .bokeh_scenes import HEIGHT, LENS, WIDTH, energy, lamp, with_bokeh
+from ...conftest import WORLD_COLOR, perspective, render_snapshot, triangles_snapshot
+from ..bokeh_scenes import HEIGHT, LENS, WIDTH, energy, lamp, with_bokeh
 from .test_lens_views import glossy_ball
 
 pytestmark = pytest.mark.usefixtures("gpu_context")

@@ -9,8 +9,8 @@ from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
 from addon.snapshot.content import InstanceGroup, InstanceTable, MeshSnapshot, next_uid
 
-from ..conftest import WORLD_COLOR, render_snapshot, triangles_snapshot
-from .bokeh_scenes import HEIGHT, WIDTH, energy, with_bokeh
+from ...conftest import WORLD_COLOR, render_snapshot, triangles_snapshot
+from ..bokeh_scenes import HEIGHT, WIDTH, energy, with_bokeh
 
 pytestmark = pytest.mark.usefixtures("gpu_context")
 

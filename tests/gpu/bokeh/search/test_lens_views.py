@@ -23,9 +23,9 @@ from addon.snapshot.film import Film, Sampling
 from addon.snapshot.scene import SceneSnapshot
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 
-from ..conftest import perspective, render_snapshot
-from .bokeh_scenes import energy
-from .test_bokeh_passes import splatted
+from ...conftest import perspective, render_snapshot
+from ..bokeh_scenes import energy
+from ..test_bokeh_passes import splatted
 
 pytestmark = pytest.mark.usefixtures("gpu_context")
 
