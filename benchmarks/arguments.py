@@ -10,7 +10,7 @@ from addon.settings.scene_settings import MAX_SAMPLES
 # Of `bench --bokeh`.
 BOKEH_MEASURES = (
     *("pictures", "truth", "models", "culling", "visibility", "time", "peers", "pan"),
-    *("scaling", "focus-pull", "lens"),
+    *("scaling", "focus-pull", "lens", "discs"),
 )
 
 

@@ -2,6 +2,8 @@
 
 from ..device import shader_source, state
 from ..device.shaders import ShaderInfo, compile_shader
+from ..device.uniform_block import UniformStruct
+from ..device.uniforms import uniform_buffer
 from .surface import chromatic, real_lens
 
 _SAMPLERS = (
@@ -12,50 +14,71 @@ _SAMPLERS = (
     ("FLOAT_2D_ARRAY", "ranges_tx"),
 )
 
+SUBSAMPLE_PARAMS = UniformStruct("shared/subsample_params.glsl", "SubsampleParams")
+
 _INFO = ShaderInfo(
     name="aplanat_subsample",
     vertex=shader_source.load("passes/fullscreen_vert.glsl"),
     fragment=shader_source.load("passes/subsample_frag.glsl"),
+    typedefs=SUBSAMPLE_PARAMS.source,
     attributes=(("VEC2", "pos"),),
     outputs=(("VEC4", "out_color"),),
     samplers=_SAMPLERS,
+    uniforms=(("SubsampleParams", "subsample_buf"),),
     push_constants=(
-        ("VEC4", "sweep"),
-        ("VEC2", "spread"),
-        ("VEC2", "depths"),
         ("VEC2", "jitter"),
         ("VEC2", "apart"),
-        ("FLOAT", "cell"),
         ("FLOAT", "weight"),
-        ("INT", "top"),
-        ("INT", "levels"),
         ("INT", "sample_index"),
         ("INT", "count"),
     ),
 )
-_IN_WAVELENGTHS = chromatic.declared(_INFO, (("VEC4", "gain"), ("VEC4", "tint")))
+_IN_WAVELENGTHS = chromatic.declared(_INFO, (("VEC4", "tint"),))
 _THROUGH_LENS, _THROUGH_LENS_IN_WAVELENGTHS = (
     real_lens.declared(info, (("FLOAT_2D", "turns_tx"), *real_lens.LIGHT_SAMPLERS))
     for info in (_INFO, _IN_WAVELENGTHS)
 )
 
 
+def params(*, sweep, spread, depths, cell, top, levels, gain=None):
+    """Upload what is the same for all lens samples.
+
+    Parameters
+    ----------
+    sweep : sequence of 4 float
+        See ``lib/bokeh/sweep_lib.glsl``.
+    spread : sequence of 2 float
+        Largest offset of any sample along x and y, m.
+    depths : sequence of 2 float
+        Least and largest value that the depth buffer may have.
+    cell : float
+        Side of the part of the lens that a subsample's ray stands for, m.
+    top : int
+        Levels of the pyramid's mean colours that are used; 0 uses none.
+    levels : int
+        Levels of its depth ranges.
+    gain : sequence of 4 float, optional
+        With chromatic aberration: change of `sweep` by the inverse of the focus distance.
+
+    Returns
+    -------
+    GPUUniformBuf
+    """
+    gain = (0.0,) * 4 if gain is None else gain
+    block = {"bounds": (*spread, *depths), "cell": (cell, float(top), float(levels), 0.0)}
+    return uniform_buffer(SUBSAMPLE_PARAMS.pack(sweep=sweep, gain=gain, **block))
+
+
 def blur(
     fullscreen,
     textures,
+    block,
     *,
-    sweep,
-    spread,
-    depths,
     jitter,
     apart,
-    cell,
-    top,
-    levels,
     weight,
     index,
     count,
-    gain=None,
     wavelength=None,
     lens=None,
 ):
@@ -68,28 +91,16 @@ def blur(
         Colour and depth of the sample; subsamples, one row a sample: places on the lens relative to
         the sample's, m, and from a pixel's centre to the place that is looked at, texels of the
         sample; means and ranges of the sample's pyramid.
-    sweep : sequence of 4 float
-        See ``lib/bokeh/sweep_lib.glsl``.
-    spread : sequence of 2 float
-        Largest offset of any sample along x and y, m.
-    depths : sequence of 2 float
-        Least and largest value that the depth buffer may have.
+    block : GPUUniformBuf
+        Of `params`.
     jitter : sequence of 2 float
         From a pixel's centre to the place that is looked at where the picture ends too near for
         those of the subsamples, texels; less than half of one.
     apart : sequence of 2 float
         Largest of the subsamples' distances from a pixel's centre, along x and y, texels.
-    cell : float
-        Side of the part of the lens that a subsample's ray stands for, m.
-    top : int
-        Levels of the pyramid's mean colours that are used; 0 uses none.
-    levels : int
-        Levels of its depth ranges.
     weight : float
     index, count : int
         Row of the offsets, and number of subsamples in it.
-    gain : sequence of 4 float, optional
-        With chromatic aberration: change of `sweep` by the inverse of the focus distance.
     wavelength : passes.surface.chromatic.ChromaticSample, optional
         The sample's; its subsamples have the same.
     lens : passes.surface.real_lens.LensSample, optional
@@ -104,15 +115,10 @@ def blur(
     shader.bind()
     for (_, name), texture in zip(_SAMPLERS, textures, strict=True):
         shader.uniform_sampler(name, texture)
-    shader.uniform_float("sweep", tuple(sweep))
-    shader.uniform_float("spread", tuple(spread))
-    shader.uniform_float("depths", tuple(depths))
+    shader.uniform_block("subsample_buf", block)
     shader.uniform_float("jitter", tuple(jitter))
     shader.uniform_float("apart", tuple(apart))
-    shader.uniform_float("cell", cell)
     shader.uniform_float("weight", weight)
-    shader.uniform_int("top", top)
-    shader.uniform_int("levels", levels)
     shader.uniform_int("sample_index", index)
     shader.uniform_int("count", count)
     if lens is not None:
@@ -121,6 +127,5 @@ def blur(
         shader.uniform_sampler("light_tx", lens.light.texture)
     if wavelength is not None:
         wavelength.bind(shader)
-        shader.uniform_float("gain", tuple(gain))
         shader.uniform_float("tint", wavelength.tint)
     shader.draw(fullscreen)

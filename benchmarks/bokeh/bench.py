@@ -17,6 +17,7 @@ Of built scenes:
 - ``scaling``: 1000, 10000 and 100000 small lamps.
 - ``focus-pull``: the focus moves past a half-hidden lamp and what hides it.
 - ``lens``: lamps through real lenses, against Cycles tracing them (`benchmarks.bokeh.lens`).
+- ``discs``: the same lamps' discs against lens samples (`benchmarks.bokeh.discs`).
 """
 
 import math
@@ -35,6 +36,7 @@ from ..benches.peers import peers
 from ..benches.scenes import check_folder, find_cases, open_scene, save_picture
 from ..referees.picture_metrics import compare, read_picture, srgb
 from .built_scenes import RESOLUTION, ROUNDS, focus_pull, scaling
+from .discs import discs
 from .frames import BokehScene
 from .lens import lenses
 from .lines import line
@@ -308,7 +310,7 @@ OF_SCENES = {
     "peers": _Study.peers,
     "pan": _Study.pan,
 }
-OF_CHARTS = {"scaling": scaling, "focus-pull": focus_pull, "lens": lenses}
+OF_CHARTS = {"scaling": scaling, "focus-pull": focus_pull, "lens": lenses, "discs": discs}
 
 
 def _is_sum(frame):

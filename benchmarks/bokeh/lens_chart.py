@@ -102,8 +102,11 @@ def lens_chart(name, f_number=None):
     return LensChart(name, prescription, f_number, focal_length, sensor, focus / 1000.0)
 
 
-def chart_scene(chart, depth, fields, iris):
-    """Make a scene with the lamps of a depth; the camera is at the origin and looks along y."""
+def chart_scene(chart, depth, fields, iris, lamp=1.0, detail=4):
+    """Make a scene with the lamps of a depth; the camera is at the origin and looks along y.
+
+    `lamp`: factor of their radius; `detail`: subdivisions of their balls.
+    """
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     use_engine(scene)
@@ -131,7 +134,7 @@ def chart_scene(chart, depth, fields, iris):
     for field in fields:
         (right, up, forwards), radius = chart.lamp(depth, field)
         bpy.ops.mesh.primitive_ico_sphere_add(
-            subdivisions=4, radius=radius, location=(right, forwards, up)
+            subdivisions=detail, radius=lamp * radius, location=(right, forwards, up)
         )
         lamps.append(bpy.context.object)
         lamps[-1].data.materials.append(material)

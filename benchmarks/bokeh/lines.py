@@ -128,6 +128,14 @@ def _lens(run):
     return f"lamps through real lenses against Cycles, the least alike of {run['lamps']}: {told}"
 
 
+def _discs(run):
+    told = "; ".join(
+        f"{each['lens']} {each['least_psnr_db']:.1f} dB (noise {each['least_noise_db']:.1f} dB)"
+        for each in run["lenses"]
+    )
+    return f"discs of lamps against lens samples, the least alike of each lens: {told}"
+
+
 _LINES = {
     "pictures": _pictures,
     "truth": _truth,
@@ -140,4 +148,5 @@ _LINES = {
     "scaling": _scaling,
     "focus-pull": _focus_pull,
     "lens": _lens,
+    "discs": _discs,
 }

@@ -1,14 +1,11 @@
 // Subsample blur: one lens sample's picture, blurred over the part of the lens that it stands for. Rays
 // from subsamples, places on the lens near the sample's, are cast through its own colour and depth.
 // Each ray stands for a cell of the lens, and takes the mean colour that reaches the pixel through it.
-// Inputs: sample_tx, depth_tx (the sample); depths (least and largest that it may have); offsets_tx
-// (row: sample; column: place on the lens relative to the sample's, m, and from a pixel's centre to
-// the place that is looked at, texels of the sample); means_tx, ranges_tx (pyramid of the sample: `top`
-// levels of means, `levels` of ranges); sample_index, count; spread (largest offset, m); cell (side of a
-// cell of the lens, m); sweep; jitter (the place that is looked at near the picture's edges); apart
-// (largest distance of any place along x and y, texels); weight.
-// CHROMATIC: as in surface_vert, and gain (of the sweep, by 1 / focus distance), tint (weights of the
-// channels).
+// Inputs: sample_tx, depth_tx (the sample); means_tx, ranges_tx (its pyramid); subsample_buf; offsets_tx
+// (row: sample; column: place on the lens relative to the sample's, m, and from a pixel's centre to the
+// place that is looked at, texels of the sample); sample_index, count; jitter (the place that is looked at
+// near the picture's edges); apart (largest distance of any place along x and y, texels); weight.
+// CHROMATIC: as in surface_vert, and tint (weights of the channels).
 // REAL_LENS: as in surface_vert; turns_tx (how the lens' displacements change with the place on it:
 // columns of a matrix in texels a metre, in the left half, and per unit of the depth buffer, in the right),
 // light_tx (what the lens lets through at the places of the picture).
@@ -22,7 +19,7 @@
 // The sweep for the focus at the pixel's place in the field.
 vec4 focused_sweep;
 #else
-#define focused_sweep sweep
+#define focused_sweep subsample_buf.sweep
 #endif
 
 #ifdef REAL_LENS
@@ -84,15 +81,15 @@ vec2 parted_px(vec2 move)
 vec4 cell_color(ivec2 texel, ivec2 size)
 {
   float depth = texelFetch(depth_tx, texel, 0).x;
-  vec2 span = reach_px(vec2(cell), depth);
+  vec2 span = reach_px(vec2(subsample_buf.cell.x), depth);
   float width = WIDTH_OF_CELL * min(span.x, span.y);
-  int level = min(int(floor(log2(max(width, 1.0)) + 0.5)), top);
+  int level = min(int(floor(log2(max(width, 1.0)) + 0.5)), int(subsample_buf.cell.y));
 #ifdef REAL_LENS
   vec2 by_depth = abs(vec2(own_turn_by_depth[0].x, own_turn_by_depth[1].y) + focused_sweep.zw);
 #else
   vec2 by_depth = abs(focused_sweep.zw);
 #endif
-  float alike = MOVES_ALIKE / max(cell * max(by_depth.x, by_depth.y), 1e-30);
+  float alike = MOVES_ALIKE / max(subsample_buf.cell.x * max(by_depth.x, by_depth.y), 1e-30);
   for (; level > 0; level--) {
     ivec2 last = ((size + (1 << level) - 1) >> level) - 1;
     vec2 place = (vec2(texel) + 0.5) / float(1 << level) - 0.5;
@@ -117,8 +114,8 @@ vec2 seen_depths(ivec2 a, ivec2 b)
 {
   ivec2 low = min(a, b), high = max(a, b);
   int level = max(findMSB(max(high.x - low.x, high.y - low.y)), 0) + 1;
-  if (level > levels) {
-    return depths;
+  if (level > int(subsample_buf.cell.z)) {
+    return subsample_buf.bounds.zw;
   }
   ivec3 c = ivec3(low >> level, level - 1), d = ivec3(high >> level, level - 1);
   return extremes(extremes(texelFetch(ranges_tx, c, 0).xy, texelFetch(ranges_tx, d, 0).xy),
@@ -222,7 +219,7 @@ ivec2 seen_texel(vec2 center, ivec2 size, vec2 move, vec2 in_reach)
     texel = leaving;
     texel[axis] += stride[axis];
     entered = left;
-    level = min(level + 1, levels);
+    level = min(level + 1, int(subsample_buf.cell.z));
   }
   // The sample does not show what the ray sees: the surface that went behind an edge is continued.
   return ahead;
@@ -233,7 +230,8 @@ ivec2 seen_texel(vec2 center, ivec2 size, vec2 move, vec2 in_reach)
 // and so on.
 vec2 depths_in_reach(ivec2 pixel, ivec2 size, out int reach)
 {
-  vec2 found = depths;
+  vec2 spread = subsample_buf.bounds.xy;
+  vec2 found = subsample_buf.bounds.zw;
   for (int i = 0; i <= APPROACHES; i++) {
     vec2 moved = max(reach_px(spread, found.x), reach_px(spread, found.y));
     // Up to the edge of its square, the pixel's own texel is seen.
@@ -259,7 +257,8 @@ void main()
   // The field changes so slowly that a surface has the focus of where its light arrives.
   vec2 place = gl_FragCoord.xy * chromatic_buf.raster.xy + chromatic_buf.raster.zw;
   float axial = field_strengths(field_tx, place, chromatic_buf).x;
-  focused_sweep = sweep + gain * chromatic_focus(dispersion.x, axial, chromatic_buf);
+  focused_sweep = subsample_buf.sweep +
+                  subsample_buf.gain * chromatic_focus(dispersion.x, axial, chromatic_buf);
 #endif
 #ifdef REAL_LENS
   vec2 shown = gl_FragCoord.xy * real_lens_buf.raster.xy + real_lens_buf.raster.zw;

@@ -121,3 +121,18 @@ def test_what_a_frame_compiles_is_among_the_variants():
     names = {info.name for info in known} - {"aplanat_surface", "aplanat_environment_bake"}
     unknown = [info for info in shaders._cache if info.name in names and info not in known]
     assert [(info.name, info.defines) for info in unknown] == []
+
+
+# Blender counts a number as 8 bytes, two as 16, three and four as 16, and warns beyond 128.
+_PUSHED = {"FLOAT": 8, "INT": 8, "BOOL": 8, "MAT4": 64}
+
+
+def test_push_constants_are_no_more_than_every_device_has_room_for():
+    sizes = {
+        f"{info.name} {dict(info.defines)}": sum(
+            _PUSHED.get(kind, 16) * max(*length, 1)
+            for kind, _, *length in ((*each, 0, 0) for each in info.push_constants)
+        )
+        for info in every_info()
+    }
+    assert {name: size for name, size in sizes.items() if size > 128} == {}

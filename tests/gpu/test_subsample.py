@@ -70,17 +70,20 @@ def blurred(color, depth, offsets, cell=0.0, shifts=(0.0, 0.0), jitter=(0.0, 0.0
         sample = pyramid_on_device(targets, color, depth)
         textures = (*sample, texture_2d(table), targets["means"], targets["ranges"])
         with targets.framebuffer("sum").bind():
-            subsample.blur(
-                geometry.fullscreen_batch(),
-                textures,
+            block = subsample.params(
                 sweep=SWEEP,
                 spread=np.abs(offsets).max(axis=0),
                 depths=(float(depth.min()), 1.0),
-                jitter=jitter,
-                apart=np.abs(table[0, :, 2:]).max(axis=0),
                 cell=cell,
                 top=TOP,
                 levels=LEVELS,
+            )
+            subsample.blur(
+                geometry.fullscreen_batch(),
+                textures,
+                block,
+                jitter=jitter,
+                apart=np.abs(table[0, :, 2:]).max(axis=0),
                 weight=0.5,
                 index=0,
                 count=len(offsets),

@@ -27,6 +27,7 @@ MEMOS = {
     "lens_bokeh.look.splat_profile": ("_blur",),
     "lens_bokeh.look.splat_pupil": ("_refining",),
     "lens_bokeh.look.tile_drawing": ("blur_matrix",),
+    "lens_bokeh.samples.landing": ("_fit",),
     "lens_io.glasses.dispersion": ("glass_dispersion", "lens_dispersion"),
     "lens_io.glasses.glass_catalog": ("_glasses", "near_names"),
     "lens_io.importers.draft.media": (

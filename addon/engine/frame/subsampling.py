@@ -70,6 +70,7 @@ class SubsampleBlur:
         widest = self._cell / plan.lens_extent.max() * blur
         self._top = min(max(0, int(np.ceil(np.log2(max(widest, 1.0))))), _MOST_LEVELS)
         self._levels = max(self._top, self._levels_in_reach())
+        self._block = None
 
     def _window_depth(self, depth):
         if np.isinf(depth):
@@ -127,6 +128,7 @@ class SubsampleBlur:
         """
         self._top = min(self._top, earlier._top)
         self._levels = min(self._levels, earlier._levels)
+        self._block = None
 
     def specs(self):
         """Return the render targets that it needs besides the sample's."""
@@ -152,18 +154,25 @@ class SubsampleBlur:
         subsample.blur(
             fullscreen,
             (*sample, self._offsets, *levels),
-            sweep=self._sweep,
-            spread=self._spread,
-            depths=(self._nearest, 1.0),
+            self._params(),
             jitter=self._jitter[index],
             apart=self._apart[index],
-            cell=self._cell,
-            top=self._top,
-            levels=self._levels,
             weight=float(plan.subpixel_weights[index].prod()),
             index=index,
             count=int(plan.subsample_counts[index]),
-            gain=self._gain,
             wavelength=self._wavelengths and self._wavelengths(index),
             lens=self._lens and self._lens.sample(index),
         )
+
+    def _params(self):
+        if self._block is None:
+            self._block = subsample.params(
+                sweep=self._sweep,
+                spread=self._spread,
+                depths=(self._nearest, 1.0),
+                cell=self._cell,
+                top=self._top,
+                levels=self._levels,
+                gain=self._gain,
+            )
+        return self._block

@@ -41,9 +41,11 @@ class ArtistRays:
     focus_vergence: float
 
     stretch = 1.0
+    of_revolution = True
     last_seen = np.inf
     parts_colors, colors = False, None
     loses_light = False
+    most_light = 1.0
 
     @property
     def orders(self):

@@ -70,6 +70,8 @@ class CylinderRays:
     # Where no light comes from is in the light itself.
     last_seen = np.inf
     parts_colors, colors = False, None
+    of_revolution = False
+    most_light = _MOST_LIGHT
 
     @property
     def farthest(self):

@@ -85,6 +85,8 @@ class LensRays:
         Whether the fields reach as far as they were wanted; else no light comes from farther out.
     colors : LensColors or None
         What other wavelengths change, where it was asked for and the glasses have dispersion.
+    most_light : float
+        The most throughput of a ray that no rim stops: sums of terms may go astray beyond.
     """
 
     orders: np.ndarray
@@ -100,6 +102,7 @@ class LensRays:
     flat: bool
     complete: bool = True
     colors: LensColors | None = None
+    most_light: float = np.inf
 
     # Whether other wavelengths can be traced.
     parts_colors = True
@@ -162,6 +165,7 @@ class LensRays:
 
     # Height of the pupil over its width.
     stretch = 1.0
+    of_revolution = True
 
     def moves(self, nodes):
         """Lay out the aberrations over places of the field.
@@ -270,9 +274,15 @@ def lens_rays(
         sides = sides or (largest_tangent, largest_tangent)
         return cylinder_rays(lens, order.enp_z, focus, vergences, sides, flat, _LINE)
     scale, radius = paraxial_pupil(lens, order.enp_z, focus, _LINE)
+    found = []
     for stopped, places in stop_shapes(lens, order.enp_z, radius, focus, _LINE):
         aim = StopAim(stopped, order.enp_z, radius * places, _LINE)
         fan = RayFan(aim, scale, abs(radius), focus, vergences)
+        axial = fan.follow(np.zeros(1))
+        if fan.folded or not axial:
+            continue
+        if fan.strays(axial):
+            fan = RayFan(aim, scale, abs(radius), focus, vergences, fine=True)
         fields, found = _followed(fan, lens.half_field_deg, largest_tangent)
         if not fan.folded:
             break
@@ -301,6 +311,7 @@ def lens_rays(
         flat,
         bool(fields[-1] >= largest_tangent * (1.0 - 1e-9)),
         colors,
+        fan.most_light(found),
     )
 
 

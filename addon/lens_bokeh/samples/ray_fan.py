@@ -8,8 +8,14 @@ from ..tables.undistorted import undistorted
 from .disc_terms import disc_orders, radial_terms
 
 _MM = 1000.0
-_DEGREE = 12
-_RADII, _ANGLES = 10, 19
+# Degree of the sums, and rays along a radius: usually, and where the rim's rays go far astray.
+_DEGREE, _RADII = 12, 10
+_FINE_DEGREE, _FINE_RADII = 18, 18
+_ANGLES = 19
+# Rays that land so many times as far off as the median ray's count less: by how much they do.
+_FAR = 3.0
+# Misses of the sum over those of the median ray, inside of most of the iris, from which on it strays.
+_STRAY, _INSIDE = 0.2, 0.9
 # Steps of the field past the last one, for the rays that land there with more blur.
 _CHIEFS = 5
 # Weight in the fit of rays that a rim stops: how fast it falls with how far outside they are, the
@@ -42,17 +48,20 @@ class RayFan:
         Vergence of the focus, 1/mm.
     vergences : ndarray of shape (K,)
         1/mm.
+    fine : bool
+        With more terms, and more rays.
     """
 
-    def __init__(self, aim, scale, radius_mm, focus, vergences):
+    def __init__(self, aim, scale, radius_mm, focus, vergences, fine=False):
         self.aim, self.scale, self.focus = aim, scale, focus
         self.radius_mm = radius_mm
         # Whether the stop turns rays of axial points back before its rim.
         self.folded = False
-        self.orders = disc_orders(_DEGREE)
+        self.orders = disc_orders(_FINE_DEGREE if fine else _DEGREE)
+        self.radii = count = _FINE_RADII if fine else _RADII
         self.slabs = np.append(vergences, focus)
         # Denser towards the rim, as polynomials want it; mirror symmetry: half of the disc.
-        radius = np.sin(0.5 * np.pi * (np.arange(_RADII) + 1.0) / _RADII)
+        radius = np.sin(0.5 * np.pi * (np.arange(count) + 1.0) / count)
         angle = np.linspace(0.0, np.pi, _ANGLES)
         radius, angle = (each.ravel() for each in np.meshgrid(radius, angle))
         self.radius, self.angle = np.append(radius, 0.0), np.append(angle, 0.0)
@@ -83,6 +92,36 @@ class RayFan:
                 wild = clear & ~(light < _MOST_LIGHT)
                 self.folded |= wild.sum() > _WILD * clear.sum()
         return followed
+
+    def strays(self, followed):
+        """Whether the sum of terms does not follow the rays of an axial point in focus.
+
+        Parameters
+        ----------
+        followed : list
+            Of `follow`, of the axis.
+        """
+        rays, _ = followed[0]
+        count = len(self.local)
+        known = rays.found[-count:]
+        if not known.all():
+            return False
+        off = _turned(rays.landing[-count:])[:, 0]
+        off = off - off[-1]
+        weight = _nearness(np.stack([off, np.zeros_like(off)], axis=-1), np.ones(count))
+        found = self._fit(None, self.cosines, off, self.weight * weight, {})
+        inside = self.radius < _INSIDE
+        miss = np.sqrt(np.square(self.cosines @ found - off)[inside].mean())
+        return bool(miss > _STRAY * np.median(np.abs(off)))
+
+    def most_light(self, followed):
+        """Return the most light of any ray that gets through, of what `follow` returns."""
+        most = 0.0
+        for rays, light in followed:
+            at = slice(-len(light), None)
+            clear = rays.found[at] & (rays.rims[:, at].min(axis=0) >= 0.0) & (light < _MOST_LIGHT)
+            most = max(most, float(light[clear].max(initial=0.0)))
+        return most
 
     def is_dark(self, followed):
         """Whether the rims stop all rays in focus of a field, as `follow` returns it."""
@@ -165,8 +204,9 @@ class RayFan:
             for k in range(slabs - 1):
                 defocus = self.local * (radius * (self.focus - self.slabs[k]))
                 own = self._spread(known[k], (seen[k] - defocus) / radius)
+                held = weight[k] * _nearness(own, weight[k])
                 parts = [
-                    self._fit((k, axis), basis, own[:, axis], weight[k], last)
+                    self._fit((k, axis), basis, own[:, axis], held, last)
                     for axis, basis in enumerate((self.cosines, self.sines))
                 ]
                 here.append(parts)
@@ -213,10 +253,10 @@ class RayFan:
 
         Also the ray before that, and how many rays farther out than it the ray is.
         """
-        order = np.arange(len(known) - 1).reshape(_ANGLES, _RADII)
+        order = np.arange(len(known) - 1).reshape(_ANGLES, self.radii)
         middle = np.full((_ANGLES, 1), len(known) - 1)
         order = np.concatenate([middle, order], axis=1)
-        row = np.arange(_RADII + 1)
+        row = np.arange(self.radii + 1)
         # Up to the first that does not count.
         reach = np.logical_and.accumulate(known[order], axis=1).sum(axis=1, keepdims=True) - 1
         reach = np.maximum(reach, 0)
@@ -257,6 +297,13 @@ class RayFan:
         result[used] = np.linalg.solve(normal, matrix.T @ goal + size * before)
         last[key] = result
         return result
+
+
+def _nearness(own, weight):
+    """Return by how much rays count: those that land far off may be missed by more."""
+    off = np.linalg.norm(own - own[-1], axis=-1)
+    usual = np.median(off[weight >= 0.5 * weight.max()])
+    return 1.0 / (1.0 + np.square(off / max(_FAR * usual, 1e-30)))
 
 
 def _turned(places):

@@ -21,12 +21,10 @@ import numpy as np
 
 from .disc_terms import disc_terms
 from .field_grid import FieldGrid
-from .landing import spread_places, where_they_land
+from .landing import landed, spread_places
 from .seen_fields import SeenFields, fields_on_circles, seen_fields
 
 _GRADIENT_PLACES, _NUDGE = 96, 1e-3
-# Nodes that are looked at around the picture, for the rays that land in it.
-_PADDING = 4
 # Width of a rim's edge over the distance of samples: it takes noise away, but more would darken.
 _SOFT = 0.5
 # Places of the iris that a blur is fitted to.
@@ -62,6 +60,7 @@ class SampleTables:
     _light: np.ndarray
     _rims: np.ndarray
     _slopes: np.ndarray
+    _most_light: float
     _seen: SeenFields
     _colors: tuple = ()
 
@@ -221,7 +220,7 @@ class SampleTables:
 
     def _light_at(self, places, spacing, nodes):
         terms = disc_terms(self.orders, places).reshape(len(places), -1)
-        light = np.maximum(terms @ self._light[:, nodes], 0.0)
+        light = np.clip(terms @ self._light[:, nodes], 0.0, self._most_light)
         for rim, slope in zip(self._rims[..., nodes], self._slopes[..., nodes], strict=True):
             clear = terms @ rim
             if spacing > 0.0:
@@ -266,20 +265,15 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=n
     circles, tangents = fields_on_circles(rays)
     fields = np.concatenate([wide_grid.nodes, circles])
     moves, chief = _moves(rays, fields, aperture_radius, ratio)
-    source = grid.padded(_PADDING)
-    every = rays.light_and_rims(source.nodes)
     # The nodes of the picture, and the axis.
     wanted = np.append(grid.nodes, [[0.0, 0.0]], axis=0)
     away = np.hypot(*wanted.T)
     wanted *= np.minimum(outermost / np.maximum(away, 1e-30), 1.0)[:, None]
-    focused, _ = _moves(rays, source.nodes, aperture_radius, rays.stretch)
-    powers = (rays.focus_vergence / largest) ** np.arange(4)
-    focused = np.einsum("tnkc,k->tnc", focused, powers)
-    every = where_they_land(every, focused, rays.orders, source, wanted)
+    every = landed(rays, aperture_radius, grid, wanted)
     # Rays are followed to the last light.
     every[0, :, :-1][:, np.minimum(away[:-1], outermost) > rays.last_seen] = 0.0
     light, rims = every[0], every[1:]
-    slopes = [_rim_slope(rim, rays.orders) for rim in rims]
+    slopes, least = _rim_slopes(rims, rays.orders)
     colors = []
     if rays.colors is not None:
         for changed, chiefs in zip(rays.colors.aberrations, rays.colors.chief, strict=True):
@@ -287,8 +281,8 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=n
             over, middle = _moves(other, fields, aperture_radius, ratio)
             colors.append((over.reshape(len(over), -1).astype(np.float32), middle))
     # Rims that cut nothing of this picture.
-    cutting = [s for s, (_, least) in enumerate(slopes) if least < _CLEAR]
-    rims, slopes = [rims[s] for s in cutting], [slopes[s][0] for s in cutting]
+    cutting = least < _CLEAR
+    rims, slopes = rims[cutting], slopes[cutting]
     return SampleTables(
         moves_grid=wide_grid,
         light_grid=grid,
@@ -300,8 +294,9 @@ def sample_tables(rays, grid, wide_grid, aperture_radius, ratio=1.0, outermost=n
         _moves=np.ascontiguousarray(moves.reshape(len(moves), -1)),
         _chief=chief,
         _light=light,
-        _rims=np.array(rims).reshape(-1, *light.shape),
-        _slopes=np.array(slopes).reshape(-1, light.shape[1]),
+        _rims=rims,
+        _slopes=slopes,
+        _most_light=rays.most_light,
         _seen=seen_fields(rays, wide_grid.nodes, circles, tangents),
         _colors=tuple(colors),
     )
@@ -315,14 +310,29 @@ def _moves(rays, nodes, aperture_radius, ratio):
     return moves, chief
 
 
-def _rim_slope(rim, orders):
-    """Return how fast a clearance changes over the iris where it is 0, for each node; its least."""
+def _rim_slopes(rims, orders):
+    """Return how fast clearances change over the iris where they are 0, for each node; the least.
+
+    Parameters
+    ----------
+    rims : ndarray of shape (S, 2 T, P)
+    orders : ndarray of int, shape (T, 2)
+
+    Returns
+    -------
+    slopes : ndarray of shape (S, P)
+    least : ndarray of shape (S,)
+        Clearance at any of the places that are looked at.
+    """
     count = _GRADIENT_PLACES
     places = spread_places(count)
-    at, right, up = (
-        disc_terms(orders, places + step).reshape(count, -1) @ rim
-        for step in ((0.0, 0.0), (_NUDGE, 0.0), (0.0, _NUDGE))
-    )
-    slope = np.hypot(right - at, up - at) / _NUDGE
-    near = np.exp(-np.abs(at) / 0.1) + 1e-9
-    return np.maximum((slope * near).sum(axis=0) / near.sum(axis=0), 1e-6), at.min()
+    steps = np.array([(0.0, 0.0), (_NUDGE, 0.0), (0.0, _NUDGE)])
+    terms = disc_terms(orders, (places + steps[:, None]).reshape(-1, 2)).reshape(3 * count, -1)
+    slopes, least = [], []
+    for rim in rims:
+        at, right, up = (terms @ rim).reshape(3, count, -1)
+        slope = np.hypot(right - at, up - at) / _NUDGE
+        near = np.exp(-np.abs(at) / 0.1) + 1e-9
+        slopes.append(np.maximum((slope * near).sum(axis=0) / near.sum(axis=0), 1e-6))
+        least.append(at.min())
+    return np.array(slopes).reshape(len(rims), rims.shape[-1]), np.array(least)

@@ -44,20 +44,19 @@ def divided_mesh(mesh, to_eye, longest, bounds, nearest, most=60_000):
     whole = len(triangles)
     for _ in range(_MOST_ROUNDS):
         eye = arrays["positions"] @ to_eye[:3, :3].T + to_eye[:3, 3]
-        pairs, of_triangle = _edges(triangles)
-        wanted = np.zeros(len(pairs), bool)
-        wanted[of_triangle[_seen(eye[triangles], *bounds)]] = True
-        wanted &= _lengths(eye[pairs], nearest) > longest
-        if not wanted.any() or len(triangles) > most:
+        sides = _sides(triangles, len(eye))
+        seen = np.flatnonzero(_seen(eye[triangles], *bounds))
+        wanted = np.unique(sides[seen][_lengths(eye[triangles[seen]], nearest) > longest])
+        if not len(wanted) or len(triangles) > most:
             break
-        number = np.full(len(pairs), -1)
-        number[wanted] = len(eye) + np.arange(np.count_nonzero(wanted))
-        ends = pairs[wanted]
+        ends = np.divmod(wanted, len(eye))
+        number = np.minimum(np.searchsorted(wanted, sides), len(wanted) - 1)
+        middles = np.where(wanted[number] == sides, len(eye) + number, -1)
         arrays = {
-            key: np.concatenate([values, 0.5 * (values[ends[:, 0]] + values[ends[:, 1]])])
+            key: np.concatenate([values, 0.5 * (values[ends[0]] + values[ends[1]])])
             for key, values in arrays.items()
         }
-        triangles, slots = _split(triangles, slots, number[of_triangle])
+        triangles, slots = _split(triangles, slots, middles)
     if len(triangles) == whole:
         return mesh
     order = np.argsort(slots, kind="stable")
@@ -76,11 +75,10 @@ def divided_mesh(mesh, to_eye, longest, bounds, nearest, most=60_000):
     )
 
 
-def _edges(triangles):
-    """Return the edges, shape (E, 2), and the three of each triangle: 01, 12, 20."""
-    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    pairs, inverse = np.unique(sides, axis=0, return_inverse=True)
-    return pairs, inverse.reshape(-1, 3)
+def _sides(triangles, count):
+    """Return the edges 01, 12, 20 as numbers that both of their triangles have for them."""
+    ends = triangles, triangles[:, [1, 2, 0]]
+    return np.minimum(*ends) * count + np.maximum(*ends)
 
 
 def _seen(eye, low, high):
@@ -89,14 +87,15 @@ def _seen(eye, low, high):
     sides = (z, x + high[0] * z, -x - low[0] * z, y + high[1] * z, -y - low[1] * z)
     outside = np.zeros(len(eye), bool)
     for side in sides:
-        outside |= (side > 0.0).all(axis=1)
+        a, b, c = (side > 0.0).T
+        outside |= a & b & c
     return ~outside
 
 
-def _lengths(ends, nearest):
-    """Return how long edges are in the picture; `ends`: shape (E, 2, 3)."""
-    field = ends[..., :2] / np.maximum(-ends[..., 2:], nearest)
-    return np.linalg.norm(field[:, 0] - field[:, 1], axis=-1)
+def _lengths(eye, nearest):
+    """Return how long edges are in the picture, shape (T, 3); `eye`: corners, (T, 3, 3)."""
+    field = eye[..., :2] / np.maximum(-eye[..., 2:], nearest)
+    return np.linalg.norm(field - field[:, [1, 2, 0]], axis=-1)
 
 
 def _split(triangles, slots, middles):
