@@ -15,6 +15,7 @@ from addon.snapshot.content import (
     next_uid,
 )
 from addon.snapshot.film import Sampling
+from tests.splat_pictures import library_lens
 from tests.surface_graphs import emission_graph
 
 from .conftest import make_renderer, triangles_snapshot
@@ -129,3 +130,18 @@ def test_an_object_at_the_edge_is_shared_without_gaps():
     # The sheet fills the frame: no sample shows the world behind it.
     color = shared["Combined"][..., :3]
     assert np.abs(color - [0.3, 0.7, 0.2]).max() < 1e-5
+
+
+def test_drawings_are_shared_through_a_real_lens_where_it_moves_them_alike():
+    snapshot = sheets_snapshot((4.0, 4.15), 48)
+    lens = ThinLens(0.012, FOCUS)
+    camera = replace(snapshot.camera, lens=lens, real_lens=library_lens("double-gauss-50mm-f2"))
+    plan = plan_frame(replace(snapshot, camera=camera))
+    assert plan.real_lens
+    shared, counts, found = picture(snapshot, plan)
+    alone, whole, _ = picture(snapshot, replace(plan, reuse_grid=0))
+    assert counts.sprites_copied > 20 and counts.triangles < 0.7 * whole.triangles
+    # No point of what shares a drawing is farther from its own place than a cell is wide.
+    edges = np.abs(shared["Combined"] - alone["Combined"])
+    assert edges.mean() < 0.002
+    assert shared["Combined"].sum() == pytest.approx(alone["Combined"].sum(), rel=1e-3)

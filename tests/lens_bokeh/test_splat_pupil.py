@@ -7,6 +7,7 @@ from addon.engine.bokeh.lens_profiles import lens_pupil
 from addon.engine.bokeh.look import describe_look
 from addon.lens_bokeh.look.appearance import Appearance
 from addon.lens_bokeh.look.deposit import deposit, open_weights
+from addon.lens_bokeh.look.pupil_beams import PupilBeams
 from addon.lens_bokeh.look.splat_pupil import (
     AZIMUTHS,
     BLURS,
@@ -14,7 +15,6 @@ from addon.lens_bokeh.look.splat_pupil import (
     FIELDS,
     SHARP,
     SOFT,
-    PupilBeams,
     reach,
 )
 from addon.lens_bokeh.look.tile_drawing import draw_tile
@@ -70,6 +70,7 @@ def test_a_tile_is_the_pattern_of_its_point(aplanat_bpy, field, distance_mm):
     # The image of what is 2 m away is about here.
     pupil, shift = 20.0, 1.28
     beams = PupilBeams(tables, pupil, lens.f_number, 0.3, 1.0 / 500.0)
+    list(beams.traced())
     (grid,), _ = beams.grids(field, [1.0 / distance_mm], shift)
     tile, (middle, half_x, half_y) = draw_tile(grid, SHARP, reach(BLURS[0]))
     height = beams.tangents[field] * distance_mm

@@ -7,6 +7,7 @@ All discs keep their energy: tables hold the light that a profile, rims, or an o
 tiles of a real lens' pupil take away, and the shader divides by it.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -18,7 +19,6 @@ from ...errors import AplanatError
 from ...lens_bokeh.look import splat_pupil, splat_rims
 from ...lens_bokeh.look.opening import LAYERS, LEAST_BLUR, layers_of_mask
 from ...lens_bokeh.look.splat_profile import (
-    distance_from_h,
     light_on_radii,
     profile_layers,
     rows_of_edge,
@@ -27,12 +27,10 @@ from ...lens_bokeh.look.splat_profile import (
 from ...lens_bokeh.openings.blades import BladedIris
 from ...lens_bokeh.openings.masks import texel_centres
 from ...lens_bokeh.openings.shapes import opening_of
-from ...lens_bokeh.tables.pupil_tracing import build_pupil_tables
-from ...optics.focus import focused
 from ...passes.bokeh.splat import MOST_RIMS, SPLAT_PARAMS
 from .artist_tiles import artist_tiles
-from .lens_profiles import lens_pupil
 from .look_keys import ArraysKey, LensKey
+from .real_tiles import tiles_work
 
 # Texels along a side of the opening's layers, and of the iris masks that they are made from.
 _OPENING, _MASK = 512, 1024
@@ -41,11 +39,6 @@ _OPENING, _MASK = 512, 1024
 _RINGING_LAYERS = 4
 _RINGING_MASK = 512
 _REFERENCE_M = 587.5618e-9
-# Focus distance over the depth of the nearest tile: nearer patterns only grow.
-_NEAREST = 4.0
-# Steps in which traced beams come nearer, per halving of the distance.
-_SHARED = 4
-_MM = 1000.0
 # Largest spread of colours, px.
 _FARTHEST = 1e9
 
@@ -115,9 +108,7 @@ def describe_look(plan):
         "field": (1.0 / tangent, 0.0, 1.0, 0.0),
         "rims": np.zeros((MOST_RIMS, 4)),
     }
-    # A draft uses the on-axis pattern of the lens everywhere: its table is ready at once.
-    tiled = lens is not None and settings.vignetting == "LENS" and not plan.orthographic
-    if (tiled or bokeh.artist) and not bokeh.draft:
+    if _has_lens_tiles(plan) or (bokeh.artist and not bokeh.draft):
         _add_tiles(plan, appearance, tangent, arrays, params)
         return ("TILES",), arrays, params
     variants = ()
@@ -142,6 +133,40 @@ def describe_look(plan):
         params["field"] = (1.0 / tangent, len(rims), len(left) / LAYERS, 0.0)
         params["rims"][: len(rims), :3] = [(r.radius, r.shift, r.members) for r in rims]
     return variants, arrays, params
+
+
+def _has_lens_tiles(plan):
+    bokeh = plan.bokeh
+    # A draft uses the on-axis pattern of the lens everywhere: its table is ready at once.
+    return bool(
+        bokeh.real_lens
+        and bokeh.settings.vignetting == "LENS"
+        and not plan.orthographic
+        and not bokeh.draft
+    )
+
+
+def look_in_steps(plan):
+    """Make what takes long of a look, so that `make_look` finds it.
+
+    Parameters
+    ----------
+    plan : FramePlan
+        With a `bokeh`.
+
+    Yields
+    ------
+    None
+        After each step.
+    """
+    if not _has_lens_tiles(plan):
+        return
+    key = LensKey(plan.bokeh.real_lens)
+    work = tiles_work(key, plan.focus_distance, _largest_tangent(plan))
+    # `make_look` tells what fails.
+    with suppress(AplanatError):
+        while work.step():
+            yield
 
 
 def _opening_params(plan, blur):
@@ -314,7 +339,7 @@ def _add_tiles(plan, appearance, tangent, arrays, params):
         found = artist_tiles(bokeh.artist, tangent)
     else:
         strength = bokeh.settings.profile_strength
-        found = _tiles(LensKey(bokeh.real_lens), plan.focus_distance, tangent)
+        found = tiles_work(LensKey(bokeh.real_lens), plan.focus_distance, tangent).whole()
     tiles, (first, last), soft = found
     even = replace(appearance, rims=(), edge=0.0) == type(appearance)()
     arrays["sharp_tx"], arrays["soft_tx"] = tiles.sharp, tiles.soft
@@ -323,47 +348,6 @@ def _add_tiles(plan, appearance, tangent, arrays, params):
     params["field"] = (1.0 / tiles.largest_tangent, 0.0, 1.0, float(not even))
     scale = plan.coc_scale / plan.focus_distance
     params["rows"] = (first, 1.0 / (last - first), soft * scale, strength)
-
-
-# Memo: see `_opening`.
-@lru_cache(maxsize=2)
-def _tiles(lens, focus_distance, tangent):
-    """Return a lens' tiles at a focus, w of the first and last depth, and c0 over c at infinity."""
-    profile = lens.profile()
-    distance = distance_from_h(profile, focus_distance)
-    state = profile.focused(distance)
-    focus = distance if lens.settings.prescription.focus else np.inf
-    nearest = min(float(state.ray_map.vergences[-1]), _NEAREST / (focus_distance * _MM))
-    reach = nearest
-    if np.isinf(focus):
-        # Beams are traced once for all focus distances down to a step; nearer ones need new beams.
-        reach = 2.0 ** (np.ceil(np.log2(nearest) * _SHARED) / _SHARED)
-        reach = min(float(state.ray_map.vergences[-1]), float(reach))
-    beams = _beams(lens, focus, float(state.ray_map.pupil), tangent, reach)
-    plane = state.image_plane(distance)
-    # The circle of confusion of the lens, c = k0 + k1 V, is 0 at the focus.
-    linear = state.ray_map.reference[0] + (plane - state.ray_map.plane) * state.ray_map.reference[1]
-    radius = profile.stop_fraction(lens.settings.f_number) * state.ray_map.pupil_radius
-    k0, k1 = (-radius * linear).tolist()
-    # Off the axis, patterns change most where they are as small as the aberrations there.
-    soft = beams.width_in_focus(plane - beams.sensor, -k0 / k1)
-    ends = [k0 + k1 * vergence for vergence in (0.0, nearest)]
-    w_range = tuple(sorted(c / (abs(c) + soft) for c in ends))
-    tiles = splat_pupil.pupil_tiles(beams, plane - beams.sensor, (k0, k1), soft, w_range)
-    return tiles, w_range, soft / abs(k0)
-
-
-# Memo: see `_opening`.
-@lru_cache(maxsize=2)
-def _beams(lens, focus, pupil, tangent, nearest):
-    settings = lens.settings
-    prescription = settings.prescription
-    if np.isinf(focus):
-        tables = lens_pupil(settings)
-    else:
-        configuration = prescription.configuration(settings.label)
-        tables = build_pupil_tables(focused(configuration, focus, prescription.focus))
-    return splat_pupil.PupilBeams(tables, pupil, settings.f_number, tangent, nearest)
 
 
 # Memo: see `_opening`.

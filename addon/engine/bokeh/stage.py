@@ -17,7 +17,7 @@ from ...passes.surface import surface
 from ..visibility.stage import BokehVisibility
 from .clusters import similarity_of
 from .listing import HighlightSearch
-from .look import make_look
+from .look import look_in_steps, make_look
 from .marks import draw_marks, fates, with_sharp
 from .stack_listing import StackHighlightSearch
 
@@ -141,6 +141,8 @@ class BokehStage:
         for name in ("search", "merge", "visibility", "splat"):
             with stage(name):
                 next(steps, None)
+                while name == "splat" and next(steps, self) is not self:
+                    pass
 
     def steps(self, fullscreen, targets, frame_view):
         """Do what `run` does in steps; the picture changes with the last step.
@@ -160,6 +162,7 @@ class BokehStage:
                 yield
                 visibility = self._hide(sources, count, held)
                 yield
+                yield from look_in_steps(self._plan)
             target = targets.framebuffer("bokeh")
             with target.bind():
                 target.clear(color=(0.0, 0.0, 0.0, 0.0))

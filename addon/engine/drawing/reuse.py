@@ -31,6 +31,8 @@ _TURN = np.array([0.7548776662466927, 0.5698402909980532])
 _SEED_TURNS = 7919
 # Rows of cells after which the places of parents in their cells repeat.
 _PATTERN = 16
+# Samples of which some may share a drawing through a real lens.
+_TOGETHER = 64
 # Least share of the work that sprites must save to be used.
 _LEAST_SAVING = 0.1
 
@@ -65,7 +67,7 @@ class Sprite:
         return self.rectangle[2] * self.rectangle[3]
 
 
-def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
+def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None, moved=None):
     """Group the lens samples that may share drawings of one object.
 
     Parameters
@@ -84,20 +86,31 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
     corners : ndarray of shape (8, 3), optional
         Corners of its bounding box, in camera space. With chromatic aberration samples share a
         drawing only if all corners fall into the same cells.
+    moved : ndarray of shape (N, P, 2), optional
+        How the samples of the round move points of it, px, without the jitter: their mean tells
+        the cell, and no point may be farther than a cell's side from where the parent has it.
 
     Returns
     -------
     list of Sprite
         Empty where it costs less to draw every sample.
     """
-    if plan.chromatic is None:
-        moves, shifts = raster_moves(coc, plan)
+    if moved is not None:
+        jitter, shifts = (part[plan.first :] for part in _jittered(plan))
+        moved = moved + jitter[:, None]
+        moves = moved.mean(axis=1)
     else:
-        moves, shifts = corner_moves(corners, plan)
-    moves, shifts = moves[plan.first :], shifts[plan.first :]
+        if plan.chromatic is None:
+            moves, shifts = raster_moves(coc, plan)
+        else:
+            moves, shifts = corner_moves(corners, plan)
+        moves, shifts = moves[plan.first :], shifts[plan.first :]
     grid = plan.reuse_grid if abs(coc) < _BLUR_HIDES_PX else max(1, plan.reuse_grid // 2)
     cells = np.round(moves * grid)
     keys = np.column_stack([levels, cells.astype(np.int64)])
+    if moved is not None:
+        # A parent's tables are on the device together with those of its members.
+        keys = np.column_stack([keys, np.arange(len(keys)) // _TOGETHER])
     if _touches_edge(rectangle, plan):
         # A shifted copy would need pixels from outside the parent's raster.
         keys = np.column_stack([keys, shifts])
@@ -108,6 +121,9 @@ def find_sprites(row, coc, levels, triangles, rectangle, plan, corners=None):
     for number, members in _families(cell_of, sizes):
         place = place_in_cell(cells[members[0]], turn + number)
         parent = int(members[_parent(moves[members], place)])
+        if moved is not None:
+            apart = np.abs(moved[members] - moved[parent]).max(axis=(1, 2))
+            members = members[apart * grid <= 1.0]
         level = int(levels[parent])
         pixels = rectangle[2] * rectangle[3]
         drawn = len(members) * triangles[level]
@@ -225,11 +241,17 @@ def corner_moves(corners, plan):
     shifts : ndarray of shape (N, 2)
         int64; those whole pixels.
     """
-    jitter = plan.jitter * np.array([plan.width, plan.height]) / 2.0
-    shifts = np.round(jitter)
+    jitter, shifts = _jittered(plan)
     moved = plan.chromatic.displaced(corners, plan.lens_positions)[..., :2] - corners[:, :2]
     scale = np.diag(plan.projection)[:2] * np.array([plan.width, plan.height]) / 2.0
     if not plan.orthographic:
         scale = scale / -corners[:, 2:]
-    moves = moved * scale + (jitter - shifts)[:, None]
-    return moves.reshape(len(moves), -1), shifts.astype(np.int64)
+    moves = moved * scale + jitter[:, None]
+    return moves.reshape(len(moves), -1), shifts
+
+
+def _jittered(plan):
+    """Return the jitter of samples without whole pixels, and those, px."""
+    jitter = plan.jitter * np.array([plan.width, plan.height]) / 2.0
+    shifts = np.round(jitter)
+    return jitter - shifts, shifts.astype(np.int64)

@@ -6,10 +6,13 @@ from ...device import geometry, state
 from ...device.targets import Targets, TargetSpec
 from ...levels.choosing import coc_ends, level_for_sample
 from ...passes import sprite
+from .lens_moves import LensMoves
 from .reuse import find_sprites
 
 # Most bytes on the device of sprites that wait for their next lens sample.
 _BYTES = 256 << 20
+# Largest side of what shares drawings through a real lens, over the picture's longer one.
+_LARGEST = 1.0 / 3.0
 # Bytes of a sprite's pixel: colour, mattes, depth.
 _TEXEL_BYTES = 36
 
@@ -64,17 +67,26 @@ class SharedDrawings:
         # With many more cells than samples, hardly any two samples share one.
         _, count = plan.in_round(plan.samples)
         limit = np.sqrt(count) + 1.0
+        lens = LensMoves(plan) if plan.real_lens else None
         budget = _BYTES
         for row in candidates:
-            if seen.nearest[row] <= 0.0 or abs(largest[row]) > limit:
+            # A real lens' blur is looked at below.
+            if seen.nearest[row] <= 0.0 or abs(largest[row]) - plan.blur_doubt > limit:
                 continue
-            rectangle = raster_rectangle(corners[row], plan)
+            rectangle, coc, moved = raster_rectangle(corners[row], plan), float(largest[row]), None
             if rectangle is None:
                 continue
-            chosen = level_for_sample(np.full(count, levels[row]), np.arange(count), count)
-            coc = float(largest[row])
             eye = corners[row] @ plan.view[:3, :3].T + plan.view[:3, 3]
-            for found in find_sprites(row, coc, chosen, triangles(row), rectangle, plan, eye):
+            if lens:
+                if max(rectangle[2:]) > _LARGEST * max(plan.width, plan.height):
+                    continue
+                places, moved = lens.of_box(eye)
+                rectangle, coc = lens.rectangle(places, moved), float(np.abs(moved).max())
+                if rectangle is None or coc > limit:
+                    continue
+            chosen = level_for_sample(np.full(count, levels[row]), np.arange(count), count)
+            given = (row, coc, chosen, triangles(row), rectangle, plan, eye, moved)
+            for found in find_sprites(*given):
                 size = found.pixels * _TEXEL_BYTES
                 if size > budget:
                     continue

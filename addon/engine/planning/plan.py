@@ -196,8 +196,7 @@ def _through_lens(snapshot, plan):
         return replace(plan, report=report)
     if plan.chromatic is not None and made.parts_colors:
         plan = replace(plan, chromatic=plan.chromatic.through_lens())
-    # Samples that are at one place with a thin lens need not be with this one.
-    return replace(plan, real_lens=made.with_samples(plan.samples), reuse_grid=0, report=report)
+    return replace(plan, real_lens=made.with_samples(plan.samples), report=report)
 
 
 def _plan(snapshot, sampling, automatic=None):

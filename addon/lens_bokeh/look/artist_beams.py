@@ -1,4 +1,4 @@
-"""Beams of an artist's lens, for tiles of its discs: as `splat_pupil.PupilBeams`, without tracing.
+"""Beams of an artist's lens, for tiles of its discs: as `PupilBeams`, without tracing.
 
 Lengths are tangents; the middle of the iris lands where a pinhole has the point.
 """
@@ -6,7 +6,7 @@ Lengths are tangents; the middle of the iris lands where a pinhole has the point
 import numpy as np
 
 from ..tables.artist_lens import ArtistLens
-from .splat_pupil import FIELDS
+from .pupil_beams import FIELDS
 from .tile_drawing import RAYS, HalfGrid
 
 

@@ -203,20 +203,32 @@ class SampleTables:
         ndarray of shape (P, 3)
             Where a pinhole in the camera's place has them.
         """
+        moved = eye.copy()
+        moved[:, :2] -= lens_position * (1.0 + eye[:, 2] * self.focus_vergence)[:, None]
+        moved[:, :2] += self.added(eye, moves.reshape(1, -1, 4, 2))[0]
+        return moved
+
+    def added(self, eye, moves):
+        """Return what samples add to the thin lens' displacement of points.
+
+        Parameters
+        ----------
+        eye : ndarray of shape (P, 3)
+            Points of camera space, m.
+        moves : ndarray of shape (N, rows * columns, 4, 2)
+
+        Returns
+        -------
+        ndarray of shape (N, P, 2)
+            In m.
+        """
         depth = np.maximum(-eye[:, 2], 1e-9)
         vergence = 1.0 / depth
         index, weights = self.moves_grid.taps(eye[:, :2] * vergence[:, None])
-        table = moves.reshape(-1, 4, 2).astype(float)
-        coefficients = np.einsum("pt,ptkc->pkc", weights, table[index])
         near = np.minimum(vergence / self.largest_vergence, 1.0)
-        powers = near[:, None] ** np.arange(4)
-        delta = np.einsum("pk,pkc->pc", powers, coefficients)
         beyond = (vergence - self.focus_vergence) / (self.largest_vergence - self.focus_vergence)
-        delta *= np.maximum(beyond, 1.0)[:, None]
-        moved = eye.copy()
-        moved[:, :2] -= lens_position * (1.0 + eye[:, 2] * self.focus_vergence)[:, None]
-        moved[:, :2] += delta * depth[:, None]
-        return moved
+        powers = near[:, None] ** np.arange(4) * (depth * np.maximum(beyond, 1.0))[:, None]
+        return np.einsum("pt,pk,nptkc->npc", weights, powers, moves[:, index].astype(float))
 
     def _light_at(self, places, spacing, nodes):
         terms = disc_terms(self.orders, places).reshape(len(places), -1)
