@@ -79,7 +79,10 @@ class LensMoves:
         # Points between those that were looked at, rounding, and the jitter to whole pixels.
         margin = np.ptp(moves, axis=1).max(axis=0) + 2.0
         margin += np.abs(plan.jitter).max(axis=0, initial=0.0) * size / 2.0
-        low, high = (places + moves.min(axis=0)).min(axis=0), (places + moves.max(axis=0)).max(axis=0)
+        low, high = (
+            (places + moves.min(axis=0)).min(axis=0),
+            (places + moves.max(axis=0)).max(axis=0),
+        )
         low = np.clip(np.floor(low - margin), 0, size).astype(int)
         high = np.clip(np.ceil(high + margin), 0, size).astype(int)
         if (high <= low).any():

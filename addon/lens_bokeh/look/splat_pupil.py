@@ -13,6 +13,7 @@ picture. Beams are traced for a few vergences and interpolated.
 """
 
 from dataclasses import dataclass
+
 import numpy as np
 
 from .opening import LEAST_BLUR, extent

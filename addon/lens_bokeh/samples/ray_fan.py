@@ -10,11 +10,11 @@ from .disc_terms import disc_orders, radial_terms
 _MM = 1000.0
 # Degree of the sums, and rays along a radius: usually, and where the rim's rays go far astray.
 _DEGREE, _RADII = 12, 10
-_FINE_DEGREE, _FINE_RADII = 18, 18
+_FINE_DEGREE, _FINE_RADII = 16, 18
 _ANGLES = 19
 # Rays that land so many times as far off as the median ray's count less: by how much they do.
 _FAR = 3.0
-# Misses of the sum over those of the median ray, inside of most of the iris, from which on it strays.
+# Misses of the sum over those of the median ray, in most of the iris, from which on it strays.
 _STRAY, _INSIDE = 0.2, 0.9
 # Steps of the field past the last one, for the rays that land there with more blur.
 _CHIEFS = 5
