@@ -2,9 +2,10 @@
 
 Each scene is drawn with each number, its highlights sampled as all else, and compared (1 - SSIM as
 displayed) with the reference method with many lens samples of another seed. How far the two halves
-of those are apart tells the reference's own noise: a quarter of that, at most, counts as the
-picture's. References and results are kept in a folder, so that a run that was ended
-goes on when it is started again; results of other sources are measured anew.
+of those are apart tells the reference's own noise, which adds to the picture's: it is told, and
+taken off what was measured. Where it is so large that it decides, the result is not decided.
+References and results are kept in a folder, so that a run that was ended goes on when it is
+started again; results of other sources are measured anew.
 
 With --cycles, flat scenes are compared with the pictures of Cycles that lie beside the checkout, of
 thousands of samples and twice the size; both then have a box filter of one pixel.
@@ -13,7 +14,7 @@ thousands of samples and twice the size; both then have a box filter of one pixe
     python -m benchmarks.tools.noise_threshold toys:lit pull:3 zoo:7:12 mine.blend
 
 Exit code 1 if an error is above 1.3 times its number, or below half of it with more than the
-fewest samples.
+fewest samples, or if either is not decided.
 """
 
 import argparse
@@ -207,11 +208,10 @@ def drawn(bench, number, halves, options, stem):
         )
     renderer.release()
     truth = halves.mean(axis=0, dtype=np.float64)
-    noise = 0.25 * (1.0 - compare(halves[0], halves[1])["ssim_srgb"])
+    noise = noise_of_mean(1.0 - compare(halves[0], halves[1])["ssim_srgb"], power)
     error = 1.0 - compare(picture, truth)["ssim_srgb"]
     fewest = report.samples[2] <= first_look(renderer_unit(snapshot))
-    share = error / number
-    verdict = "above" if share > MOST else "below" if share < LEAST and not fewest else "ok"
+    share = (error - noise) / number
     return {
         "error": error,
         "share": share,
@@ -221,8 +221,51 @@ def drawn(bench, number, halves, options, stem):
         "noise": noise,
         "energy": float(picture.sum(dtype=np.float64) / truth.sum()),
         "seconds": seconds,
-        "verdict": verdict,
+        "verdict": judged(share, error / number, fewest),
     }
+
+
+def noise_of_mean(apart, power):
+    """Return the noise of a mean of two halves.
+
+    With a variance of ``n^-p`` a half has ``2^p`` times that of the whole, ``e``; the halves then
+    have the correlation ``2^(1 - p) - 1`` and are ``4 (2^p - 1) e`` apart.
+
+    Parameters
+    ----------
+    apart : float
+        Noise that one half has as seen from the other.
+    power : float
+        The `p`.
+
+    Returns
+    -------
+    float
+    """
+    return apart / (4.0 * (2.0**power - 1.0))
+
+
+def judged(share, raw, fewest):
+    """Return what is to be said of an error as a share of its number.
+
+    Parameters
+    ----------
+    share, raw : float
+        Without and with the noise of the reference.
+    fewest : bool
+        Whether only the fewest samples were drawn.
+
+    Returns
+    -------
+    str
+        ``ok``, ``above``, ``below``, or ``not decided``, if the noise of the reference is more
+        than half of what is allowed, or makes up for what is too little.
+    """
+    if share > MOST:
+        return "above"
+    if share < LEAST and not fewest:
+        return "not decided" if raw >= LEAST else "below"
+    return "not decided" if raw - share > 0.5 * MOST else "ok"
 
 
 def renderer_unit(snapshot):
@@ -255,7 +298,9 @@ def table(rows):
         for number in numbers:
             row = shares.get(number)
             text = "" if row is None else f"{row['share']:.2f}"
-            cells.append(f"**{text}**" if row and row["verdict"] != "ok" else text)
+            if row and row["verdict"] != "ok":
+                text = f"({text})" if row["verdict"] == "not decided" else f"**{text}**"
+            cells.append(text)
         means = ", ".join(f"{shares[n]['samples'][1]:.0f}" for n in numbers if n in shares)
         noise = math.ceil(found[0]["noise"] * 1e5) / 1e5
         lines.append(
