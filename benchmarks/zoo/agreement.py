@@ -4,7 +4,9 @@ Both are rendered again and again with other seeds, each of which gives an indep
 the same picture, until noise does not decide any more: until the noise that the spread of these
 pictures tells is small against the bar, or the difference is larger than the bar by more than it.
 
-- *Energy*: the sum of each channel of the mean picture differs by 1 % at most.
+- *Energy*: the sum of each channel of the mean picture differs by 1 % at most. Not asked of the
+  layered method: its layers are texels, so that edges are soft by a part of a pixel, and what it
+  promises (`docs/layers.md`) is likeness.
 - *Looks*: the mean difference of the two mean pictures as they are displayed (the scene's view
   transform, 8 bits) is 0.02 at most. Noise alone makes pictures differ; its share of the mean
   difference, which half the mean difference of two halves of the pictures shows for each of the
@@ -20,6 +22,8 @@ from pathlib import Path
 
 import numpy as np
 from scipy.stats import t as student
+
+from .trades import fit_to_compare, has_plain_look, kept
 
 ENERGY_BAR = 0.01
 LOOK_BAR = 0.02
@@ -39,39 +43,6 @@ PATIENCE = 20.0
 _REFERENCE_SAMPLES = (64, 256)
 # Light below this, in a picture's mean, is black on every display and lost in single precision.
 _DARK = 1e-6
-
-# Settings that trade exactness for speed by their own words, and the least of each at which the
-# picture is promised to be that of the reference method: the defaults.
-_SCENE_TRADES = {
-    "level_bias": lambda value: max(value, 0.0),
-    "render_error": lambda value: min(value, 0.01),
-    "render_min_samples": lambda value: max(value, 16),
-    "render_max_samples": lambda value: max(value, 256),
-    "render_time_limit": lambda value: 0.0,
-    "render_samples": lambda value: max(value, 64),
-    "sharing_cells": lambda value: max(value, 2),
-    "subsamples": lambda value: min(value, 4),
-    "least_triangles": lambda value: max(value, 256),
-}
-_BOKEH_TRADES = {
-    "model": lambda value: "POINT",
-    "visibility": lambda value: "AUTO",
-    "layers": lambda value: max(value, 4),
-    "overscan": lambda value: max(value, 0.25),
-    "lens_views": lambda value: max(value, 4),
-    # Marks on a picture are no picture.
-    "debug_view": lambda value: "NONE",
-}
-# Looks of a disc that samples of the lens know nothing of: with any of these the reference method
-# draws its highlights one by one, too, and the check is of all the rest.
-_PLAIN_LOOKS = {
-    "gain": 1.0,
-    "hardness": 0.0,
-    "grain": 0.0,
-    "dust": 0.0,
-    "diffraction": 0.0,
-    "onion": 0.0,
-}
 
 
 @dataclass
@@ -114,7 +85,7 @@ def compare(scene, render, first, most=MOST, patience=PATIENCE):
     Agreement
     """
     end = time.process_time() + patience
-    with _fit_to_compare(scene) as changed:
+    with fit_to_compare(scene) as changed:
         own = _Estimate(scene, render, _set_seed)
         if not changed:
             own.add(first)
@@ -214,18 +185,8 @@ class _Estimate:
 
 
 @contextmanager
-def _kept(group, names):
-    values = {name: getattr(group, name) for name in names}
-    try:
-        yield
-    finally:
-        for name, value in values.items():
-            setattr(group, name, value)
-
-
-@contextmanager
 def _set_seed(scene, seed):
-    with _kept(scene.aplanat, ("seed",)):
+    with kept(scene.aplanat, ("seed",)):
         scene.aplanat.seed = seed % 2**31
         yield
 
@@ -233,7 +194,7 @@ def _set_seed(scene, seed):
 @contextmanager
 def _as_reference(scene, samples):
     settings = scene.aplanat
-    with _kept(settings, ("method", "render_samples", "use_reference_bokeh")):
+    with kept(settings, ("method", "render_samples", "use_reference_bokeh")):
         own = settings.method == "REFERENCE"
         settings.method = "REFERENCE"
         settings.render_samples = samples
@@ -250,56 +211,16 @@ def _render_reference(scene, seed, samples):
         yield
 
 
-@contextmanager
-def _fit_to_compare(scene):
-    """Take back what trades exactness for speed; yields whether that changed anything."""
-    groups = ((scene.aplanat, _SCENE_TRADES), (scene.camera.data.aplanat.bokeh, _BOKEH_TRADES))
-    changed = False
-    with _kept(scene.aplanat, _SCENE_TRADES), _kept(groups[1][0], _BOKEH_TRADES):
-        for group, trades in groups:
-            for name, bound in trades.items():
-                value = getattr(group, name)
-                if bound(value) != value:
-                    setattr(group, name, bound(value))
-                    # Neither counts where the other does.
-                    automatic = scene.aplanat.use_target_error
-                    changed |= name != ("render_samples" if automatic else "render_error")
-        yield changed
-
-
-def has_plain_look(camera):
-    """Whether samples of the lens alone give the discs of a camera's highlights.
-
-    Parameters
-    ----------
-    camera : bpy.types.Camera
-
-    Returns
-    -------
-    bool
-    """
-    bokeh = camera.aplanat.bokeh
-    if not bokeh.use:
-        return True
-    real_lens = bool(camera.aplanat.lens)
-    bent = (real_lens and bokeh.profile_strength > 0.0) or (
-        bokeh.vignetting == "ANALYTIC" or (bokeh.vignetting == "LENS" and real_lens)
-    )
-    return not bent and all(getattr(bokeh, k) == value for k, value in _PLAIN_LOOKS.items())
-
-
 def _judge(scene, own, reference):
     measured = {"energy": 0.0, "energy_noise": 0.0, "look": 0.0, "look_noise": 0.0}
     measured |= {"renders": own.count, "undecided": 0.0}
     faults = []
     for layer in own.pictures:
         ours, theirs = own.pictures[layer], reference.pictures[layer]
-        for fault in (
-            _judge_energy(ours, theirs, measured),
-            _judge_look(scene, ours, theirs, measured),
-        ):
-            if fault:
-                faults.append(f"view layer '{layer}': {fault}")
+        found = [_judge_look(scene, ours, theirs, measured)]
+        if scene.aplanat.method != "LAYERED":
+            found.insert(0, _judge_energy(ours, theirs, measured))
+        faults += [f"view layer '{layer}': {fault}" for fault in found if fault]
     return Agreement("; ".join(faults), measured)
 
 

@@ -8,6 +8,8 @@ import numpy as np
 # pixel filter makes it only where texels are finer than pixels.
 _MOST_TEXELS = 1 << 25
 _FINEST = 3
+# Of the longer side: as far as layers reach beyond the frame even where that is more texels.
+_LEAST_OVERSCAN = 0.25
 # Parts of a texel along each side that shapes are drawn in, and of all texels together: edges lie
 # between texels, and that of a horizon is one for a whole row of pixels.
 _PARTS, _MOST_PARTS = 3, 1 << 24
@@ -52,10 +54,10 @@ def layer_raster(plan, nearest, farthest):
     LayerRaster
     """
     reach = plan_reach(plan, nearest, farthest)
-    most = int(plan.layered.overscan * max(plan.width, plan.height))
+    slices = plan.layered.count * len(plan.layered.eyes)
+    most = _widest_margin(plan.width, plan.height, _MOST_TEXELS / slices)
     margin = tuple(int(min(np.ceil(side), most)) for side in reach)
     width, height = plan.width + 2 * margin[0], plan.height + 2 * margin[1]
-    slices = plan.layered.count * len(plan.layered.eyes)
     affordable = int(np.sqrt(_MOST_TEXELS / (width * height * slices)))
     fine = int(np.clip(affordable, 1, _FINEST))
     width, height = width * fine, height * fine
@@ -67,20 +69,37 @@ def layer_raster(plan, nearest, farthest):
     return LayerRaster(width, height, fine, margin, parts)
 
 
+def _widest_margin(width, height, texels):
+    """Return the margin with which a frame is that many texels, at least `_LEAST_OVERSCAN`."""
+    longer = max(width, height)
+    affordable = (np.sqrt((width - height) ** 2 + 4.0 * texels) - (width + height)) / 4.0
+    return max(min(affordable, (_LONGEST - longer) / 2.0), _LEAST_OVERSCAN * longer)
+
+
 def plan_reach(plan, nearest, farthest):
-    """Return the largest parallax over the lens between two depths, across and up, in pixels."""
-    moved = np.zeros(2)
+    """Return how far beyond the frame samples between two depths see, across and up, in pixels.
+
+    That is the largest parallax over the lens, and what the smallest picture of all wavelengths
+    shows more than the frame holds.
+    """
+    moved, wider = np.zeros(2), np.zeros(2)
     sweeps = [plan.sweep]
     if plan.chromatic:
         base, gain = plan.sweep_parts
-        sweeps = [base + gain * focus for focus in plan.chromatic.overall().inverse_focus]
+        field = plan.chromatic.overall()
+        sweeps = [base + gain * focus for focus in field.inverse_focus]
+        smallest = min(float(field.scale[0]), 1.0)
+        scale, offset = plan.chromatic.raster[:2], plan.chromatic.raster[2:]
+        # From the axis to the farther side; a lens that is shifted has it beside the middle.
+        sides = np.stack([offset, offset + scale * (plan.width, plan.height)]) / scale
+        wider = (1.0 / smallest - 1.0) * np.abs(sides).max(axis=0)
     for sweep in sweeps:
         for depth in (window_depth(plan, nearest), window_depth(plan, farthest)):
             moved = np.maximum(moved, np.abs(plan.lens_extent * (sweep[:2] + sweep[2:] * depth)))
     if plan.real_lens is not None:
         scale = np.abs(np.diag(plan.projection)[:2]) * (plan.width, plan.height) / 2.0
         moved += plan.real_lens.bound(nearest) * scale
-    return moved
+    return moved + wider
 
 
 def window_depth(plan, depth):

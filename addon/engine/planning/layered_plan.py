@@ -24,8 +24,6 @@ class LayeredPlan:
         Places on the lens, m; the first set is that of the plan.
     cell : float
         Side of the part of the lens that a ray stands for, m; 0 casts thin rays.
-    overscan : float
-        How far the layers reach beyond the frame at most, as a share of its longer side.
     culls : bool
         Layers that a ray cannot meet are skipped.
     stack : LayerStack or None
@@ -44,7 +42,6 @@ class LayeredPlan:
     count: int
     places: np.ndarray
     cell: float
-    overscan: float = 0.25
     culls: bool = True
     stack: LayerStack | None = None
     peeled: bool = False
