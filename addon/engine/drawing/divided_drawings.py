@@ -9,8 +9,10 @@ import numpy as np
 from ...device.geometry import MeshBuffers
 from ...levels.making.divided_mesh import divided_mesh
 
-# Longest edge of a triangle, in widths of the picture: what a lens adds bends little across it.
-_LONGEST = 1.0 / 24.0
+# Longest edge of a triangle, in widths of a picture of so many pixels: what a lens adds bends
+# little across it. How far it bends grows with the square of the edge, and in pixels with their
+# number; in another picture an edge is as long as bends as many pixels.
+_LONGEST, _PIXELS = 1.0 / 24.0, 480.0
 # Width beyond the picture's edges in which triangles are divided, in its sides.
 _BEYOND = 0.1
 # Depth as which nearer places count: over the nearest of the tables.
@@ -55,12 +57,12 @@ class DividedDrawings:
             return
         content, tables = self._content, plan.real_lens.tables
         low, high = tables.light_grid.low, tables.light_grid.high
-        longest = _LONGEST * float((high - low).max())
+        longest = _longest_edge(float((high - low).max()), plan)
         wider = _BEYOND * (high - low)
         bounds = low - wider, high + wider
         least = _NEAREST / tables.largest_vergence
         rows = np.asarray(rows)
-        edges = np.array([self._longest_edge(content.groups[g].mesh) for g in group_of[rows]])
+        edges = np.array([self._edge_of(content.groups[g].mesh) for g in group_of[rows]])
         worlds = content.instances.world[rows].astype(np.float64)
         scale = np.linalg.norm(worlds[:, :3, :3], ord=2, axis=(1, 2))
         # Twice: an edge also runs aside where it runs in depth.
@@ -90,10 +92,19 @@ class DividedDrawings:
         """Bytes that the divided meshes take on the device."""
         return sum(mesh.bytes for mesh in self._made.values() if mesh)
 
-    def _longest_edge(self, uid):
+    def _edge_of(self, uid):
         if uid not in self._longest:
             mesh = self._content.meshes[uid]
             corners = mesh.positions[mesh.triangles].astype(np.float64)
             sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1)
             self._longest[uid] = float(sides.max(initial=0.0))
         return self._longest[uid]
+
+
+def _longest_edge(side, plan):
+    """Return the longest edge as a tangent; `side`: the picture's longer side, the same."""
+    pixel = min(
+        2.0 / (abs(plan.projection[axis, axis]) * size)
+        for axis, size in enumerate((plan.width, plan.height))
+    )
+    return _LONGEST * side * float(np.sqrt(_PIXELS * pixel / side))

@@ -8,8 +8,9 @@ import numpy as np
 # pixel filter makes it only where texels are finer than pixels.
 _MOST_TEXELS = 1 << 25
 _FINEST = 3
-# Of the longer side: as far as layers reach beyond the frame even where that is more texels.
-_LEAST_OVERSCAN = 0.25
+# How far layers reach beyond the frame at most, as a share of its longer side: with more, texels of
+# what is in view would be coarser.
+_OVERSCAN = 0.25
 # Parts of a texel along each side that shapes are drawn in, and of all texels together: edges lie
 # between texels, and that of a horizon is one for a whole row of pixels.
 _PARTS, _MOST_PARTS = 3, 1 << 24
@@ -54,10 +55,10 @@ def layer_raster(plan, nearest, farthest):
     LayerRaster
     """
     reach = plan_reach(plan, nearest, farthest)
-    slices = plan.layered.count * len(plan.layered.eyes)
-    most = _widest_margin(plan.width, plan.height, _MOST_TEXELS / slices)
+    most = int(_OVERSCAN * max(plan.width, plan.height))
     margin = tuple(int(min(np.ceil(side), most)) for side in reach)
     width, height = plan.width + 2 * margin[0], plan.height + 2 * margin[1]
+    slices = plan.layered.count * len(plan.layered.eyes)
     affordable = int(np.sqrt(_MOST_TEXELS / (width * height * slices)))
     fine = int(np.clip(affordable, 1, _FINEST))
     width, height = width * fine, height * fine
@@ -67,13 +68,6 @@ def layer_raster(plan, nearest, farthest):
         parts = min(int(np.sqrt(_MOST_PARTS / (width * height))), _LONGEST // max(width, height))
         parts = int(np.clip(parts, 1, _PARTS))
     return LayerRaster(width, height, fine, margin, parts)
-
-
-def _widest_margin(width, height, texels):
-    """Return the margin with which a frame is that many texels, at least `_LEAST_OVERSCAN`."""
-    longer = max(width, height)
-    affordable = (np.sqrt((width - height) ** 2 + 4.0 * texels) - (width + height)) / 4.0
-    return max(min(affordable, (_LONGEST - longer) / 2.0), _LEAST_OVERSCAN * longer)
 
 
 def plan_reach(plan, nearest, farthest):
