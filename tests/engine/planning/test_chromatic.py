@@ -7,6 +7,7 @@ import pytest
 
 from addon.engine.drawing import culling
 from addon.engine.drawing.shared_drawings import raster_rectangle
+from addon.engine.layered.layer_raster import plan_reach
 from addon.engine.planning.field_table import diamond_angles, diamond_turn, field_of_raster
 from addon.engine.planning.plan import plan_frame
 from addon.levels.choosing import choose_levels, coc_ends, extents
@@ -97,6 +98,22 @@ def raster(points, plan):
     clip = np.concatenate([points, np.ones((*points.shape[:-1], 1))], axis=-1) @ plan.projection.T
     size = np.array([plan.width, plan.height])
     return (clip[..., :2] / clip[..., 3:] + plan.jitter[:, None] + 1.0) / 2.0 * size
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+@pytest.mark.parametrize("maps", presets())
+def test_what_samples_see_is_within_the_reach_of_layers(maps, parallel):
+    # The layered method draws the frame from the lens' middle, with its reach around it.
+    plan = plan_frame(chromatic_snapshot(parallel, **maps))
+    points = random_points(3000, 4, parallel) * (1.5, 1.5, 1.0)
+    reach = plan_reach(plan, 0.5, 30.0)
+    seen = raster(plan.chromatic.displaced(points, plan.lens_positions), plan)
+    size = np.array([plan.width, plan.height])
+    inside = ((seen >= 0.0) & (seen <= size)).all(axis=-1).any(axis=0)
+    at = raster(points[None], plan)[0][inside]
+    assert 100 < np.count_nonzero(inside) < len(points)
+    # A pixel: raster() has the samples' jitter, up to half a pixel each way.
+    assert (at >= -reach - 1.0).all() and (at <= size + reach + 1.0).all()
 
 
 @pytest.mark.parametrize("parallel", [False, True])
