@@ -8,7 +8,8 @@
 # was and only other programs are wrong; HDR cannot tell, and is too bright in Blender itself. Nor are
 # colours multiplied by alpha, as EXR wants: with an alpha of a half, 0.4 is read back as 0.96. An image
 # that is packed first keeps colour space and values, and so does `is_data=True`. A byte image gets
-# darker: its EXR holds linear values and tells that they are sRGB.
+# darker: its EXR holds linear values and tells that they are sRGB. Setting the colour space after
+# the pixels, to the same name, throws them away: the file named .exr is then a PNG, and black.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -53,6 +54,14 @@ def read(name):
 bpy.ops.wm.read_factory_settings(use_empty=True)
 image = bpy.data.images.new("new", 4, 4, float_buffer=True)
 assert image.colorspace_settings.name == "Linear Rec.709"
+image.pixels.foreach_set(np.ones(64, np.float32))
+image.colorspace_settings.name = "Linear Rec.709"
+image.filepath_raw, image.file_format = os.path.abspath("after.exr"), "OPEN_EXR"
+image.save()
+with open("after.exr", "rb") as file:
+    start = file.read(4)
+print(f"seen: colour space set after the pixels: file begins with {start}, red {image.pixels[0]}")
+assert start == b"\x89PNG" and image.pixels[0] == 0.0
 for name, options, space, color, told, back in (
     ("new.exr", {}, "sRGB", CURVED, ENCODED, COLOR),
     ("linear.exr", {"linear": True}, "sRGB", CURVED, ENCODED, COLOR),
