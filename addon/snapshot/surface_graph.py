@@ -81,7 +81,7 @@ class SurfaceGraph:
 LIT_KINDS = frozenset(
     {
         *("diffuse", "glossy", "principled", "translucent", "metallic", "glass"),
-        *("sheen", "toon", "hair"),
+        *("sheen", "toon", "hair", "fog"),
     }
 )
 _NORMAL_KINDS = LIT_KINDS | {
@@ -102,9 +102,10 @@ def attributes_read(graph):
     -------
     frozenset of str
         ``"normal"``, ``"generated"``, ``"uv:NAME"``, ``"tangent:NAME"`` of a UV map,
-        ``"color:NAME"``, ``"pointiness"``, ``"island"`` (a random number) and ``"barycentric"``;
-        an empty NAME is the active one. A node that reads an attribute of any kind by its name
-        gives both keys; meshes need only have those that exist.
+        ``"color:NAME"``, ``"pointiness"``, ``"island"`` (a random number), ``"barycentric"``,
+        ``"lowest"`` and ``"highest"`` (corners of the mesh's box); an empty NAME is the active
+        one. A node that reads an attribute of any kind by its name gives both keys; meshes
+        need only have those that exist.
     """
     keys = set()
     for node in graph.nodes:
@@ -117,9 +118,11 @@ def attributes_read(graph):
             node.kind == "tangent" and not node.setting("axis")
         ):
             keys.add(f"tangent:{name}")
+        elif node.kind == "fog":
+            keys |= {"lowest", "highest"}
         elif node.kind in {"pointiness", "island"}:
             keys.add(node.kind)
-        elif node.kind == "wireframe":
+        elif node.kind in {"wireframe", "parametric"}:
             keys.add("barycentric")
         elif node.kind == "hair":
             keys.add("tangent:")

@@ -17,6 +17,8 @@ CASES = [
     # Where a pixel lies on the edge of two triangles, either may be seen.
     *(Case("NewGeometry", name, shape="dome", exempt=0.06) for name in _GEOMETRY),
     Case("NewGeometry", "Pointiness", shape="dome"),
+    Case("NewGeometry", "Parametric", exempt=0.2),
+    Case("NewGeometry", "Parametric", shape="dome", exempt=0.1),
     Case("NewGeometry", "Random Per Island", shape="dome"),
     # An edge of a line may run through the middle of a pixel.
     *(Case("Wireframe", "Fac", {"Size": s}, exempt=0.06) for s in (0.3, 0.7)),
@@ -38,6 +40,9 @@ CASES = [
         for blend in (0.2, 0.5, 0.8)
     ),
     Case("LayerWeight", "Facing", {"Blend": 0.3, "Normal": "bent"}),
+    # As they are, not of unit length.
+    *(Case("LayerWeight", n, {"Blend": 0.3, "Normal": "uv"}) for n in ("Facing", "Fresnel")),
+    Case("Fresnel", "Fac", {"IOR": 1.4, "Normal": "signed"}),
     *(Case("Tangent", "Tangent", settings={"axis": axis}, shape="dome") for axis in "XYZ"),
     Case("Tangent", "Tangent", settings={"direction_type": "UV_MAP"}, shape="dome"),
     Case("UVMap", "UV"),

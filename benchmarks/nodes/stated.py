@@ -2,6 +2,8 @@
 
 EXACT, APPROXIMATE, FALLBACK = "exact", "approximate", "fallback"
 
+_FOG = "the same all over the box around its mesh, in front of what is in it; scatters light once"
+
 # By Blender's type without ``ShaderNode``. Closures are compared with Cycles on lit spheres, in
 # tests/render/against_cycles/test_surfaces_against_cycles.py.
 STATED = {
@@ -41,10 +43,10 @@ STATED = {
     "Raycast": (FALLBACK, "the value of the socket that it feeds"),
     "Script": (FALLBACK, "the value of the socket that it feeds"),
     "OutputAOV": (FALLBACK, "no such pass"),
-    "VolumeAbsorption": (FALLBACK, "not drawn"),
-    "VolumeCoefficients": (FALLBACK, "not drawn"),
-    "VolumePrincipled": (FALLBACK, "not drawn"),
-    "VolumeScatter": (FALLBACK, "not drawn"),
+    "VolumeAbsorption": (APPROXIMATE, _FOG),
+    "VolumeCoefficients": (APPROXIMATE, _FOG),
+    "VolumePrincipled": (APPROXIMATE, _FOG),
+    "VolumeScatter": (APPROXIMATE, _FOG),
 }
 
 # Reasons and limits of nodes that are measured.
@@ -53,7 +55,7 @@ LIMITS = {
     "TexSky": "single and multiple scattering with a disc: by generated coordinates, as in Cycles",
     "RadialTiling": "corners neither sharp nor round: up to 0.03 off",
     "ShaderToRGB": "as Cycles, which has none: the value of the socket that it feeds",
-    "NewGeometry": "not Parametric; other islands than the first have other random numbers",
+    "NewGeometry": "other islands than the first have other random numbers",
     "TexCoord": "Window of the drawn region; not from an instancer",
     "LightPath": "as a ray from the camera sees it",
     "Attribute": "of the mesh; not of objects, instancers and view layers",

@@ -105,6 +105,7 @@ OTHERS = {
     "scene.nodes.pattern_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.value_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.vector_nodes": ("readers by kind of node", ("reads",)),
+    "scene.nodes.volume_nodes": ("readers by kind of node", ("reads",)),
     # Panels.
     "ui.jobs.background": (
         "work for panels, and what the user stopped of it",

@@ -199,6 +199,28 @@ def _see_through(writer, outputs):
     writer.glows = True
 
 
+@generates("fog", "lib/nodes/fog_lib.glsl")
+def _fog(node, writer):
+    writer.features |= {"FOG", "SHAPES"}
+    writer.normal()
+    corners = ", ".join(writer.attribute(key) for key in ("lowest", "highest"))
+    scattered, absorbed = (
+        writer.let("vec3", f"max({writer.value(node.input(name), 'vec3')}, vec3(0.0))")
+        for name in ("Scatter", "Absorption")
+    )
+    members = {
+        "color": scattered,
+        "extinction": f"{scattered} + {absorbed}",
+        "emission_color": writer.value(node.input("Emission"), "vec3"),
+        "thickness": f"fog_thickness({writer.place()}, {corners})",
+        "shape": _shape(writer, "FOG", writer.value(node.input("Anisotropy"), "float")),
+    }
+    fog = writer.lit_closure("Volume", "BSDF_FOG", members)
+    writer.transmitting.add(fog["Volume"][1])
+    writer.glows = True
+    return fog
+
+
 @generates("transparent")
 def _transparent(node, writer):
     color = writer.value(node.input("Color"), "vec3")

@@ -76,6 +76,11 @@ def _island(node, writer):
     return {"Value": ("float", f"{writer.attribute('island')}.x")}
 
 
+@generates("parametric")
+def _parametric(node, writer):
+    return {"Value": ("vec3", f"vec3({writer.attribute('barycentric')}, 0.0)")}
+
+
 @generates("wireframe", "lib/nodes/wireframe_lib.glsl")
 def _wireframe(node, writer):
     size = writer.value(node.input("Size"), "float")
@@ -130,14 +135,17 @@ def _camera_data(node, writer):
 @generates("fresnel", _INPUT)
 def _fresnel(node, writer):
     writer.normal()
-    ior, normal = writer.value(node.input("IOR"), "float"), writer.given_normal(node)
+    ior, normal = writer.value(node.input("IOR"), "float"), writer.given_normal(node, as_given=True)
     return {"Fac": ("float", writer.let("float", f"node_fresnel({ior}, {normal})"))}
 
 
 @generates("layer_weight", _INPUT)
 def _layer_weight(node, writer):
     writer.normal()
-    blend, normal = writer.value(node.input("Blend"), "float"), writer.given_normal(node)
+    blend, normal = (
+        writer.value(node.input("Blend"), "float"),
+        writer.given_normal(node, as_given=True),
+    )
     arguments = f"({blend}, {normal})"
     outputs = {
         "Fresnel": ("float", f"layer_fresnel{arguments}"),

@@ -9,7 +9,7 @@ from ...snapshot.surface_graph import Constant, Link
 
 _ATTRIBUTE_COMPONENTS = {
     **{"normal": 3, "generated": 3, "tangent": 4, "uv": 2, "color": 4},
-    **{"pointiness": 2, "island": 2, "barycentric": 2},
+    **{"pointiness": 2, "island": 2, "barycentric": 2, "lowest": 3, "highest": 3},
 }
 
 
@@ -98,12 +98,20 @@ class Writer:
         self.reads_place = True
         return "v_object_position"
 
-    def given_normal(self, node):
-        """Return the normal that feeds a node, or the surface's own."""
+    def given_normal(self, node, as_given=False):
+        """Return the normal that feeds a node, or the surface's own.
+
+        Parameters
+        ----------
+        node : ShaderNode
+        as_given : bool
+            Of any length.
+        """
         given = dict(node.inputs).get("Normal")
         if given is None:
             return "point_normal()"
-        return f"unit_or({self.value(given, 'vec3')}, vec3(0.0))"
+        normal = self.value(given, "vec3")
+        return normal if as_given else f"unit_or({normal}, vec3(0.0))"
 
     def lit_closure(self, output, kind, members):
         """Write a closure that reflects light and return it as the one output of a node.

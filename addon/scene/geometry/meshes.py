@@ -85,6 +85,9 @@ def read_mesh(mesh, keys, owner, base=None, carried=True):
             values, domain = _read_generated(mesh, known, positions, corner_vertices), "POINT"
         elif kind in {"pointiness", "island"}:
             values, domain = _read_shape(mesh, kind, positions), "POINT"
+        elif kind in {"lowest", "highest"}:
+            corner = positions.min(axis=0) if kind == "lowest" else positions.max(axis=0)
+            values, domain = np.repeat(corner[None], len(positions), axis=0), "POINT"
         elif kind == "barycentric":
             continue
         elif kind == "tangent":

@@ -8,6 +8,7 @@ from . import (
     pattern_nodes,
     value_nodes,
     vector_nodes,
+    volume_nodes,
 )
 
 READERS = (
@@ -18,4 +19,5 @@ READERS = (
     | pattern_nodes.READERS
     | value_nodes.READERS
     | vector_nodes.READERS
+    | volume_nodes.READERS
 )

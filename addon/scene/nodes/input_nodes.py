@@ -61,10 +61,8 @@ def _attribute(reader, node, groups):
     return reader.add("attribute", settings=(("name", node.attribute_name),))
 
 
-_LEFT_OUT = {
-    "Parametric": ((0.0, 0.0, 0.0), "0 is used"),
-}
 _OF_VERTICES = {"Pointiness": "pointiness", "Random Per Island": "island"}
+_OF_VERTICES |= {"Parametric": "parametric"}
 
 
 @reads("NEW_GEOMETRY")
@@ -78,11 +76,6 @@ def _geometry(reader, node, groups):
             # Computed only where something reads it.
             known = Link(reader.add(kind), "Value") if socket.is_linked else Constant((0.0,))
             outputs[socket.identifier] = known
-        if socket.identifier in _LEFT_OUT:
-            value, what = _LEFT_OUT[socket.identifier]
-            outputs[socket.identifier] = Constant(value)
-            if socket.is_linked:
-                reader.note(f"'{socket.identifier}' of node '{node.bl_label}' is not read; {what}")
     return outputs
 
 

@@ -4,14 +4,29 @@ from ...snapshot.content import MaterialSnapshot, next_uid
 from ...snapshot.cryptomatte import cryptomatte_id
 from ...snapshot.surface_graph import DEFAULT_GRAPH, Constant, Link, ShaderNode, SurfaceGraph
 from ..images.images import ImageReader
+from ..nodes import volume_nodes
 from ..nodes.all_nodes import READERS
-from ..nodes.node_tree import inlined
-from ..nodes.tree_reader import TreeReader
+from ..nodes.node_tree import inlined, source_of
+from ..nodes.tree_reader import TreeReader, input_socket
 from ..nodes.vector_nodes import read_displacement
 
 _INVISIBLE_GRAPH = SurfaceGraph(
     (ShaderNode("transparent", (("Color", Constant((1.0, 1.0, 1.0))),)),), Link(0, "BSDF")
 )
+
+
+_AS_BOX = (
+    "volume is drawn as fog that is the same all over the box around its mesh, in front of what is"
+    " in it, scattering light once"
+)
+
+
+def _fog(reader, output):
+    """Return the link of a material's volume, or None where its nodes are mixed or unknown."""
+    source, _ = source_of(input_socket(output, "Volume"), ())
+    if not source.is_output or source.node.type not in volume_nodes.KINDS:
+        return None
+    return reader.closure(output, "Volume", ())
 
 
 class MaterialReader:
@@ -102,11 +117,16 @@ class MaterialReader:
         # First, so that all that follows has the normal that it bends.
         read_displacement(reader, output)
         graph = reader.surface(output)
-        if graph.surface is None and reader.linked(output, "Volume", ()):
-            # The mesh around a volume (fog, smoke) has no surface of its own.
-            graph = _INVISIBLE_GRAPH
         if reader.linked(output, "Volume", ()):
-            reader.note("volume is not drawn")
+            fog = None if graph.surface is not None else _fog(reader, output)
+            if fog is not None:
+                graph = reader.graph(fog)
+                reader.note(_AS_BOX)
+            else:
+                reader.note("volume is not drawn")
+                if graph.surface is None:
+                    # The mesh around a volume (fog, smoke) has no surface of its own.
+                    graph = _INVISIBLE_GRAPH
         if reader.linked(output, "Displacement", ()) and material.displacement_method != "BUMP":
             reader.note("displacement is drawn as bump")
         if material.use_backface_culling:

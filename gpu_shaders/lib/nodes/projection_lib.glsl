@@ -5,6 +5,12 @@
 
 #define PROJECTION_PI 3.14159265358979
 
+// The angle of a place in the plane; 0 at its origin, of which GLSL says nothing.
+float angle_of(float y, float x)
+{
+  return (x == 0.0 && y == 0.0) ? 0.0 : atan(y, x);
+}
+
 // An image wrapped around a tube along z; the place runs from 0 to 1.
 vec2 project_tube(vec3 place)
 {
@@ -29,15 +35,15 @@ vec2 project_sphere(vec3 place)
 
 vec2 project_equirectangular(vec3 direction)
 {
-  float longitude = atan(direction.y, direction.x);
-  float latitude = atan(direction.z, length(direction.xy));
+  float longitude = angle_of(direction.y, direction.x);
+  float latitude = angle_of(direction.z, length(direction.xy));
   return vec2(0.5 - longitude / (2.0 * PROJECTION_PI), latitude / PROJECTION_PI + 0.5);
 }
 
 // Of a sky, as Cycles looks it up: the height alone tells the latitude, whatever the vector's length.
 vec2 project_sky(vec3 direction)
 {
-  float longitude = atan(direction.y, direction.x);
+  float longitude = angle_of(direction.y, direction.x);
   float latitude = asin(clamp(direction.z, -1.0, 1.0));
   // Not past the poles: half a texel of the image.
   float v = clamp(latitude / PROJECTION_PI + 0.5, 0.5 / 1024.0, 1.0 - 0.5 / 1024.0);
@@ -48,7 +54,7 @@ vec2 project_sky(vec3 direction)
 vec2 project_photometric(vec3 direction)
 {
   vec3 d = direction / max(length(direction), 1e-12);
-  float around = atan(d.x, d.y) + PROJECTION_PI;
+  float around = angle_of(d.x, d.y) + PROJECTION_PI;
   return vec2(around / (2.0 * PROJECTION_PI), acos(clamp(-d.z, -1.0, 1.0)) / PROJECTION_PI);
 }
 

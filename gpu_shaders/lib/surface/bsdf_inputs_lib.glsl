@@ -9,6 +9,7 @@
 #define BSDF_TRANSLUCENT 3
 #define BSDF_METALLIC 4
 #define BSDF_GLASS 5
+#define BSDF_FOG 6
 #include "lib/surface/shapes_lib.glsl"
 
 struct Bsdf {
@@ -33,6 +34,8 @@ struct Bsdf {
   float sheen_roughness;
   vec3 sheen_tint;
   Shape shape;         // of the diffuse part
+  vec3 extinction;     // fog: light lost in a metre; its colour is what is scattered of it
+  float thickness;     // fog: m
 };
 
 Bsdf bsdf_of_kind(int kind)
@@ -59,6 +62,8 @@ Bsdf bsdf_of_kind(int kind)
   bsdf.sheen_roughness = 0.5;
   bsdf.sheen_tint = vec3(1.0);
   bsdf.shape = Shape(SHAPE_LAMBERT, vec4(0.0), vec3(0.0));
+  bsdf.extinction = vec3(0.0);
+  bsdf.thickness = 0.0;
   return bsdf;
 }
 

@@ -15,6 +15,7 @@
 #define SHAPE_VELVET 5      // x: roughness
 #define SHAPE_HAIR 6        // x, y: roughness along and around, z: offset, radians
 #define SHAPE_HAIR_THROUGH 7
+#define SHAPE_FOG 8         // x: how much further ahead than back it scatters (Henyey and Greenstein, 1941)
 
 #define SHAPE_PI 3.14159265358979
 
@@ -150,6 +151,11 @@ float shape_response(Shape shape, vec3 normal, vec3 view, vec3 towards)
   }
   if (shape.kind == SHAPE_VELVET) {
     return velvet_response(normal, view, towards, shape.numbers.x);
+  }
+  if (shape.kind == SHAPE_FOG) {
+    float g = clamp(shape.numbers.x, -0.99, 0.99);
+    float spread = 1.0 + g * g + 2.0 * g * dot(towards, view);
+    return (1.0 - g * g) / (4.0 * SHAPE_PI * spread * sqrt(spread));
   }
   return hair_response(shape, normal, view, towards);
 }

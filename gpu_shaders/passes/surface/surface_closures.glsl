@@ -171,6 +171,25 @@ Closure closure_glass(Shading s, Bsdf bsdf)
   return closure;
 }
 
+#ifdef FOG
+// Light scattered once towards the eye, and what fog itself emits.
+Closure closure_fog(Shading s, Bsdf bsdf)
+{
+  vec3 extinction = max(number_or_zero(bsdf.extinction), vec3(0.0));
+  vec3 passed = fog_transmittance(bsdf);
+  // Of what starts evenly along the ray, what arrives; all of it in thin air.
+  vec3 arriving = mix((1.0 - passed) / max(extinction, vec3(1e-9)),
+                      vec3(bsdf.thickness),
+                      vec3(lessThan(extinction * bsdf.thickness, vec3(1e-4))));
+  Reflected lit = diffuse_light(shaped(s, bsdf));
+  vec3 scattered = max(number_or_zero(bsdf.color), vec3(0.0)) * arriving;
+  Closure closure = reflecting(Reflected(scattered * lit.light, scattered * lit.unsplit));
+  closure.radiance += finite_light(bsdf.emission_color * arriving);
+  closure.transmittance = passed;
+  return closure;
+}
+#endif
+
 Closure closure_lit(Bsdf bsdf)
 {
   Shading s = surface_shading(bsdf.normal);
@@ -180,6 +199,11 @@ Closure closure_lit(Bsdf bsdf)
   if (bsdf.kind == BSDF_GLOSSY) {
     return closure_glossy(s, bsdf);
   }
+#ifdef FOG
+  if (bsdf.kind == BSDF_FOG) {
+    return closure_fog(s, bsdf);
+  }
+#endif
 #ifdef OTHER_CLOSURES
   if (bsdf.kind == BSDF_TRANSLUCENT) {
     return closure_translucent(s, bsdf);

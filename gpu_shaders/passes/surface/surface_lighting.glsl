@@ -11,6 +11,12 @@
 #include "lib/surface/closure_lib.glsl"
 #include "lib/surface/fresnel_lib.glsl"
 
+// Share of the light that passes fog.
+vec3 fog_transmittance(Bsdf bsdf)
+{
+  return exp(-max(number_or_zero(bsdf.extinction), vec3(0.0)) * bsdf.thickness);
+}
+
 // Share of the light that passes a face of glass.
 vec3 glass_transmittance(Bsdf bsdf, float cos_view)
 {
@@ -283,6 +289,9 @@ Closure closure_lit(Bsdf bsdf)
   Closure closure = closure_none();
   if (bsdf.kind == BSDF_GLASS) {
     closure.transmittance = glass_transmittance(bsdf, cos_view);
+  }
+  else if (bsdf.kind == BSDF_FOG) {
+    closure.transmittance = fog_transmittance(bsdf);
   }
   else if (bsdf.kind == BSDF_PRINCIPLED) {
     float share = clamp(number_or_zero(bsdf.transmission), 0.0, 1.0) *
