@@ -1,5 +1,8 @@
 """Images in every projection, interpolation and extension."""
 
+import tempfile
+from pathlib import Path
+
 import numpy as np
 
 from .case import Case
@@ -24,6 +27,26 @@ def _sky(kind, gain, vector="place", **settings):
     inputs = {"Vector": vector} if vector else {}
     shown = {"sky_type": kind, "sun_disc": False, **settings}
     return Case("TexSky", "Color", inputs, shown, shape="dome", gain=gain)
+
+
+def _tiles(bpy, node):
+    """Three UDIM tiles in files, of two sizes and with a gap."""
+    folder = Path(tempfile.mkdtemp())
+    rng = np.random.default_rng(4)
+    for number, size in ((1001, 4), (1002, 2), (1012, 4)):
+        tile = bpy.data.images.new("tile", size, size, alpha=True)
+        pixels = rng.random((size, size, 4), np.float32)
+        pixels[..., 3] = 1.0
+        tile.pixels.foreach_set(pixels.reshape(-1))
+        tile.filepath_raw, tile.file_format = str(folder / f"tile.{number}.png"), "PNG"
+        tile.save()
+        bpy.data.images.remove(tile)
+    node.image = bpy.data.images.load(str(folder / "tile.1001.png"))
+    node.image.source = "TILED"
+    node.image.filepath = str(folder / "tile.<UDIM>.png")
+    for number in (1002, 1012):
+        if not any(tile.number == number for tile in node.image.tiles):
+            node.image.tiles.new(number)
 
 
 # A street lamp's file: three half planes, five angles from straight down to up.
@@ -75,6 +98,11 @@ CASES = [
             "dome",
         )
         for b in (0.1, 0.6, 1.0)
+    ),
+    *(
+        Case("TexImage", "Color", {"Vector": v}, {"interpolation": i}, _tiles, exempt=0.06)
+        for v in ("signed", "uv")
+        for i in ("Linear", "Closest", "Cubic")
     ),
     Case("TexImage", "Alpha", {"Vector": "uv"}, {}, _picture(4, 3, alpha=True)),
     Case("TexImage", "Color", {"Vector": "uv"}, {}, _picture(4, 3, is_float=False, space="sRGB")),

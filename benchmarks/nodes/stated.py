@@ -63,7 +63,7 @@ LIMITS = {
     "Displacement": "as bump; vertices stay",
     "VectorDisplacement": "as bump; vertices stay",
     "NormalMap": "in tangent space of meshes of triangles and quads",
-    "TexImage": "no mipmaps; of UDIM tiles the first",
+    "TexImage": "no mipmaps",
     "Mix": "not of rotations",
     "HairInfo": "of meshes",
     "ParticleInfo": "of meshes that are no particles",

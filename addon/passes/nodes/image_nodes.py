@@ -28,7 +28,7 @@ _FLAT = {
 }
 
 
-@generates("image_texture", _PROJECTION)
+@generates("image_texture", _PROJECTION, "lib/nodes/tiles_lib.glsl")
 def _image_texture(node, writer):
     vector = writer.value(node.input("Vector"), "vec3")
     projection = node.setting("projection", "FLAT")
@@ -52,11 +52,31 @@ def _box(node, writer, vector):
     return writer.let("vec4", " + ".join(sides))
 
 
+_TAPS = {"Closest": 1, "Linear": 2, "Cubic": 4}
+
+
+def _tiled(node, writer, uv, extension):
+    """Write the search for the tile of a place, and return the look-up in it."""
+    place = writer.let("vec2", uv)
+    first = writer.table(list(node.table))
+    # As in Cycles, what is less than a tile below the first row or column is in it.
+    slot = writer.let("int", "-1")
+    writer.lines.append(
+        f"  for (int i = 0; i < {len(node.table)}; i++) {{"
+        f" {slot} = (material_buf.constants[{first} + i].xy == trunc({place})) ? i : {slot}; }}"
+    )
+    taps = _TAPS[node.setting("interpolation", "Linear")]
+    grid = f"ivec2({node.setting('grid')})"
+    return f"image_tiled({writer.image(node.image)}, {place}, {slot}, {grid}, {taps}, {extension})"
+
+
 def _texel(node, writer, uv):
     """Write a look-up and return the colour, scene linear, and alpha."""
     function = f"image_{node.setting('interpolation', 'Linear').lower()}"
     extension = f"EXTENSION_{node.setting('extension', 'REPEAT')}"
     expression = f"{function}({writer.image(node.image)}, {uv}, {extension})"
+    if node.table:
+        expression = _tiled(node, writer, uv, extension)
     if node.setting("associated") and writer.uses(node, "Alpha"):
         # Where alpha is not asked for, colour stays multiplied by it, as in Cycles and EEVEE.
         expression = f"image_unassociate({expression})"

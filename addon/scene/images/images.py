@@ -11,6 +11,7 @@ import numpy as np
 from ...snapshot.content import ImageSnapshot, next_uid
 from . import color_spaces
 from .image_pixels import encode, load_file, read_pixels, reduced
+from .tiles import load_tiles, tile_path
 
 # Frames of these are chosen by the node that uses them.
 ANIMATED = frozenset({"SEQUENCE", "MOVIE"})
@@ -28,11 +29,14 @@ class ImageUse:
         The texels are sRGB encoded.
     associated : bool
         Colour is multiplied by alpha, and some pixel's alpha is not 1.
+    tiles : tuple of (int, int)
+        Of UDIM tiles the place of each in the UV plane, in the order of `tiles.load_tiles`.
     """
 
     uid: int
     srgb: bool
     associated: bool
+    tiles: tuple[tuple[int, int], ...] = ()
 
 
 @dataclass
@@ -155,12 +159,19 @@ class ImageReader:
         unchanged = entry and entry.signature == signature
         if unchanged and (self._is_told or not image.is_dirty):
             return entry.use
-        pixels, as_stored, notes = self._pixels(image, image_user, frame)
+        places = ()
+        if image.source == "TILED" and len(image.tiles) > 1:
+            pixels, places = load_tiles(image)
+        if places:
+            as_stored, notes = True, []
+        else:
+            pixels, as_stored, notes = self._pixels(image, image_user, frame)
         if pixels is None:
             self._entries.pop(key, None)
             return None
-        if image.source == "TILED" and len(image.tiles) > 1:
-            notes.append(f"of its {len(image.tiles)} UDIM tiles only the first is drawn")
+        if image.source == "TILED" and len(image.tiles) > max(len(places), 1):
+            read = len(places) or "only the first"
+            notes.append(f"of its {len(image.tiles)} UDIM tiles {read} can be read")
         pixels, srgb, associated, more = encode(pixels, image, as_stored)
         notes += more
         pixels = self._fitting(pixels, notes)
@@ -168,13 +179,14 @@ class ImageReader:
             entry
             and entry.use.srgb == srgb
             and entry.use.associated == associated
+            and entry.use.tiles == places
             and entry.snapshot.pixels.dtype == pixels.dtype
             and np.array_equal(entry.snapshot.pixels, pixels)
         ):
             entry.signature, entry.notes = signature, tuple(notes)
             return entry.use
         snapshot = ImageSnapshot(next_uid(), image.name, pixels, srgb)
-        use = ImageUse(snapshot.uid, srgb, associated)
+        use = ImageUse(snapshot.uid, srgb, associated, places)
         self._entries[key] = _Entry(signature, use, snapshot, tuple(notes))
         return use
 
@@ -216,6 +228,14 @@ def _read_frame(image, frame):
     return read_pixels(image)
 
 
+def _file_state(path):
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError):
+        return None
+    return status.st_mtime_ns, status.st_size
+
+
 def _signature(image, image_user, frame):
     stat = ()
     if image.source in {"FILE", "SEQUENCE", "TILED", "MOVIE"} and not image.packed_file:
@@ -225,6 +245,8 @@ def _signature(image, image_user, frame):
             stat = (status.st_mtime_ns, status.st_size)
         except (OSError, ValueError):
             stat = ("absent",)
+    if image.source == "TILED" and not image.packed_files:
+        stat += tuple(_file_state(tile_path(image, tile.number)) for tile in image.tiles)
     generated = ()
     if image.source == "GENERATED":
         generated = (image.generated_type, *image.generated_color, image.generated_width)

@@ -7,6 +7,7 @@ import bpy
 
 from ...snapshot.surface_graph import MISSING_IMAGE_COLOR, Constant, Link
 from ..images import color_spaces, ies_file
+from ..images.tiles import columns_of
 from ..skies.sky_image import Sky, sky_xyz
 from .tree_reader import input_socket, reader_registry
 
@@ -29,7 +30,13 @@ def _image_texture(reader, node, groups):
     if node.projection == "BOX":
         inputs.append(("Blend", reader.number(node.projection_blend)))
     settings = (("projection", node.projection), *_sampling(node, use, node.extension))
-    return reader.add("image_texture", inputs, settings, use.uid)
+    table = ()
+    if use.tiles:
+        columns = columns_of(len(use.tiles))
+        rows = -(-len(use.tiles) // columns)
+        settings += (("grid", f"{columns}, {rows}"),)
+        table = tuple((float(x), float(y), 0.0, 0.0) for x, y in use.tiles)
+    return reader.add("image_texture", inputs, settings, use.uid, table)
 
 
 @reads("TEX_ENVIRONMENT")

@@ -17,7 +17,10 @@ float fog_thickness(vec3 place, vec3 lowest, vec3 highest)
   float to_eye = length(place_in_camera(world_position));
   bool inside = -start > to_eye && POINT_PROJECTION[3][3] == 0.0;
   if (point_backfacing() > 0.5) {
-    return inside ? to_eye + max(end, 0.0) : 0.0;
+    // Nothing is seen before the camera's near plane, fog neither.
+    float near_plane = POINT_PROJECTION[3][2] / (POINT_PROJECTION[2][2] - 1.0);
+    float seen = 1.0 - near_plane / max(place_in_camera(world_position).z, near_plane);
+    return inside ? to_eye * seen + max(end, 0.0) : 0.0;
   }
   return max(end - max(start, 0.0), 0.0);
 }

@@ -1,4 +1,4 @@
-"""Volumes in boxes look about as in Cycles: what passes exactly, what is scattered where fog is thin."""
+"""Volumes in boxes look about as in Cycles: what passes, and what thin fog scatters."""
 
 import numpy as np
 import pytest
