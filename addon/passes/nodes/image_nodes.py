@@ -67,7 +67,9 @@ def _tiled(node, writer, uv, extension):
     )
     taps = _TAPS[node.setting("interpolation", "Linear")]
     grid = f"ivec2({node.setting('grid')})"
-    return f"image_tiled({writer.image(node.image)}, {place}, {slot}, {grid}, {taps}, {extension})"
+    share = f"material_buf.constants[{first} + max({slot}, 0)].zw"
+    where = f"{writer.image(node.image)}, {place}, {slot}, {grid}, {share}"
+    return f"image_tiled({where}, {taps}, {extension})"
 
 
 def _texel(node, writer, uv):

@@ -29,14 +29,14 @@ class ImageUse:
         The texels are sRGB encoded.
     associated : bool
         Colour is multiplied by alpha, and some pixel's alpha is not 1.
-    tiles : tuple of (int, int)
-        Of UDIM tiles the place of each in the UV plane, in the order of `tiles.load_tiles`.
+    tiles : tuple of (int, int, float, float)
+        UDIM tiles as `tiles.load_tiles` tells of them.
     """
 
     uid: int
     srgb: bool
     associated: bool
-    tiles: tuple[tuple[int, int], ...] = ()
+    tiles: tuple[tuple[float, ...], ...] = ()
 
 
 @dataclass

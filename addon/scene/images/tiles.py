@@ -37,10 +37,10 @@ def load_tiles(image):
     Returns
     -------
     pixels : ndarray of shape (height, width, 4)
-        As of `load_file`: row by row `columns_of` their number, all as large as the largest.
-    places : tuple of (int, int)
-        Column and row of the UV plane, in the order of the tiles in the picture. Tiles that cannot
-        be read are left out.
+        As of `load_file`: row by row `columns_of` their number, in cells as large as the largest.
+    places : tuple of (int, int, float, float)
+        Column and row of the UV plane, width and height as shares of a cell, in the order of the
+        tiles in the picture. Tiles that cannot be read are left out.
     """
     found = {}
     for tile in image.tiles:
@@ -58,11 +58,10 @@ def load_tiles(image):
     atlas = np.zeros((rows * height, columns * width, 4), first.dtype)
     for slot, pixels in enumerate(found.values()):
         row, column = divmod(slot, columns)
-        y = np.arange(height) * pixels.shape[0] // height
-        x = np.arange(width) * pixels.shape[1] // width
-        place = np.s_[row * height : (row + 1) * height, column * width : (column + 1) * width]
-        atlas[place] = pixels[y][:, x]
-    return atlas, tuple(found)
+        y, x = row * height, column * width
+        atlas[y : y + pixels.shape[0], x : x + pixels.shape[1]] = pixels
+    sizes = [(p.shape[1] / float(width), p.shape[0] / float(height)) for p in found.values()]
+    return atlas, tuple((*place, *size) for place, size in zip(found, sizes, strict=True))
 
 
 def _as_float(pixels):

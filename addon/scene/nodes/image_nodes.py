@@ -35,7 +35,7 @@ def _image_texture(reader, node, groups):
         columns = columns_of(len(use.tiles))
         rows = -(-len(use.tiles) // columns)
         settings += (("grid", f"{columns}, {rows}"),)
-        table = tuple((float(x), float(y), 0.0, 0.0) for x, y in use.tiles)
+        table = tuple(tuple(map(float, tile)) for tile in use.tiles)
     return reader.add("image_texture", inputs, settings, use.uid, table)
 
 

@@ -5,14 +5,15 @@
 #include "lib/surface/texture_lib.glsl"
 
 // `uv`: place in the UV plane; `slot`: the tile's number in the picture, -1 for none; `grid`: tiles
-// across and up; `taps`: 1, 2 or 4 texels a side are read.
-vec4 image_tiled(sampler2D tx, vec2 uv, int slot, ivec2 grid, int taps, int extension)
+// across and up; `share`: the tile's size, as a share of the grid's cells; `taps`: 1, 2 or 4 texels a side are read.
+vec4 image_tiled(sampler2D tx, vec2 uv, int slot, ivec2 grid, vec2 share, int taps, int extension)
 {
   if (slot < 0) {
     return vec4(1.0, 0.0, 1.0, 1.0);
   }
-  ivec2 size = textureSize(tx, 0) / grid;
-  ivec2 origin = size * ivec2(slot % grid.x, slot / grid.x);
+  ivec2 cell = textureSize(tx, 0) / grid;
+  ivec2 origin = cell * ivec2(slot % grid.x, slot / grid.x);
+  ivec2 size = max(ivec2(vec2(cell) * share + 0.5), ivec2(1));
   vec2 place = fract(uv) * vec2(size) - ((taps == 1) ? 0.0 : 0.5);
   vec2 corner = floor(place), t = place - corner;
   vec4 x = (taps == 4) ? cubic_weights(t.x) : vec4(0.0, 1.0 - t.x, t.x, 0.0);
