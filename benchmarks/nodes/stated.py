@@ -30,7 +30,7 @@ STATED = {
     "SubsurfaceScattering": (APPROXIMATE, "light leaves where it enters: a diffuse surface"),
     "BsdfSheen": (APPROXIMATE, "fibres scatter the light of lamps as a diffuse surface does"),
     "BsdfToon": (APPROXIMATE, "the world as a diffuse surface reflects it"),
-    "BsdfHair": (APPROXIMATE, "on meshes, along the UV map's tangent; no offset"),
+    "BsdfHair": (APPROXIMATE, "on meshes along triangles' edges, as in Cycles"),
     "BsdfHairPrincipled": (
         APPROXIMATE,
         "the colour of many strands, half of its light from behind, with a highlight; Cycles'"

@@ -68,6 +68,7 @@ def _hair(node, writer):
         tangent = f"tangent_of({writer.attribute('tangent:')}.xyz)"
     else:
         tangent = f"unit_or({writer.value(given, 'vec3')}, vec3(0.0))"
+    tangent = writer.let("vec3", tangent)
     members = {
         "color": writer.value(node.input("Color"), "vec3"),
         "shape": _shape(writer, node.setting("component"), along, around, tangent=tangent),

@@ -3,8 +3,7 @@
 import numpy as np
 
 from ...snapshot.surface_graph import Constant, Link
-from .node_tree import source_of
-from .tree_reader import constant, input_socket, is_constant, reader_registry
+from .tree_reader import is_constant, reader_registry
 
 READERS, reads = reader_registry()
 
@@ -20,26 +19,25 @@ def _note_linked(reader, node, groups, *identifiers):
             reader.note(f"'{identifier}' of node '{node.bl_label}' is not read")
 
 
-# Inputs of the Principled BSDF that are not drawn, and the value at which they have no effect.
-_PRINCIPLED_LEFT_OUT = {
-    "Anisotropic": 0.0,
-    "Thin Film Thickness": 0.0,
-}
+# Inputs of closures that are not drawn, and the value at which they have no effect.
+_LEFT_OUT = {"Anisotropic": 0.0, "Anisotropy": 0.0, "Thin Film Thickness": 0.0, "Thin Wall": 0.0}
+
+
+def _note_left_out(reader, node, groups):
+    """Tell, with the node's name, which inputs that have an effect are not drawn."""
+    for socket in node.inputs:
+        if socket.identifier in _LEFT_OUT and socket.enabled:
+            value = reader.value(node, socket.identifier, groups)
+            if not is_constant(value, _LEFT_OUT[socket.identifier]):
+                reader.note(f"{socket.name.lower()} of node '{node.bl_label}' is not drawn")
+    _note_linked(reader, node, groups, "Tangent")
 
 
 @reads("BSDF_PRINCIPLED")
 def _principled(reader, node, groups):
-    for identifier, default in _PRINCIPLED_LEFT_OUT.items():
-        socket = input_socket(node, identifier)
-        if socket is None:
-            continue
-        source, _ = source_of(socket, groups)
-        if source.is_output or not is_constant(constant(source), default):
-            name = identifier.removesuffix(" Weight").lower()
-            reader.note(f"{name} is not drawn")
-    _note_linked(reader, node, groups, "Tangent")
+    _note_left_out(reader, node, groups)
     if not is_constant(reader.value(node, "Subsurface Weight", groups), 0.0):
-        reader.note(_AS_ENTERED)
+        reader.note(_AS_ENTERED.format(node.bl_label))
     inputs = reader.values(
         node,
         (
@@ -71,23 +69,23 @@ def _principled(reader, node, groups):
     transmission = reader.value(node, "Transmission Weight", groups)
     if not is_constant(transmission, 0.0):
         inputs.append(("Transmission Weight", transmission))
-        reader.note(_THROUGH_GLASS)
+        reader.note(_THROUGH_GLASS.format(node.bl_label))
     alpha = reader.value(node, "Alpha", groups)
     if not (isinstance(alpha, Constant) and alpha.value[0] >= 1.0):
         inputs.append(("Alpha", alpha))
     return reader.add("principled", inputs)
 
 
-_THROUGH_GLASS = "glass does not bend what is seen through it, nor blur it"
+_THROUGH_GLASS = "node '{}' does not bend what is seen through it, nor blur it"
 
-_AS_ENTERED = "light below a surface leaves it where it enters: it is drawn as diffuse"
+_AS_ENTERED = "subsurface light of node '{}' leaves where it enters: it is drawn as diffuse"
 
 
 @reads("BSDF_DIFFUSE", "SUBSURFACE_SCATTERING")
 def _diffuse(reader, node, groups):
     inputs = [*reader.values(node, ("Color",), groups), *reader.normal(node, groups)]
     if node.type == "SUBSURFACE_SCATTERING":
-        reader.note(_AS_ENTERED)
+        reader.note(_AS_ENTERED.format(node.bl_label))
     else:
         rough = reader.value(node, "Roughness", groups)
         if not is_constant(rough, 0.0):
@@ -101,22 +99,16 @@ def _multiple(node):
     return ("multiple_scattering", "1" if multiple else "")
 
 
-def _note_anisotropy(reader, node, groups):
-    if not is_constant(reader.value(node, "Anisotropy", groups), 0.0):
-        reader.note("anisotropy is not drawn")
-    _note_linked(reader, node, groups, "Tangent")
-
-
 @reads("BSDF_GLOSSY")
 def _glossy(reader, node, groups):
-    _note_anisotropy(reader, node, groups)
+    _note_left_out(reader, node, groups)
     inputs = reader.values(node, ("Color", "Roughness"), groups) + reader.normal(node, groups)
     return Link(reader.add("glossy", inputs, (_multiple(node),)), "BSDF")
 
 
 @reads("BSDF_METALLIC")
 def _metallic(reader, node, groups):
-    _note_anisotropy(reader, node, groups)
+    _note_left_out(reader, node, groups)
     if node.fresnel_type == "F82":
         color, edge = (reader.value(node, name, groups) for name in ("Base Color", "Edge Tint"))
     else:
@@ -130,7 +122,8 @@ def _metallic(reader, node, groups):
 
 @reads("BSDF_GLASS", "BSDF_REFRACTION")
 def _glass(reader, node, groups):
-    reader.note(_THROUGH_GLASS)
+    reader.note(_THROUGH_GLASS.format(node.bl_label))
+    _note_left_out(reader, node, groups)
     inputs = reader.values(node, ("Color", "Roughness", "IOR"), groups)
     inputs += reader.normal(node, groups)
     mirrors = "1" if node.type == "BSDF_GLASS" else ""
@@ -147,10 +140,12 @@ def _translucent(reader, node, groups):
 def _transparent(reader, node, groups):
     color = reader.value(node, "Color", groups)
     if not (isinstance(color, Constant) and len(set(color.value)) == 1):
-        reader.note("light that passes a transparent surface keeps its colour, dimmed by the mean")
+        reader.note(
+            f"light that passes node '{node.bl_label}' keeps its colour, dimmed by the mean"
+        )
     if isinstance(color, Constant) and not 0.0 <= np.mean(color.value) <= 1.0:
         reader.note(
-            "a transparent surface whose colour is not between 0 and 1 is drawn as if it were"
+            f"node '{node.bl_label}' has a colour that is not between 0 and 1; drawn as if it were"
         )
     return reader.add("transparent", [("Color", color)])
 

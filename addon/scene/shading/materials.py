@@ -16,8 +16,8 @@ _INVISIBLE_GRAPH = SurfaceGraph(
 
 
 _AS_BOX = (
-    "volume is drawn as fog that is the same all over the box around its mesh, in front of what is"
-    " in it, scattering light once"
+    "node '{}' is drawn as fog that is the same all over the box around its mesh, in front of"
+    " what is in it, scattering light once"
 )
 
 
@@ -121,7 +121,8 @@ class MaterialReader:
             fog = None if graph.surface is not None else _fog(reader, output)
             if fog is not None:
                 graph = reader.graph(fog)
-                reader.note(_AS_BOX)
+                socket, _ = source_of(input_socket(output, "Volume"), ())
+                reader.note(_AS_BOX.format(socket.node.bl_label))
             else:
                 reader.note("volume is not drawn")
                 if graph.surface is None:

@@ -91,7 +91,9 @@ def test_what_a_principled_surface_leaves_out_is_reported(bpy):
     material, tree = new_material(bpy)
     tree.surface(tree.node("BsdfPrincipled", {"Thin Film Thickness": 500.0}).outputs[0])
     _, reader = read(material)
-    assert reader.report == ["material 'm': thin film thickness is not drawn"]
+    assert reader.report == [
+        "material 'm': thin film thickness of node 'Principled BSDF' is not drawn"
+    ]
 
 
 def test_only_what_is_lit_reads_normals_and_an_unlinked_image_the_active_uv(bpy):
