@@ -122,12 +122,10 @@ def attributes_read(graph):
             keys |= {"lowest", "highest"}
         elif node.kind in {"pointiness", "island"}:
             keys.add(node.kind)
-        elif (
-            node.kind in {"wireframe", "parametric"}
-            or node.kind == "hair"
-            and "Tangent" not in dict(node.inputs)
-        ):
+        elif node.kind in {"wireframe", "parametric"}:
             keys.add("barycentric")
+        elif node.kind == "hair":
+            keys.add("tangent:")
         elif node.kind == "uv":
             keys.add(f"uv:{name}")
         elif node.kind == "color_attribute":

@@ -30,7 +30,10 @@ STATED = {
     "SubsurfaceScattering": (APPROXIMATE, "light leaves where it enters: a diffuse surface"),
     "BsdfSheen": (APPROXIMATE, "fibres scatter the light of lamps as a diffuse surface does"),
     "BsdfToon": (APPROXIMATE, "the world as a diffuse surface reflects it"),
-    "BsdfHair": (APPROXIMATE, "on meshes along triangles' edges, as in Cycles"),
+    "BsdfHair": (
+        APPROXIMATE,
+        "on meshes along the UV map's tangent, in Cycles by triangles; no offset",
+    ),
     "BsdfHairPrincipled": (
         APPROXIMATE,
         "the colour of many strands, half of its light from behind, with a highlight; Cycles'"
