@@ -17,6 +17,8 @@ _SORTING_KINDS = frozenset({"luminance", "separate", "combine"})
 # How much more than Lambert's a rough diffuse surface may reflect at an angle.
 _ROUGH = 2.0
 _MIRRORS = frozenset({"glossy", "metallic", "glass"})
+# All that reflect.
+_REFLECTORS = _MIRRORS | {"diffuse", "translucent", "principled"}
 # Roughness that stands for what a texture gives.
 _TYPICAL_ROUGHNESS = 0.5
 # Largest gain of a glossy surface with a colour above 1 by multiple scattering.
@@ -61,6 +63,20 @@ def mirrors(graph):
         False for surfaces that also emit: their emission outshines their reflections.
     """
     return not emits(graph) and any(_mirrors(node) for node in graph.nodes)
+
+
+def reflects(graph):
+    """Whether a surface has no light of its own: what it shows depends on the side that is seen.
+
+    Parameters
+    ----------
+    graph : SurfaceGraph
+
+    Returns
+    -------
+    bool
+    """
+    return not emits(graph) and any(node.kind in _REFLECTORS for node in graph.nodes)
 
 
 def sharpest_gloss(graph):

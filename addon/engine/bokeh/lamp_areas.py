@@ -6,14 +6,16 @@ raster over its number of texels. Hidden texels are counted as well, so that a p
 keeps the share of its light that is visible.
 
 The search sees lamps from the middle of the lens, which may see less of them than the rest, such as
-the face of a cube but none of its sides. The light is scaled by that as well.
+the face of a cube but none of its sides. The light is scaled by that as well. What only reflects is
+not: its sides differ, and those that parts of the lens do not see stay with the lens samples.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...sampling.thin_lens import projected_areas
+from ...snapshot.brightness import reflects
 
 # A lamp thinner than this, in texels, may be missed altogether: then those that are found stand for
 # those that are missed, and are not scaled.
@@ -140,13 +142,18 @@ def lamp_areas(content, surfaces, plan, projection, size):
         if len(triangles) == 0 or measured == 0:
             continue
         budget -= measured * len(triangles)
+        slots = [slot for slot, _, _ in mesh.slots if (number, slot) in surfaces]
+        one_sided = any(reflects(content.materials[group.materials[s]].graph) for s in slots)
         used, corners = np.unique(triangles, return_inverse=True)
         points = np.column_stack([mesh.positions[used], np.ones(len(used))])
         at_once = max(1, _AT_ONCE // len(triangles))
         for first in range(0, measured, at_once):
             rows = group.first + np.arange(first, min(first + at_once, measured))
             eye = np.einsum("rab,vb->rva", plan.view @ content.instances.world[rows], points)
-            found.append(_areas_of(rows, eye, corners.reshape(-1, 3), plan, projection, size))
+            areas = _areas_of(rows, eye, corners.reshape(-1, 3), plan, projection, size)
+            if one_sided:
+                areas = replace(areas, growth=np.ones_like(areas.growth))
+            found.append(areas)
     return LampAreas(
         *(
             np.concatenate([getattr(part, name) for part in found])

@@ -6,7 +6,7 @@ order, so graphs of one shape generate the same text and share one compiled shad
 
 from dataclasses import dataclass
 
-from ...snapshot.brightness import mirrors
+from ...snapshot.brightness import mirrors, reflects
 from ...snapshot.surface_graph import Link
 from . import closure_nodes, image_nodes, input_nodes, pattern_nodes, value_nodes, vector_nodes
 from .writer import Writer
@@ -50,6 +50,8 @@ class SurfaceCode:
         Defines that its closures need.
     mirrors : bool
         Its reflections depend on the place on the lens: see `snapshot.brightness.mirrors`.
+    reflects : bool
+        It has no light of its own: see `snapshot.brightness.reflects`.
     """
 
     source: str
@@ -63,6 +65,7 @@ class SurfaceCode:
     reads_place: bool = False
     features: tuple[str, ...] = ()
     mirrors: bool = False
+    reflects: bool = False
 
 
 def generate(graph, available):
@@ -102,4 +105,5 @@ def generate(graph, available):
         reads_place=writer.reads_place,
         features=tuple(sorted(writer.features)),
         mirrors=mirrors(graph),
+        reflects=reflects(graph),
     )

@@ -142,6 +142,7 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
         structs += HIGHLIGHT_PARAMS.source
         uniforms.append(("HighlightParams", "highlight_buf"))
         defines |= {"MIRRORING": "1"} if code.mirrors else {}
+        defines |= {"REFLECTING": "1"} if code.reflects else {}
     if "LIT" in defines:
         structs += environment.ENVIRONMENT_PARAMS.source
         uniforms.append(("EnvironmentParams", "environment_buf"))
@@ -259,7 +260,7 @@ def _code_and_shader(material, mesh, holdout, target, glow, split):
     if glow and (holdout or not code.glows):
         return code, None, None
     how = (mesh.attributes, holdout, mesh.motion is not None, glow)
-    kind = surface_info(target, replace(code, mirrors=False), *how)
+    kind = surface_info(target, replace(code, mirrors=False, reflects=False), *how)
     shader = compile_shader(surface_info(target if split else whole(target), code, *how))
     return code, shader, kind
 

@@ -29,4 +29,13 @@ float searched_from_views(vec3 eye, vec2 lens_xy, float focus_distance, Highligh
   return share;
 }
 
+// Whether the plane of a surface cuts the lens' opening: parts of the lens see its other side, which is
+// lit otherwise, or none of it. `eye`, `normal`: a point and the surface's normal there, in camera space;
+// `lens` as in ViewParams.
+bool seen_from_both_sides(vec3 eye, vec3 normal, vec4 lens, HighlightParams params)
+{
+  float middle = (lens.y > 0.5) ? normal.z * lens.x : dot(normal, eye);
+  return abs(middle) < length(normal.xy * params.views.xy);
+}
+
 #endif

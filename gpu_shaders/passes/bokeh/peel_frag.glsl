@@ -15,6 +15,9 @@
 // concurrent linked list construction on the GPU, EGSR 2010; methods 9.
 #include "lib/bokeh/hiding_lib.glsl"
 #include "lib/bokeh/highlight_lib.glsl"
+#if defined(HIGHLIGHTS) && defined(REFLECTING)
+#include "lib/bokeh/searched_lib.glsl"
+#endif
 
 #if !defined(HIGHLIGHTS) && !defined(VEILS)
 void main()
@@ -44,9 +47,24 @@ void main()
 #include "passes/bokeh/highlights_append.glsl"
 
 #ifdef HIGHLIGHTS
-// Light above the threshold of a surface.
-vec3 listed_light(Closure closure, float opacity)
+// Whether the lens samples keep all of a surface's light, as surface_frag has it.
+bool is_left()
 {
+#ifdef REFLECTING
+  vec3 point = (view_buf.view * vec4(world_position, 1.0)).xyz;
+  vec3 normal = cross(dFdx(point), dFdy(point));
+  return seen_from_both_sides(point, normal, view_buf.lens, highlight_buf);
+#else
+  return false;
+#endif
+}
+
+// Light above the threshold of a surface.
+vec3 listed_light(Closure closure, float opacity, bool left)
+{
+  if (left) {
+    return vec3(0.0);
+  }
   vec2 split = vec2(highlight_buf.split.x, highlight_buf.split.z);
 #if defined(TRANSPARENT) && !defined(GLOW_APART)
   // As lens samples split it: the light of a surface that the random opacity keeps.
@@ -62,6 +80,9 @@ vec3 listed_light(Closure closure, float opacity)
 #ifdef VEILS
 void main()
 {
+#ifdef HIGHLIGHTS
+  bool left = is_left();
+#endif
   ivec2 texel = ivec2(gl_FragCoord.xy);
   if (imageLoad(heads_img, texel).x == 0u) {
     discard;
@@ -71,7 +92,7 @@ void main()
   float opacity = 1.0 - closure_through(closure);
   bool veils = opacity > 0.0 && opacity < OPAQUE_FROM;
 #ifdef HIGHLIGHTS
-  vec3 light = listed_light(closure, opacity);
+  vec3 light = listed_light(closure, opacity, left);
   veils = veils && max(light.r, max(light.g, light.b)) <= 0.0;
 #endif
   if (veils) {
@@ -92,7 +113,7 @@ void main()
 #ifdef TRANSPARENT
   opacity = 1.0 - closure_through(closure);
 #endif
-  vec3 light = listed_light(closure, opacity);
+  vec3 light = listed_light(closure, opacity, is_left());
   if (max(light.r, max(light.g, light.b)) > 0.0) {
     append_fragment(ivec2(gl_FragCoord.xy), light, gl_FragCoord.z, opacity >= OPAQUE_FROM,
                     1.0 - opacity, uint(instance_row) + 1u);

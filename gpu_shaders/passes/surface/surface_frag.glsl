@@ -4,7 +4,7 @@
 // Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads. HIGHLIGHTS:
 // highlight_buf; the light that is splatted as bokeh is left out; with CHROMATIC also chromatic_buf and
 // field_tx, so that the splatted share is the same at all wavelengths; with MIRRORING it is searched
-// from several places on the lens. OF_LAYER: front_tx (depths that
+// from several places on the lens, with REFLECTING only where the whole lens sees one side. OF_LAYER: front_tx (depths that
 // it must lie behind) and eye (place on the lens that it is shaded for, m). MATTES with REAL_LENS:
 // real_lens_buf, blur_tx (what the lens adds to the circle of confusion).
 // Outputs: premultiplied scene-linear colour; with MATTES also Cryptomatte ids of object (x) and
@@ -42,6 +42,12 @@ vec3 without_highlights(Closure closure)
   float coc = coc_radius_px(-point.z, view_buf.lens);
 #endif
   float share = highlight_share(coc, highlight_buf.split.y);
+#ifdef REFLECTING
+  vec3 normal = cross(dFdx(point), dFdy(point));
+  if (seen_from_both_sides(point, normal, view_buf.lens, highlight_buf)) {
+    return closure.radiance;
+  }
+#endif
 #ifndef MIRRORING
   share *= searched(vec4(point, 1.0), highlight_buf);
 #elif defined(OF_LAYER)
