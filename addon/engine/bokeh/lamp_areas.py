@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...sampling.thin_lens import projected_areas
-from ...snapshot.brightness import reflects
 
 # A lamp thinner than this, in texels, may be missed altogether: then those that are found stand for
 # those that are missed, and are not scaled.
@@ -88,6 +87,22 @@ class LampAreas:
         found[self.rows] = self.growth
         return found
 
+    def without_growth(self, groups):
+        """Return the same areas, where the instances of some groups do not grow.
+
+        Parameters
+        ----------
+        groups : iterable of InstanceGroup
+
+        Returns
+        -------
+        LampAreas
+        """
+        kept = np.zeros(self.rows.max(initial=-1) + 1, bool)
+        for group in groups:
+            kept[group.first : group.first + group.count] = True
+        return replace(self, growth=np.where(kept[self.rows], 1.0, self.growth))
+
     def any_cut(self, tiles, subpixels, areas):
         """Return whether a tile's edge cuts any instance that is counted.
 
@@ -142,18 +157,13 @@ def lamp_areas(content, surfaces, plan, projection, size):
         if len(triangles) == 0 or measured == 0:
             continue
         budget -= measured * len(triangles)
-        slots = [slot for slot, _, _ in mesh.slots if (number, slot) in surfaces]
-        one_sided = any(reflects(content.materials[group.materials[s]].graph) for s in slots)
         used, corners = np.unique(triangles, return_inverse=True)
         points = np.column_stack([mesh.positions[used], np.ones(len(used))])
         at_once = max(1, _AT_ONCE // len(triangles))
         for first in range(0, measured, at_once):
             rows = group.first + np.arange(first, min(first + at_once, measured))
             eye = np.einsum("rab,vb->rva", plan.view @ content.instances.world[rows], points)
-            areas = _areas_of(rows, eye, corners.reshape(-1, 3), plan, projection, size)
-            if one_sided:
-                areas = replace(areas, growth=np.ones_like(areas.growth))
-            found.append(areas)
+            found.append(_areas_of(rows, eye, corners.reshape(-1, 3), plan, projection, size))
     return LampAreas(
         *(
             np.concatenate([getattr(part, name) for part in found])

@@ -146,6 +146,7 @@ class HighlightSearch:
         if not bokeh.draft:
             content, size = self._drawing.content, bokeh.whole[2:]
             areas = lamp_areas(content, steady, self._plan, bokeh.projection, size)
+            areas = areas.without_growth(content.groups[n] for n in sorted(bokeh.reflecting))
         deep, deep_mirrors = bokeh.search_projections
         searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone, deep, areas)]
         if bokeh.mirroring:

@@ -14,7 +14,7 @@ from ...levels.choosing import coc_radius, extents
 from ...sampling.highlights import highlight_share, least_coc
 from ...sampling.iris import Iris
 from ...sampling.pixel_filter import filter_density
-from ...snapshot.brightness import brightest, mirrors, sharpest_gloss
+from ...snapshot.brightness import brightest, mirrors, reflects, sharpest_gloss
 from ...snapshot.camera import BokehSettings, LensSettings
 from ...snapshot.surface_graph import Constant
 from .bokeh_colors import BokehColors, colors_of_frame
@@ -56,6 +56,8 @@ class BokehPlan:
         Those of them whose reflections depend on the place on the lens.
     uneven : frozenset of int
         Groups with shining surfaces whose light varies over the surface.
+    reflecting : frozenset of int
+        Groups with shining surfaces that have no light of their own.
     unsplit : frozenset of (int, int)
         Group and slot of bright surfaces whose light the lens samples keep: the lens' middle, from
         where highlights are searched, sees them from the edge.
@@ -120,6 +122,7 @@ class BokehPlan:
     colors: BokehColors | None = None
     draft: bool = False
     artist: ArtistRays | None = None
+    reflecting: frozenset[int] = frozenset()
 
     @property
     def lens_views(self):
@@ -250,6 +253,7 @@ def plan_bokeh(snapshot, plan):
         shining=shining,
         mirroring=mirroring,
         uneven=_uneven(snapshot.content, shining),
+        reflecting=frozenset(k[0] for k in shining if reflects(graph_of(snapshot.content, k))),
         unsplit=unsplit,
         least_coc=least,
         width=width,
