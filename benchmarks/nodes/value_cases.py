@@ -52,7 +52,24 @@ def _glow(bpy, node):
     tree.links.new(glow.outputs[0], node.inputs[0])
 
 
+_SCRIPT = "shader tint(float a = 0.7, output color C = 0) { C = color(a, 0.2, 0.4); }"
+
+
+def _script(bpy, node):
+    from addon.scene.images.color_spaces import bundled_module
+
+    # Cycles asks it for the script's sockets.
+    bundled_module("oslquery")
+    import cycles.osl
+
+    text = bpy.data.texts.new("tint.osl")
+    text.write(_SCRIPT)
+    node.mode, node.script = "INTERNAL", text
+    cycles.osl.update_script_node(node, lambda *told: None)
+
+
 CASES = [
+    Case("Script", "C", {}, {}, _script, gain=0.5),
     *(Case("ShaderToRGB", name, {}, {}, _glow, gain=0.5) for name in ("Color", "Alpha")),
     *(
         Case("Math", "Value", {"Value": "x", "Value_001": "y", "Value_002": 0.3}, {"operation": o})
