@@ -102,6 +102,17 @@ def _rarer():
     return SurfaceGraph((*coated.nodes, glass, mixed), Link(2, "Shader"))
 
 
+def _fibres():
+    """A mix of a toon and of a rough surface with fibres on top."""
+    sheen = {"Sheen Weight": (1.0,), "Sheen Roughness": (0.5,), "Sheen Tint": (1.0, 1.0, 1.0)}
+    cloth = _principled(**sheen, **{"Diffuse Roughness": (0.5,)})
+    toon = _node("toon", (("component", "TOON"),), Color=(1.0,), Size=(0.5,), Smooth=(0.1,))
+    shaders_in = (("Fac", Constant((0.5,))), ("Shader", Link(0, "BSDF")))
+    mixed = ShaderNode("mix_shader", (*shaders_in, ("Shader_001", Link(1, "BSDF"))))
+    return SurfaceGraph((*cloth.nodes, toon, mixed), Link(2, "Shader"))
+
+
+_FOG = _node("fog", Absorption=(1.0,), Scatter=(1.0,), Emission=(0.0,), Anisotropy=(0.2,))
 _COLOURS = _node("color_attribute", (("name", "Col"),))
 _LIT_BY_ATTRIBUTE = SurfaceGraph(
     (_COLOURS, _node("diffuse", Color=Link(0, "Color"))), Link(1, "BSDF")
@@ -116,6 +127,8 @@ GRAPHS = {
     "lit": _principled(),
     "lit and transparent": _principled(Alpha=(0.5,)),
     "rarer closures": _rarer(),
+    "fibres": _fibres(),
+    "fog": SurfaceGraph((_FOG,), Link(0, "Volume")),
     "mirroring": SurfaceGraph(
         (_node("glossy", Color=(1.0, 1.0, 1.0), Roughness=(0.5,)),), Link(0, "BSDF")
     ),
