@@ -17,8 +17,8 @@ _SORTING_KINDS = frozenset({"luminance", "separate", "combine"})
 # How much more than Lambert's a rough diffuse surface may reflect at an angle.
 _ROUGH = 2.0
 _MIRRORS = frozenset({"glossy", "metallic", "glass"})
-# All that reflect.
-_REFLECTORS = _MIRRORS | {"diffuse", "translucent", "principled"}
+# All surfaces that reflect.
+_REFLECTORS = _MIRRORS | {"diffuse", "translucent", "principled", "sheen", "toon", "hair"}
 # Roughness that stands for what a texture gives.
 _TYPICAL_ROUGHNESS = 0.5
 # Largest gain of a glossy surface with a colour above 1 by multiple scattering.

@@ -7,6 +7,7 @@ import pytest
 
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
+from addon.snapshot.brightness import reflects
 from addon.snapshot.content import Light, MaterialSnapshot, MeshSnapshot
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 
@@ -54,3 +55,11 @@ def test_the_bright_side_does_not_stand_for_the_dark_one(kind):
     assert energy(pictures["Bokeh"]).min() > 0.8 * expected.min()
     # With the card's area for more of the square's light, a matt one had 4 % too much.
     assert energy(pictures["Combined"]) == pytest.approx(expected, rel=0.01)
+
+
+def test_every_reflecting_surface_is_known():
+    lit = {"diffuse", "translucent", "sheen", "glossy", "metallic", "glass", "toon", "hair"}
+    for kind in sorted(lit | {"emission", "transparent"}):
+        inputs = (("Color", Constant((0.8, 0.8, 0.8))), ("Strength", Constant((1.0,))))
+        graph = SurfaceGraph((ShaderNode(kind, inputs),), Link(0, "BSDF"))
+        assert reflects(graph) == (kind in lit)
