@@ -49,6 +49,8 @@ def surface_targets():
         yield "layer", surface_target.of_layers(target)
         split = surface_target.without_highlights(target)
         yield "layer splits", surface_target.of_layers(split)
+        bent = surface_target.of_layers(surface_target.blurred_by_lens(target))
+        yield "layer through a real lens", bent
     for number in range(3):
         for names in combinations(("Vector", "Detail"), number):
             for bends in (False, True):

@@ -60,3 +60,18 @@ def test_circles_of_confusion_are_those_of_the_traced_lens(wall):
     assert abs(coc[2, 2]) > 2.0 * abs(coc[27, 44]) > 0.1
     matte = found["Focus Matte"][..., 0]
     assert matte[26:28, 40:44].mean() > matte[:3, :3].mean() + 0.05
+
+
+def test_focus_mattes_of_layers_are_those_of_the_reference(wall):
+    # Of the wall in focus without its edge.
+    part = np.s_[2:-2, 2:30]
+    reference = passes(render(wall, "REFERENCE", 16))["Focus Matte"][::-1, :, 0][part]
+    layered = passes(render(wall, "LAYERED", 16))
+    found = layered["Focus Matte"][::-1, :, 0][part]
+    # The field is curved: a thin lens has the same matte everywhere.
+    assert np.ptp(reference) > 0.2
+    # Through few places on the lens, others in each pixel: a pixel's sides have other blurs.
+    assert np.abs(found - reference).mean() < 0.01
+    assert found == pytest.approx(reference, abs=0.1)
+    # There is a pixel that none of its places sees through the cut opening.
+    assert layered["Combined"][..., 3].min() > 0.999

@@ -85,7 +85,7 @@ class FrameRenderer(ReadableFrame):
             self._highlights = highlight_buffer(plan)
         if plan.chromatic:
             target = surface_target.in_wavelengths(target)
-        layers_target = target
+        layers_target = surface_target.blurred_by_lens(target) if plan.real_lens else target
         if plan.real_lens:
             target = surface_target.through_lens(target)
         levels = self._buffers.levels_version

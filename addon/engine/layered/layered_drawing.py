@@ -80,7 +80,11 @@ class LayeredDrawing:
             field = reference and reference.resources
             made = self._buffers.captured.prepare(plan, self._highlights, field)
         else:
-            resources = {"highlights": self._highlights, "optics": self._optics(None).wavelength}
+            optics = self._optics(None)
+            resources = {"highlights": self._highlights, "optics": optics.wavelength}
+            # Layers are seen from the middle of the lens: rays bend, the surfaces stay.
+            bends = optics.lens is not None and "LENS_BLUR" in self._target.defines
+            blur = optics.lens.blur_resources if bends else ()
             target = surface_target.of_layers(self._target)
             solid = self._drawing.full_detail_draws(target)
             solid = [draw for draw in solid if not draw.transparent]
@@ -93,6 +97,7 @@ class LayeredDrawing:
                 self._buffers.instances,
                 "MATTES" in self._target.defines,
                 resources,
+                blur,
             )
         self._made, raster = made, made.raster
         size = (raster.width, raster.height)

@@ -27,7 +27,7 @@ _ROUNDING = 1e-4
 _MEASURES = 2
 
 
-def draw_scene_layers(plan, drawing, draws, shapes, instances, mattes, resources):
+def draw_scene_layers(plan, drawing, draws, shapes, instances, mattes, resources, blur=()):
     """Draw a scene into depth layers.
 
     Parameters
@@ -45,12 +45,14 @@ def draw_scene_layers(plan, drawing, draws, shapes, instances, mattes, resources
         The draws have a second target, of mattes.
     resources : dict
         ``highlights`` and ``optics`` of `passes.surface.surface.draw_sample`.
+    blur : tuple of (str, GPUUniformBuf or GPUTexture)
+        `passes.surface.real_lens.LensSample.blur_resources`, with a real lens and mattes.
 
     Returns
     -------
     DeviceLayers
     """
-    drawn = _Slices(plan, draws, shapes, instances, mattes, resources)
+    drawn = _Slices(plan, draws, shapes, instances, mattes, resources, blur)
     near, far, nearest, farthest = _depths(plan, drawing, drawn)
     count, eyes = plan.layered.count, plan.layered.eyes
     planes = [(near, far)] * count
@@ -96,7 +98,7 @@ class _Slices:
     Parameters
     ----------
     plan : FramePlan
-    draws, shapes, instances, mattes, resources
+    draws, shapes, instances, mattes, resources, blur
         As of `draw_scene_layers`.
 
     Attributes
@@ -105,13 +107,14 @@ class _Slices:
         How often the scene was drawn so far.
     """
 
-    def __init__(self, plan, draws, shapes, instances, mattes, resources):
+    def __init__(self, plan, draws, shapes, instances, mattes, resources, blur):
         self._plan = plan
         self._draws = draws
         self._shapes = shapes
         self._instances = instances
         self._slots = ("color", "mattes")[: 1 + mattes]
         self._resources = resources
+        self._blur = blur
         self.times = 0
 
     def draw(self, raster, sides, planes, eyes, parts=1):
@@ -200,7 +203,7 @@ class _Slices:
         depth, front = depths
         for name in self._slots:
             drawn.clear(name, (0.0, 0.0, 0.0, 0.0))
-        bindings = (("front_tx", drawn[front]), ("eye", tuple(eye.tolist())))
+        bindings = (("front_tx", drawn[front]), ("eye", tuple(eye.tolist())), *self._blur)
         framebuffer = drawn.framebuffer(*self._slots, depth=depth)
         with framebuffer.bind():
             framebuffer.clear(depth=1.0)

@@ -3,7 +3,8 @@
 The light that samples bring to each place of the picture is divided by that of all of them, so that
 an even world is even, however few they are and whatever the rims cut: *even exposure*. *As the
 lens* multiplies it by what a great many samples bring there, over the same on the picture's optical
-axis. Where next to no light comes through, a little is added to all samples alike.
+axis. Where next to no light comes through, a little is added to all samples alike; and a trace
+everywhere, so that what few samples see, none of which the lens lets through, is no hole.
 """
 
 from dataclasses import dataclass, replace
@@ -26,6 +27,9 @@ from .field_table import field_of_raster, picture_radius
 _MARGIN = 0.15
 # Light of a place of the picture over that of the axis, below which some is let by.
 _DARK = 0.02
+# The trace of light that every sample has everywhere, over that of the axis: half a percent of what
+# `_DARK` leaves, and enough to divide by.
+_TRACE = 1e-4
 # Samples whose mean is the light of the lens; of them, how many are looked at for bounds.
 _MANY, _TYPICAL = 1024, 64
 # Steps over the vergences for bounds, and what is added for samples that were not looked at.
@@ -60,6 +64,8 @@ class RealLensPlan:
         Factors of the axial and the lateral part of that.
     parts_colors : bool
         The colours of the picture are those; else those of a thin lens are drawn.
+    is_dark : bool
+        Next to no light comes through somewhere in the picture.
     """
 
     tables: SampleTables
@@ -72,6 +78,7 @@ class RealLensPlan:
     colors: LensColors | None = None
     strengths: tuple[float, float] = (1.0, 1.0)
     parts_colors: bool = False
+    is_dark: bool = False
 
     def with_samples(self, count):
         """Return the plan for a number of samples."""
@@ -183,7 +190,7 @@ def plan_real_lens(camera, film, lens):
         # Its discs may be traced all the same.
         return None, (f"lens samples do without lens '{name}' and are a thin lens': {error}",)
     report = ()
-    if made.floor.any() and camera.real_lens.exposure == "EVEN":
+    if made.is_dark and camera.real_lens.exposure == "EVEN":
         report = (
             f"lens '{name}' lets next to no light through at the edge of the picture; it is drawn"
             " as if it did (a smaller sensor, or Exposure: As the Lens)",
@@ -216,12 +223,22 @@ def _plan(key, thin, corners, outermost, colors):
     spacing = float(np.sqrt(np.pi / _MANY))
     axis = float(tables.axial_light(places, spacing).mean())
     mean = tables.light(places, spacing).mean(axis=0)
-    floor = np.maximum(_DARK * axis - mean, 0.0)
+    lacking = np.maximum(_DARK * axis - mean, 0.0)
+    floor = lacking + _TRACE * axis
     falloff = np.ones_like(mean)
     if key.loses_light:
         falloff = mean / axis
     own = colors is not None and rays.parts_colors
-    plan = RealLensPlan(tables, mean + floor, floor, falloff, 0.0, 0.0, parts_colors=own)
+    plan = RealLensPlan(
+        tables,
+        mean + floor,
+        floor,
+        falloff,
+        0.0,
+        0.0,
+        parts_colors=own,
+        is_dark=bool(lacking.any()),
+    )
     if rays.colors is not None:
         plan = replace(plan, colors=rays.colors, strengths=colors[:2])
     moved, apart = _bounds(plan, np.append(places[:_TYPICAL], [[0.0, 0.0]], axis=0), colors)

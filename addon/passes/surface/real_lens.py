@@ -18,6 +18,7 @@ PUSH_CONSTANTS = (("INT", "lens_slot"),)
 DEFINES = (("REAL_LENS", "1"),)
 # Of passes that tell or weigh the circle of confusion.
 BLUR_SAMPLERS = (("FLOAT_2D", "blur_tx"),)
+BLUR_DEFINES = (("LENS_BLUR", "1"),)
 # Of passes that weigh samples, or divide by their weights, over the picture.
 LIGHT_SAMPLERS = (("FLOAT_2D", "light_tx"),)
 LIGHT_CONSTANTS = (("VEC4", "light_table"), ("INT", "light_sets"))
@@ -54,6 +55,11 @@ class LensSample:
     sets: int = 1
     tables: int = 1
     blur: object = None
+
+    @property
+    def blur_resources(self):
+        """What a target `blurred_by_lens` reads, as `resources`."""
+        return (("real_lens_buf", dict(self.resources)["real_lens_buf"]), ("blur_tx", self.blur()))
 
     def bind(self, shader):
         """Set what `declared` has declared in a bound shader."""

@@ -130,12 +130,39 @@ def in_wavelengths(target):
 
 def through_lens(target):
     """Return a target whose surfaces are drawn through a real lens."""
-    blurs = target.blurs or "MATTES" in target.defines
+    target = replace(
+        _with_lens(target),
+        defines=(*target.defines, *(name for name, _ in real_lens.DEFINES)),
+        samplers=(*target.samplers, *real_lens.SAMPLERS),
+        push_constants=(*target.push_constants, *real_lens.PUSH_CONSTANTS),
+    )
+    return _with_blur(target) if _tells_blur(target) else target
+
+
+def blurred_by_lens(target):
+    """Return a target whose surfaces are drawn from the lens' middle, with the blur of a real lens.
+
+    It reads what `real_lens.LensSample.blur_resources` gives, where the target tells the circle of
+    confusion; others stay as they are.
+    """
+    return _with_blur(_with_lens(target)) if _tells_blur(target) else target
+
+
+def _tells_blur(target):
+    return target.blurs or "MATTES" in target.defines
+
+
+def _with_lens(target):
     return replace(
         target,
-        defines=(*target.defines, *(name for name, _ in real_lens.DEFINES)),
         structs=target.structs + real_lens.REAL_LENS_PARAMS.source,
         uniforms=(*target.uniforms, *real_lens.UNIFORMS),
-        samplers=(*target.samplers, *real_lens.SAMPLERS, *real_lens.BLUR_SAMPLERS * blurs),
-        push_constants=(*target.push_constants, *real_lens.PUSH_CONSTANTS),
+    )
+
+
+def _with_blur(target):
+    return replace(
+        target,
+        defines=(*target.defines, *(name for name, _ in real_lens.BLUR_DEFINES)),
+        samplers=(*target.samplers, *real_lens.BLUR_SAMPLERS),
     )

@@ -1,7 +1,7 @@
 // What a pinhole at the lens' centre sees in the middle of a pixel: geometry instead of colour.
 // Surfaces that are less opaque than the threshold are left out, by a hard decision.
 // Inputs: varyings of surface_vert; view_buf; data_buf; surface_closure() of transparent surfaces;
-// REAL_LENS: real_lens_buf, blur_tx (what the lens adds to the circle of confusion).
+// LENS_BLUR: real_lens_buf, blur_tx (what the lens adds to the circle of confusion).
 // Outputs: normal in world space, towards the camera (xyz) and depth along the axis, m (w); position
 // in world space (xyz) and signed circle of confusion, px (w); movement since the previous frame
 // (xy) and to the next (zw), px. HAS_DETAIL: level of detail (x), share of the lens samples that copy
@@ -11,7 +11,7 @@
 #ifdef HAS_DETAIL
 #include "lib/surface/instance_lib.glsl"
 #endif
-#ifdef REAL_LENS
+#ifdef LENS_BLUR
 #include "lib/real_lens_lib.glsl"
 #endif
 
@@ -52,7 +52,7 @@ void main()
   float size = length(normal);
   out_normal_depth = vec4(size > 0.0 ? normal / size : vec3(0.0), -eye.z);
   float coc = coc_radius_px(-eye.z, view_buf.lens);
-#ifdef REAL_LENS
+#ifdef LENS_BLUR
   coc += real_lens_blur(blur_tx, eye, real_lens_buf);
 #endif
   out_position_coc = vec4(world_position, coc);

@@ -4,8 +4,8 @@
 // Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads. HIGHLIGHTS:
 // highlight_buf; the light that is splatted as bokeh is left out; with CHROMATIC also chromatic_buf and
 // field_tx, so that the splatted share is the same at all wavelengths; with MIRRORING it is searched
-// from several places on the lens, with REFLECTING only where the whole lens sees one side. OF_LAYER: front_tx (depths that
-// it must lie behind) and eye (place on the lens that it is shaded for, m). MATTES with REAL_LENS:
+// from several places on the lens, with REFLECTING only where the whole lens sees one side. OF_LAYER:
+// front_tx (depths that it must lie behind) and eye (place on the lens that it is shaded for, m). LENS_BLUR:
 // real_lens_buf, blur_tx (what the lens adds to the circle of confusion).
 // Outputs: premultiplied scene-linear colour; with MATTES also Cryptomatte ids of object (x) and
 // material (y), and the focus matte (w).
@@ -17,7 +17,7 @@
 #if defined(MATTES) || defined(HIGHLIGHTS)
 #include "lib/lens_lib.glsl"
 #endif
-#if defined(MATTES) && defined(REAL_LENS)
+#ifdef LENS_BLUR
 #include "lib/real_lens_lib.glsl"
 #endif
 #ifdef HIGHLIGHTS
@@ -112,7 +112,7 @@ void main()
 #ifdef MATTES
   vec3 point = (view_buf.view * vec4(world_position, 1.0)).xyz;
   float coc = coc_radius_px(-point.z, view_buf.lens);
-#ifdef REAL_LENS
+#ifdef LENS_BLUR
   coc += real_lens_blur(blur_tx, point, real_lens_buf);
 #endif
   float object_id = texelFetch(instances_tx, instance_texel(instance_row, 3), 0).x;
