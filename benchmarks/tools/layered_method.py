@@ -5,8 +5,8 @@
 Shared test scenes (built by `aplanat bench`), highlights as everything else. For each number of
 samples: SSIM and energy against the reference method, processor time, SSIM against the most samples
 with thin rays; with thin rays and with cones; and the share of layers that rays had to look into.
-With --complexity instead: processor time of 128 samples once layers are drawn, of the scene and with
-four times the triangles.
+With --complexity instead: processor time of 128 samples once layers are drawn, of the scene and
+with four times the triangles.
 """
 
 import argparse
