@@ -79,11 +79,16 @@ def atlas_size(width, height):
     tuple of 2 int
     """
     sizes = _level_sizes(width, height)
-    second = sizes[1:]
-    return (
-        sizes[0][0] + max((w for w, _ in second), default=0),
-        max(sizes[0][1], sum(h for _, h in second)),
-    )
+    right = max((w for w, _ in sizes[1:]), default=0)
+    above = max((_second_row(height, level) + h for level, (_, h) in enumerate(sizes, 1)))
+    return sizes[0][0] + right, max(sizes[0][1], above)
+
+
+def _second_row(height, level):
+    """Return the lowest row of a level in the second column; see ``level_origin``."""
+    last = max(height - 1, 1).bit_length()
+    whole = 1 << last
+    return 0 if level < 2 else (whole >> 1) - (whole >> (level - 1)) + max(level - last - 1, 0)
 
 
 def specs(width, height, layers, mattes=False, eyes=1):
@@ -206,6 +211,6 @@ def depth_range(textures, width, height, layer=0):
         The least is the greater one where the layer has no surface.
     """
     sizes = _level_sizes(width, height)
-    # The last level is one square, above the others in the second column of the atlas.
-    place = (sizes[0][0], sum(h for _, h in sizes[1:-1])) if len(sizes) > 1 else (0, 0)
+    # The last level is one square.
+    place = (sizes[0][0], _second_row(height, len(sizes))) if len(sizes) > 1 else (0, 0)
     return tuple(readback.read_texel(textures["ranges"], layer, *place)[:2].tolist())

@@ -33,8 +33,6 @@
 #define MOST_STEPS 24
 #define MOST_STEPS_UNORDERED 96
 #define FALSE_POSITIONS 3
-// How often the depths that a ray may meet are asked for again.
-#define APPROACHES 2
 #define GOLDEN 0.6180339887
 // A surface is met where its texels part by no more than this on the ray's way, in texels.
 #define SURFACE_STRETCH 1.0
@@ -78,14 +76,15 @@ vec4 range_of(ivec2 square, int level, int layer)
   return texelFetch(ranges_tx, ivec3(level_origin(size, level) + square, layer), 0);
 }
 
-// Least and largest depth over the texels that a part of the ray passes, and what shares squares.
-vec2 depths_between(vec2 between, int layer)
+// Least and largest depth over the texels that a part of the ray passes, and what shares squares of at
+// least a level.
+vec2 depths_between(vec2 between, int layer, int least_level)
 {
   vec2 a, b;
   ray_bounds(between, a, b);
   ivec2 low = texel_at(a), high = texel_at(b);
   int span = max(high.x - low.x, high.y - low.y);
-  int level = min(span == 0 ? 0 : findMSB(span) + 1, int(layered_buf.sampling.y));
+  int level = clamp(span == 0 ? 0 : findMSB(span) + 1, least_level, int(layered_buf.sampling.y));
   ivec2 c = low >> level, d = high >> level;
   // The last level is one square.
   vec2 range = range_of(c, level, layer).xy;
@@ -136,12 +135,19 @@ Hit meet(vec2 between, int layer)
   Hit hit = Hit(vec2(0.0), between.x, false);
   float before = 1.0, at_before = 0.0;
   for (int i = 0; i <= steps; i++) {
-    float at = float(i) / float(steps);
-    float ahead = depth_at(ON_WAY(at), layer) - (between.x + extent * at);
-    if (in_front(ahead, pace)) {
+    // On to the first place that is not in front of the surface: what follows is for few of the steps.
+    float at, ahead;
+    for (; i <= steps; i++) {
+      at = float(i) / float(steps);
+      ahead = depth_at(ON_WAY(at), layer) - (between.x + extent * at);
+      if (!in_front(ahead, pace)) {
+        break;
+      }
       before = ahead;
       at_before = at;
-      continue;
+    }
+    if (i > steps) {
+      break;
     }
     bool bracketed = i > 0 && in_front(before, pace);
     if (bracketed) {
@@ -246,12 +252,45 @@ vec4 cone_color(Hit hit, int layer, vec2 wide, out float covered)
   for (; level > 0; level--) {
     vec4 range = range_of(texel_at(hit.place) >> level, level, layer);
     if ((range.y - range.x) * abs(wide.y) <= MOVES_ALIKE) {
-      float share = mean_of(ranges_tx, hit.place, level, layer).w;
-#define MEAN(slice) mean_of(means_tx, hit.place, level, slice)
-      return SEEN(MEAN, layer) * (covered / max(share, 1e-6));
+      break;
     }
   }
+  if (level > 0) {
+    float share = mean_of(ranges_tx, hit.place, level, layer).w;
+#define MEAN(slice) mean_of(means_tx, hit.place, level, slice)
+    light = SEEN(MEAN, layer) * (covered / max(share, 1e-6));
+  }
   return light;
+}
+
+// Narrows the depths that the ray may meet a layer between; whether there are any.
+bool narrow(inout vec2 between, int layer, int least_level)
+{
+  vec2 seen = depths_between(between, layer, least_level);
+  vec2 narrowed = vec2(max(between.x, seen.x), min(between.y, seen.y));
+  bool possible = narrowed.x <= narrowed.y;
+  between = possible ? narrowed : between;
+  return possible;
+}
+
+// The next layer that the ray may meet nearer than `farthest`, and the depths between which; whether there
+// is one. Whoever looks for it in a loop of its own looks into a layer as often as the ray of its
+// neighbours that does so most often: where what is not to be done is done all the same and thrown away,
+// that is far less.
+bool next_layer(inout int layer, float farthest, out vec2 between, out bool possible)
+{
+  // The last level of a layer's pyramid is one square.
+  ivec2 whole = level_origin(size, int(layered_buf.sampling.y));
+  possible = false;
+  for (layer++; layer < layers; layer++) {
+    between = texelFetch(ranges_tx, ivec3(whole, layer), 0).xy;
+    between.y = min(between.y, farthest);
+    possible = narrow(between, layer, 1);
+    if (possible || culls == 0) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // What the ray has met: light, what is left of it, the first depth that hides what is behind.
@@ -312,25 +351,13 @@ void main()
 #endif
   // Golden section steps from sample to sample, from another place in every pixel.
   least_share = fract(hash_unit(hash_combine(uint(pixel.x), uint(pixel.y))) + GOLDEN * float(sample_index));
-  Hit nearest;
-  // The last level of a layer's pyramid is one square.
-  ivec2 whole = level_origin(size, int(layered_buf.sampling.y));
-  for (int layer = 0; layer < layers && through > LEAST_THROUGH; layer++) {
-    vec2 between = texelFetch(ranges_tx, ivec3(whole, layer), 0).xy;
-    if (nearest_layer >= 0) {
-      between.y = min(between.y, nearest.depth);
-    }
-    bool possible = true;
-    for (int i = 0; i < APPROACHES && possible; i++) {
-      vec2 seen = depths_between(between, layer);
-      vec2 narrowed = vec2(max(between.x, seen.x), min(between.y, seen.y));
-      possible = narrowed.x <= narrowed.y;
-      if (narrowed == between) {
-        break;
-      }
-      between = possible ? narrowed : between;
-    }
-    if (!possible && culls == 1) {
+  Hit nearest = Hit(vec2(0.0), EMPTY, false);
+  int layer = -1;
+  vec2 between;
+  bool possible;
+  while (through > LEAST_THROUGH && next_layer(layer, nearest.depth, between, possible)) {
+    // Asked again, for the part of the ray that is left, it is often none.
+    if (possible && !narrow(between, layer, 0) && culls == 1) {
       continue;
     }
     looked++;
