@@ -5,7 +5,6 @@ import os
 import bpy
 
 _GLASS = {"BSDF_GLASS", "BSDF_REFRACTION"}
-_OUTPUTS = {"OUTPUT_MATERIAL", "OUTPUT_WORLD"}
 
 
 def limits_of(scene, layer):
@@ -37,8 +36,6 @@ def limits_of(scene, layer):
                 glass[slot.material.original.name] = None
             if "VOLUME" in kinds:
                 smoke[shown.original.name] = None
-    if scene.world is not None and "VOLUME" in _kinds(scene.world):
-        smoke[f"world {scene.world.name}"] = None
     lines = []
     if glass:
         lines.append(
@@ -75,7 +72,7 @@ def _kinds(block):
                 waiting.append(node.node_tree)
             elif node.type == "BSDF_PRINCIPLED" and _transmits(node):
                 found.add("BSDF_GLASS")
-            elif node.type in _OUTPUTS and node.inputs["Volume"].is_linked:
+            elif node.type == "OUTPUT_MATERIAL" and node.inputs["Volume"].is_linked:
                 found.add("VOLUME")
     return found
 

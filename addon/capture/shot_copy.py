@@ -108,6 +108,7 @@ class ShotCopy:
         scene.frame_set(self._frame)
         self._choose_layer()
         self._choose_engine()
+        self._leave_out_fog()
         self._choose_picture()
         self._freeze_camera(camera)
 
@@ -243,6 +244,22 @@ class ShotCopy:
         render.use_compositing = render.use_sequencer = render.use_freestyle = False
         render.use_multiview = render.use_border = render.use_motion_blur = False
 
+    def _leave_out_fog(self):
+        """Give the copy a world without a volume: it has no end, and would fill every slice."""
+        world = self.scene.world
+        tree = world and world.node_tree
+        if tree is None or not any(_fog_of(tree)):
+            return
+        clear = world.copy()
+        self._blocks.append((bpy.data.worlds, clear))
+        for fog in list(_fog_of(clear.node_tree)):
+            clear.node_tree.links.remove(fog)
+        self.scene.world = clear
+        self._warn(
+            f"the volume of world '{world.name}' is left out, since it would hide what is behind"
+            " the first layer; add fog by depth afterwards"
+        )
+
     def _choose_picture(self):
         render, settings = self.scene.render, self._settings
         size = settings.resolution or tuple(
@@ -354,6 +371,12 @@ class ShotCopy:
         """Return width and height of the part of the sensor that the picture fills, mm."""
         side, filled, width, height = self._filled_side(data)
         return side * width / filled, side * height / filled
+
+
+def _fog_of(tree):
+    """Return the links to the volume of a world's outputs."""
+    outputs = (node for node in tree.nodes if node.type == "OUTPUT_WORLD")
+    return (link for node in outputs for link in node.inputs["Volume"].links)
 
 
 def _rows(matrix):

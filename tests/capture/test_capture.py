@@ -195,6 +195,18 @@ def test_smoke_and_glass_are_told(blocks, capture, aplanat_bpy):
     assert "'Glass'" in report and "'Near'" in report
 
 
+def test_fog_of_the_world_hides_no_layer(blocks, capture, aplanat_bpy):
+    clear = capture(blocks, layers=2)
+    tree = blocks.world.node_tree
+    fog = tree.nodes.new("ShaderNodeVolumeScatter")
+    tree.links.new(fog.outputs[0], tree.nodes["World Output"].inputs["Volume"])
+    foggy = capture(blocks, layers=2)
+    for own, wanted in zip(foggy.layers, clear.layers, strict=True):
+        assert (own.color == wanted.color).all()
+    assert tree.nodes["World Output"].inputs["Volume"].is_linked
+    assert list(aplanat_bpy.data.worlds) == [blocks.world]
+
+
 def test_scenes_that_cannot_be_captured_are_refused(blocks, capture, aplanat_bpy):
     blocks.camera.data.clip_start = 2000.0
     with pytest.raises(CameraError, match="clips at"):
