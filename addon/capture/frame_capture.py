@@ -15,7 +15,14 @@ from ..errors import InputError, UnfinishedFileError
 from ..layers.cuts import OVERLAP
 from ..layers.layer_stack import DepthLayer, LayerStack
 from ..layers.render_picture import read_render
-from ..layers.slices import DENOISED_OVERLAP, filled_depth, is_surface, mending, plan_slices
+from ..layers.slices import (
+    DENOISED_OVERLAP,
+    filled_depth,
+    is_surface,
+    kept_ends,
+    mending,
+    plan_slices,
+)
 from .scene_limits import limits_of
 from .shot_copy import ShotCopy
 
@@ -134,14 +141,19 @@ class FrameCapture:
             DENOISED_OVERLAP if shot.denoises else OVERLAP,
         )
         self._total = len(slices) + 1 + shot.has_world
-        layers, guessed, before = [], 0, None
-        for number, slice_ in enumerate(slices):
-            shot.aim(slice_)
-            picture = yield from self._render(f"layer {number + 1} of {len(slices)}")
-            layer, unknown = _layer(picture, slice_, before)
-            guessed += unknown
-            before = np.clip(picture.color[..., 3], 0.0, 1.0)
-            layers.append(layer)
+        layers, guessed, before, waiting = [], 0, None, None
+        # What a layer keeps of its end depends on the next one.
+        for number, slice_ in enumerate([*slices, None]):
+            picture, coverage = None, None
+            if slice_ is not None:
+                shot.aim(slice_)
+                picture = yield from self._render(f"layer {number + 1} of {len(slices)}")
+                coverage = np.clip(_finite(picture.color[..., 3]), 0.0, 1.0)
+            if waiting is not None:
+                layer, unknown = _layer(*waiting, coverage)
+                guessed += unknown
+                layers.append(layer)
+            waiting, before = (picture, slice_, before), coverage
         if guessed:
             report.append(
                 f"{guessed} pixels show something without a depth (smoke, or finer than a pixel):"
@@ -200,7 +212,7 @@ def _finite(pixels):
     return np.nan_to_num(pixels, copy=True, nan=0.0, posinf=largest, neginf=-largest)
 
 
-def _layer(picture, slice_, before):
+def _layer(picture, slice_, before, behind):
     color = _finite(picture.color)
     color[..., 3] = np.clip(color[..., 3], 0.0, 1.0)
     mended = 1.0
@@ -209,7 +221,10 @@ def _layer(picture, slice_, before):
     middle = slice_.near + min(slice_.far, 2.0 * slice_.near + 1.0) if slice_.near else slice_.far
     otherwise = min(0.5 * middle, slice_.clip_end, _FARTHEST)
     depth, guessed = filled_depth(picture.depth, color[..., 3], otherwise)
-    weights = slice_.weights(depth)[..., None] * mended
+    weights = slice_.weights(depth)
+    if behind is not None:
+        weights[kept_ends(color[..., 3], behind)] = 1.0
+    weights = weights[..., None] * mended
     passes = {
         # Light is premultiplied as the picture is; coordinates and ids are as they are.
         name: (_finite(pixels) * weights if name in picture.light else pixels)

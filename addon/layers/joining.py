@@ -13,12 +13,13 @@ from dataclasses import replace
 import numpy as np
 
 from .layer_file import is_world
+from .sinking import WHOLE, sink
 
-# Coverage of a pixel that nothing is seen through: a sample's share may be lost in rounding.
-WHOLE = 1.0 - 1e-3
 # Pixels that are copied before the farther layer's first whole one: colours are mixed between
 # pixels, and where the cut goes through pixels both layers are whole in none of them.
 REACH = 2
+# Layers before one among which the other row of a gathered surface is looked for.
+_FARTHEST_BEFORE = 12
 
 
 def join_layers(stack):
@@ -33,26 +34,51 @@ def join_layers(stack):
     LayerStack
         Layers that nothing is added to are those of `stack`, and so is what they hold.
     """
-    joined = list(stack.layers)
-    for number in range(1, len(joined)):
-        before, layer = joined[number - 1], stack.layers[number]
-        if is_world(layer):
-            # No surface goes on into it, and it stays without any depth.
-            continue
-        depths = [_steps(found.depth, stack.camera.orthographic) for found in (before, layer)]
-        coverages = [found.color[..., 3] for found in (before, layer)]
-        ends = open_ends(coverages, depths)
-        if not ends.any():
-            continue
-        color, depth = layer.color.copy(), layer.depth.copy()
-        color[ends] = before.color[ends] + (1.0 - before.color[ends, 3:]) * layer.color[ends]
-        color[ends] /= color[ends, 3:]
-        depth[ends] = np.where(layer.color[ends, 3] > 0.0, layer.depth[ends], before.depth[ends])
-        joined[number] = replace(layer, color=color, depth=depth)
-    return replace(stack, layers=tuple(joined))
+    orthographic = stack.camera.orthographic
+    kept = [layer for layer in stack.layers if not is_world(layer)]
+    if not kept:
+        return stack
+    sunk = sink(
+        [layer.color for layer in kept],
+        [layer.depth for layer in kept],
+        lambda depth: _steps(depth, orthographic),
+    )
+    colors, depths = list(sunk.colors), list(sunk.depths)
+    # Where parts of thin slices were gathered, rows side by side may lie some layers apart.
+    reach = _FARTHEST_BEFORE if sunk.any else 1
+    for number in range(1, len(kept)):
+        own = sunk.colors[number], sunk.depths[number]
+        taken = np.zeros(own[1].shape, bool)
+        for before in range(number - 1, max(number - 1 - reach, -1), -1):
+            steps = [_steps(found, orthographic) for found in (depths[before], own[1])]
+            coverages = [colors[before][..., 3], own[0][..., 3]]
+            rises = None if before == number - 1 and not sunk.any else sunk.rises[before]
+            ends = open_ends(coverages, steps, known_rises=rises)
+            if before < number - 1:
+                # Of what is not beside it in the stack only what was gathered.
+                ends &= sunk.rises[before] > 0.0
+            ends &= ~taken
+            if not ends.any():
+                continue
+            if not taken.any():
+                colors[number], depths[number] = colors[number].copy(), depths[number].copy()
+            taken |= ends
+            near, far = colors[before][ends], own[0][ends]
+            color = near + (1.0 - near[:, 3:]) * far
+            colors[number][ends] = color / color[:, 3:]
+            depths[number][ends] = np.where(far[:, 3] > 0.0, own[1][ends], depths[before][ends])
+    made = (
+        layer
+        if color is layer.color and depth is layer.depth
+        else replace(layer, color=color, depth=depth)
+        for layer, color, depth in zip(kept, colors, depths, strict=True)
+    )
+    return replace(
+        stack, layers=tuple(layer if is_world(layer) else next(made) for layer in stack.layers)
+    )
 
 
-def open_ends(coverages, depths, reach=REACH, in_parts=False):
+def open_ends(coverages, depths, reach=REACH, in_parts=False, known_rises=None):
     """Find the pixels that a layer lacks of a surface that comes out of the layer in front of it.
 
     They are not whole in the layer, but are together with the one in front, and lie beside pixels
@@ -72,6 +98,8 @@ def open_ends(coverages, depths, reach=REACH, in_parts=False):
         Parts of a pixel that the two layers have of a surface are the whole together, however
         small: rays take them from the one or from the other layer. Then no pixel that the layer in
         front has a part of counts as the layer's alone.
+    known_rises : ndarray of shape (height, width), optional
+        By how much surfaces rise there at least, of the layer in front.
 
     Returns
     -------
@@ -91,6 +119,8 @@ def open_ends(coverages, depths, reach=REACH, in_parts=False):
     for held, depth in zip((front > 0.0, first), depths, strict=True):
         held = _around(np.where(held, depth, np.nan), rows, columns, side)
         rises += np.nanmax(held, axis=0) - np.nanmin(held, axis=0)
+    if known_rises is not None:
+        rises = np.maximum(rises, known_rises[rows, columns])
     side = range(-reach, reach + 1)
     beside = _around(np.where(first, depths[1], np.nan), rows, columns, side)
     here = depths[0][rows, columns]

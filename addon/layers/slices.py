@@ -19,6 +19,8 @@ FADE_BEGIN, FADE_END = 0.5, 0.75
 NOTHING = 1e9
 # Coverage of a pixel that nothing is seen through: a sample's share may be lost in rounding.
 _WHOLE = 1.0 - 1e-4
+# Least difference of coverage between two layers of which each has another part of a pixel.
+_UNLIKE = 0.02
 # Longest side of the picture that depths in view are measured in, px.
 MEASURED_SIDE = 512
 # Overlap of slices that are denoised: a denoiser draws some pixels of a ragged end wrongly.
@@ -170,6 +172,26 @@ def mending(coverage_before, coverage):
     partly &= coverage_before + coverage >= _WHOLE
     partly &= _near(whole_before & ~whole) & _near(whole & ~whole_before)
     return np.divide(1.0, coverage, out=np.ones_like(coverage, np.float32), where=partly)
+
+
+def kept_ends(coverage, behind):
+    """Find the pixels of a layer that must not fade, though their depth is behind its cut.
+
+    Where a surface goes through the cut within a pixel, each layer has a part of it; the depth of
+    the pixel is that of some place in it. Edges of objects, which have to fade, lie in both layers
+    alike.
+
+    Parameters
+    ----------
+    coverage, behind : ndarray of shape (height, width)
+        Of the layer and of the next one, as rendered.
+
+    Returns
+    -------
+    ndarray of bool, of the same shape
+    """
+    partly = (coverage > 0.0) & (coverage < _WHOLE) & (behind > 0.0) & (behind < _WHOLE)
+    return partly & (coverage + behind >= _WHOLE) & (np.abs(coverage - behind) > _UNLIKE)
 
 
 def is_surface(depth):

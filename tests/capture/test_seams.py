@@ -62,6 +62,26 @@ def test_refocused_captures(capture, floor, tmp_path, engine):
     assert ssim(picture[::-1], expected) > 0.98, tmp_path
 
 
+@pytest.mark.parametrize("engine", ["CYCLES", "APLANAT"])
+def test_slices_thinner_than_a_row(capture, floor, engine):
+    from addon.device.context import ensure_context
+
+    ensure_context()
+    for name in ("Cube", "Card"):
+        floor.objects[name].hide_render = True
+    floor.render.engine = engine
+    floor.aplanat.render_samples = 16
+    floor.render.resolution_x = 48
+    # Some 27 rows of floor between the nearest and the horizon.
+    stack = capture(floor, layers=20, overscan=0.2)
+    for f_stop in (8.0, 0.25):
+        picture = refocus(stack, RefocusSettings(f_stop=f_stop, samples=64))
+        rows = picture[8:24, 16:32, 0].mean(axis=1)
+        # Up to 40 % of a row's light was lost where each layer covers a part of it; what is left
+        # is lost where two layers happen to cover equal parts, as edges of objects do.
+        assert rows == pytest.approx(np.full(16, FLOOR), rel=0.02)
+
+
 @pytest.mark.parametrize("shift", [0.0, 1.0, 2.0])
 def test_a_horizon_lies_between_rows_of_texels(floor, shift):
     # A pixel has three rows of texels, which would have it up to a sixth too high or too low.
