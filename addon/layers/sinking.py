@@ -1,10 +1,10 @@
 """Gathers what thin slices have of one surface in a pixel.
 
-Where a surface goes away so steeply that a slice of it is narrower than a pixel (many layers, a small
-picture, a table seen from its edge), several layers have a part of the pixel each. These parts lie
-beside one another, but layers laid over each other take them for transparent surfaces behind one
-another: a third of the light of a floor came from behind it. Here the farthest of the layers gets
-the whole, and the others nothing.
+Where a surface goes away so steeply that a slice of it is narrower than a pixel (many layers, a
+small picture, a table seen from its edge), several layers have a part of the pixel each. These
+parts lie beside one another, but layers laid over each other take them for transparent surfaces
+behind one another: a third of the light of a floor came from behind it. Here the farthest of the
+layers gets the whole, and the others nothing.
 
 What is transparent (smoke, hair, glass) looks different: there a layer goes on to all sides. Of a
 surface that goes away, the nearer layer ends towards the far side, and the farther layer towards
