@@ -12,6 +12,7 @@ the near one, and others go on there.
 """
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -101,13 +102,18 @@ def sink(colors, depths, steps):
         rises[far][at] = np.maximum(rises[near][at], rise)
         colors[near][at], depths[near][at] = 0.0, np.inf
         rises[near][at] = 0.0
-    for number in range(len(colors)):
+    for number, side in product(range(len(colors)), (SIDE, SIDE + 1)):
         # What the neighbouring layers have of a pixel may have faded with the ends of their slices.
         alpha = colors[number][..., 3]
         rows, columns = np.nonzero((alpha > 0.0) & (alpha < WHOLE) & (rises[number] == 0.0))
+        # A strand of hair, too, may lie between what is nearer and what is farther, but then
+        # something is behind it.
+        behind = covers[number + 1 : number + 1 + _BESIDE]
+        alone = sum((cover[rows, columns] for cover in behind), np.zeros(len(rows))) <= _MOST
+        rows, columns = rows[alone], columns[alone]
         if not len(rows):
             continue
-        rise, inside = _slope(covers, held, steps, (number, number), rows, columns)
+        rise, inside = _slope(covers, held, steps, (number, number), rows, columns, side)
         at = rows[inside], columns[inside]
         if inside.any():
             colors[number] = colors[number].copy()
@@ -116,7 +122,7 @@ def sink(colors, depths, steps):
     return Sunk(colors, depths, rises)
 
 
-def _slope(covers, depths, steps, pair, rows, columns):
+def _slope(covers, depths, steps, pair, rows, columns, side=SIDE):
     """Return by how much a surface rises that goes from one layer into the next, and where inside.
 
     With one layer as both: that comes out of layers before it, and goes on in those behind it.
@@ -153,19 +159,19 @@ def _slope(covers, depths, steps, pair, rows, columns):
     around = range(before[0], behind[-1] + 1)
     here = step_of(around, 0, 0)
     rise, inside = np.zeros(len(rows)), np.zeros(len(rows), bool)
-    for y, x in ((SIDE, 0), (-SIDE, 0), (0, SIDE), (0, -SIDE)):
+    for y, x in ((side, 0), (-side, 0), (0, side), (0, -side)):
         # The near side is the one, the far side the other.
         found = (at(covers, far, y, x) == 0.0) & (at(covers, near, -y, -x) == 0.0)
         found &= (total(before, y, x) > _MOST) & (total(behind, -y, -x) > _MOST)
         if not found.any():
             continue
         sides = step_of(before, y, x), step_of(behind, -y, -x)
-        between = step_of(around, y // SIDE, x // SIDE), step_of(around, -y // SIDE, -x // SIDE)
+        between = step_of(around, y // side, x // side), step_of(around, -y // side, -x // side)
         step = sides[1] - sides[0]
         found &= (step > 0.0) & (np.abs(here - 0.5 * (sides[0] + sides[1])) < _BENT * step)
         found &= (sides[0] <= between[0]) & (between[0] <= here)
         found &= (here <= between[1]) & (between[1] <= sides[1])
-        across = [total(around, *side) > _MOST for side in ((x, y), (-x, -y))]
+        across = [total(around, *place) > _MOST for place in ((x, y), (-x, -y))]
         rise = np.where(found, np.maximum(rise, step), rise)
         inside |= found & across[0] & across[1]
     return rise, inside
