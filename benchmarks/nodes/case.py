@@ -18,7 +18,8 @@ class Case:
         values: ``"uv"``, ``"object"``, ``"place"`` (world space), ``"x"`` (a number from 0 to 1
         along the card), ``"y"``, ``"signed"`` (a vector from -2 to 2),
         ``"steps"`` (the same in whole numbers), ``"color"`` (of an image),
-        ``"bent"`` (a unit vector near the normal), ``"straight up"``.
+        ``"bent"`` (a unit vector near the normal), ``"straight up"``, ``"nowhere"``
+        (a vector of zeros).
     settings : dict of str to object
         Properties of the node.
     prepare : callable or None

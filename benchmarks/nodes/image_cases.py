@@ -121,6 +121,7 @@ CASES = [
         for p in ("EQUIRECTANGULAR", "MIRROR_BALL")
     ),
     Case("TexEnvironment", "Color", {}, {}, _SMALL, "dome"),
+    Case("TexEnvironment", "Color", {"Vector": "nowhere"}, {"interpolation": "Cubic"}, _SMALL),
     *(
         # At the file's angles the cubics bend within a texel of the picture.
         Case("TexIES", "Fac", {"Vector": v}, {}, _lamp, "dome", exempt=0.12, gain=0.2)

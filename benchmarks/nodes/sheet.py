@@ -187,9 +187,9 @@ def _source(tree, name, image):
         return coordinates.outputs[{"uv": "UV"}.get(name, name.capitalize())]
     if name == "place":
         return nodes.new("ShaderNodeNewGeometry").outputs["Position"]
-    if name == "straight up":
+    if name in {"straight up", "nowhere"}:
         up = nodes.new("ShaderNodeCombineXYZ")
-        up.inputs["Z"].default_value = 1.0
+        up.inputs["Z"].default_value = 1.0 if name == "straight up" else 0.0
         return up.outputs[0]
     if name == "color":
         texture = nodes.new("ShaderNodeTexImage")

@@ -35,6 +35,9 @@ vec2 project_sphere(vec3 place)
 
 vec2 project_equirectangular(vec3 direction)
 {
+  if (direction == vec3(0.0)) {
+    return vec2(0.0);
+  }
   float longitude = angle_of(direction.y, direction.x);
   float latitude = angle_of(direction.z, length(direction.xy));
   return vec2(0.5 - longitude / (2.0 * PROJECTION_PI), latitude / PROJECTION_PI + 0.5);
