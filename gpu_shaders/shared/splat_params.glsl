@@ -5,7 +5,8 @@ struct SplatParams {
                         // of the lens along its width that sources stand for
   vec4 rows;            // of the profile: x: w of the first row; y: 1 / (w of the last - of the first);
                         // z: c0, px; w: strength
-  vec4 field;           // x: 1 / largest tangent of the tables over the field; y: number of rims;
+  vec4 field;           // x: 1 / largest tangent of the tables over the field; y: number of rims, of a
+                        // lens with cylinders as x, along y;
                         // z: rows of the light that rims leave; w: 1 if tiles are masked by the opening
   vec4 rims[4];         // x: radius; y: shift for a tangent of 1; z: members; w unused
   vec4 wavelength;      // rgb: its weights; w: 1 / focus distance, 1/m

@@ -181,7 +181,7 @@ def _bokeh(scene, data, lens, opening):
         **told_by(bokeh, *BOKEH),
         "cluster_levels": bokeh.cluster_levels if bokeh.model == "CLUSTERED" else 0,
         "hardness": look.edge,
-        "profile_strength": bokeh.profile_strength if lens and lens.shapes_bokeh else None,
+        "profile_strength": bokeh.profile_strength if lens else None,
         # As Aplanat told them before the iris was one of lens samples, too.
         **{name: iris[name] for name in ("iris_image", "blade_curvature")},
         "vignetting": bokeh.vignetting.lower(),

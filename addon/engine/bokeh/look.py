@@ -29,6 +29,7 @@ from ...lens_bokeh.openings.masks import texel_centres
 from ...lens_bokeh.openings.shapes import opening_of
 from ...passes.bokeh.splat import MOST_RIMS, SPLAT_PARAMS
 from .artist_tiles import artist_tiles
+from .cylinder_tiles import cylinder_tiles
 from .look_keys import ArraysKey, LensKey
 from .real_tiles import tiles_work
 
@@ -111,6 +112,9 @@ def describe_look(plan):
     if _has_lens_tiles(plan) or (bokeh.artist and not bokeh.draft):
         _add_tiles(plan, appearance, tangent, arrays, params)
         return ("TILES",), arrays, params
+    if bokeh.cylinders and not bokeh.draft:
+        _add_tiles(plan, appearance, _largest_tangents(plan), arrays, params)
+        return ("TILES", "CYLINDERS"), arrays, params
     variants = ()
     rows, strength = None, settings.profile_strength
     if lens is not None and strength > 0.0:
@@ -265,6 +269,13 @@ def _largest_tangent(plan):
     return float(np.hypot(corners[:, 0], corners[:, 1]).max() / -corners[0, 2])
 
 
+def _largest_tangents(plan):
+    """Return the tangents of the farthest fields of the peeled raster along x and y."""
+    inverse = np.linalg.inv(plan.bokeh.projection)
+    corners = np.array([(x, y, 0.0, 1.0) for x in (-1, 1) for y in (-1, 1)]) @ inverse.T
+    return tuple((np.abs(corners[:, :2]).max(axis=0) / -corners[0, 2]).tolist())
+
+
 def _fresnel_scale(plan):
     """Return the Fresnel number of a disc of one pixel radius over its radius.
 
@@ -337,6 +348,10 @@ def _add_tiles(plan, appearance, tangent, arrays, params):
     bokeh, strength = plan.bokeh, 1.0
     if bokeh.artist:
         found = artist_tiles(bokeh.artist, tangent)
+    elif bokeh.cylinders:
+        tables = plan.real_lens.tables
+        strength = bokeh.settings.profile_strength
+        found = cylinder_tiles(bokeh.cylinders, tables.aperture_radius, tables.light_grid, tangent)
     else:
         strength = bokeh.settings.profile_strength
         found = tiles_work(LensKey(bokeh.real_lens), plan.focus_distance, tangent).whole()
@@ -344,8 +359,12 @@ def _add_tiles(plan, appearance, tangent, arrays, params):
     even = replace(appearance, rims=(), edge=0.0) == type(appearance)()
     arrays["sharp_tx"], arrays["soft_tx"] = tiles.sharp, tiles.soft
     arrays["places_tx"] = tiles.places
-    arrays["left_tx"] = _tiles_left(ArraysKey(tiles, arrays["opening_tx"]), even)
-    params["field"] = (1.0 / tiles.largest_tangent, 0.0, 1.0, float(not even))
+    arrays["left_tx"] = _tiles_left(
+        ArraysKey(tiles, arrays["opening_tx"]), even or bool(bokeh.cylinders)
+    )
+    far = tiles.largest_tangent
+    inverse = (1.0 / far, 0.0) if np.ndim(far) == 0 else tuple(1.0 / each for each in far)
+    params["field"] = (*inverse, 1.0, float(not even))
     scale = plan.coc_scale / plan.focus_distance
     params["rows"] = (first, 1.0 / (last - first), soft * scale, strength)
 

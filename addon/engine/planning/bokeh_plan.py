@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...lens_bokeh.samples.artist_rays import ArtistRays
+from ...lens_bokeh.samples.cylinder_rays import CylinderRays
 from ...levels.choosing import coc_radius, extents
 from ...sampling.highlights import highlight_share, least_coc
 from ...sampling.iris import Iris
@@ -97,6 +98,8 @@ class BokehPlan:
         A draft with bounded work, for a moving view; see `drafted`.
     artist : ArtistRays or None
         The artist's lens that shapes the discs.
+    cylinders : CylinderRays or None
+        The rays of a lens with cylinders, which shapes them.
     """
 
     settings: BokehSettings
@@ -123,6 +126,7 @@ class BokehPlan:
     draft: bool = False
     artist: ArtistRays | None = None
     reflecting: frozenset[int] = frozenset()
+    cylinders: CylinderRays | None = None
 
     @property
     def lens_views(self):
@@ -212,7 +216,8 @@ def plan_bokeh(snapshot, plan):
     if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
         return None
     camera = snapshot.camera
-    if plan.real_lens is not None and not (shaping_lens(camera) or shaping_artist(camera)):
+    shaping = shaping_lens(camera) or shaping_artist(camera) or shaping_cylinders(plan)
+    if plan.real_lens and not shaping:
         # No discs are traced for it, and those of a thin lens would not be where the samples are.
         return None
     least = least_splatted(plan)
@@ -281,6 +286,7 @@ def plan_bokeh(snapshot, plan):
         filter_width=filter_width(film.filter_kind, film.filter_size_px),
         colors=colors,
         artist=shaping_artist(snapshot.camera),
+        cylinders=shaping_cylinders(plan),
     )
 
 
@@ -293,6 +299,13 @@ def shaping_lens(camera):
     """Return the traced lens that shapes a camera's discs, as `LensSettings`, or None."""
     lens = camera.real_lens
     return lens if lens and lens.shapes_bokeh and not camera.orthographic else None
+
+
+def shaping_cylinders(plan):
+    """Return the rays of a lens with cylinders that shapes a frame's discs, or None."""
+    if plan.real_lens is None or plan.orthographic:
+        return None
+    return plan.real_lens.cylinders
 
 
 def shaping_artist(camera):

@@ -103,9 +103,9 @@ def tiles_in_steps(beams, shift, blur, soft, w_range):
         for j, grid in enumerate(grids):
             tile, (middle, half_x, half_y) = draw_tile(grid, SHARP, spans[0])
             places[i, j, :3] = np.array([middle - centers[j], half_x, half_y]) / sizes[j]
-            _store(sharp_tiles[i, j], tile, 0)
+            store(sharp_tiles[i, j], tile, 0)
             for layer, matrix in enumerate(matrices, 1):
-                _store(soft_tiles[layer - 1, i, j], matrix @ tile @ matrix.T, layer)
+                store(soft_tiles[layer - 1, i, j], matrix @ tile @ matrix.T, layer)
         yield
     return PupilTiles(
         sharp_tiles.reshape(-1, SHARP, SHARP, 4),
@@ -129,8 +129,8 @@ def result_of(steps):
             return end.value
 
 
-def _store(place, tile, layer):
-    """Store a tile, (3, size, size), with its light 1 over its own units."""
+def store(place, tile, layer):
+    """Store a tile, (3, size, size), in a texture's place with its light 1 over its own units."""
     texel = 2.0 * reach(BLURS[layer]) / len(place)
     light = float(tile[0].sum(dtype=np.float64)) * texel**2
     np.multiply(np.moveaxis(tile, 0, -1), np.float32(1.0 / max(light, 1e-30)), out=place[..., :3])

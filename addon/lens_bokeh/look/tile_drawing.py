@@ -16,6 +16,8 @@ RAYS = 224
 _LEVELS = 6
 # Clearance beyond which a rim cuts no ray: cells of the grid are far smaller.
 _CLEAR = 0.1
+# Least half width of a pattern.
+_NARROWEST = 1e-6
 # Places in the stop are stored as (s + 1.5) / 3, to be positive.
 STOP_OFFSET, STOP_SCALE = 1.5, 3.0
 
@@ -51,6 +53,13 @@ class HalfGrid:
         tuple of 3 float
             Its middle along y, and half its width in x and in y.
         """
+        x, y = self._outermost()
+        bottom, top = float(y.min()), float(y.max())
+        half_x = max(float(np.abs(x).max()), _NARROWEST)
+        return 0.5 * (bottom + top), half_x, max(0.5 * (top - bottom), _NARROWEST)
+
+    def _outermost(self):
+        """Return where rays inside all rims land, and those at the rims."""
         clear = 1.0 - np.hypot(self.stop_x, self.stop_y)
         for rim in self.rims:
             clear = np.minimum(clear, rim)
@@ -68,10 +77,7 @@ class HalfGrid:
                     for place in (self.x, self.y)
                 )
             )
-        x, y = (np.concatenate(parts) for parts in zip(*found, strict=True))
-        bottom, top = float(y.min()), float(y.max())
-        half_x = max(float(np.abs(x).max()), 1e-6)
-        return 0.5 * (bottom + top), half_x, max(0.5 * (top - bottom), 1e-6)
+        return tuple(np.concatenate(parts) for parts in zip(*found, strict=True))
 
     def light(self):
         """Return the energy of the rays behind all rims and the round stop, antialiased."""
@@ -83,6 +89,22 @@ class HalfGrid:
             if lit.any() and rim[lit].min() < _CLEAR:
                 opened = np.minimum(opened, _share(rim, _spacing(rim)))
         return self.weight * opened
+
+
+class WholeGrid(HalfGrid):
+    """Rays of a beam through all of the pupil, which need not be its own mirror image."""
+
+    def bounds(self):
+        """Return the bounds of the pattern inside all rims.
+
+        Returns
+        -------
+        tuple of 4 float
+            Its middle, and half its width, both in x and in y.
+        """
+        ends = [(float(part.min()), float(part.max())) for part in self._outermost()]
+        middles = (0.5 * (low + high) for low, high in ends)
+        return *middles, *(max(0.5 * (high - low), _NARROWEST) for low, high in ends)
 
 
 def draw_tile(grid, size, span):
@@ -104,8 +126,23 @@ def draw_tile(grid, size, span):
         As `HalfGrid.bounds`.
     """
     middle, half_x, half_y = bounds = grid.bounds()
+    tile = _drawn(grid, (0.0, middle, half_x, half_y), size, span)
+    # The other half: its places in the stop are mirrored, too.
+    mirrored = tile[:, :, ::-1].copy()
+    mirrored[1] = mirrored[0] - mirrored[1]
+    return tile + mirrored, bounds
+
+
+def draw_whole_tile(grid, size, span):
+    """Draw the pattern of a beam; as `draw_tile`, of a `WholeGrid`."""
+    bounds = grid.bounds()
+    return _drawn(grid, bounds, size, span), bounds
+
+
+def _drawn(grid, bounds, size, span):
+    middle_x, middle, half_x, half_y = bounds
     light = grid.light()
-    x = (grid.x * (1.0 / (half_x * span)) + 1.0) * (0.5 * size)
+    x = ((grid.x - middle_x) * (1.0 / (half_x * span)) + 1.0) * (0.5 * size)
     y = ((grid.y - middle) * (1.0 / (half_y * span)) + 1.0) * (0.5 * size)
     lit = light > 0.0
     # The camera sees the stop turned by half a turn against the sensor's picture.
@@ -114,11 +151,7 @@ def draw_tile(grid, size, span):
         for place in (grid.stop_x, grid.stop_y)
     ]
     wide_x, wide_y = _spacing(x)[lit], _spacing(y)[lit]
-    tile = _deposited(x[lit], y[lit], wide_x, wide_y, [layer[lit] for layer in stored], size)
-    # The other half: its places in the stop are mirrored, too.
-    mirrored = tile[:, :, ::-1].copy()
-    mirrored[1] = mirrored[0] - mirrored[1]
-    return tile + mirrored, bounds
+    return _deposited(x[lit], y[lit], wide_x, wide_y, [layer[lit] for layer in stored], size)
 
 
 # Memo of its arguments alone, which are constants: one for each layer.

@@ -1,7 +1,8 @@
 """Splatting highlights: a disc each, in the shape of the opening, added up (methods 13).
 
 Shader variants add to the shape of the opening: PROFILE (radial bokeh profile of a traced lens),
-RIMS (analytic optical vignetting), TILES (patterns of a real lens over the field).
+RIMS (analytic optical vignetting), TILES (patterns of a real lens over the field), with CYLINDERS
+of one that is not of revolution.
 """
 
 from ...device import shader_source, state
@@ -21,6 +22,7 @@ _RAYS = ("layers_tx", "opacity_tx", "states_tx")
 MOST_RIMS = 4
 # Textures and varyings of the variants.
 _LOOK_TEXTURES = {
+    "CYLINDERS": (),
     "PROFILE": (("FLOAT_2D_ARRAY", "profile_tx"),),
     "RIMS": (("FLOAT_2D_ARRAY", "left_tx"),),
     "TILES": (
@@ -31,6 +33,7 @@ _LOOK_TEXTURES = {
     ),
 }
 _LOOK_VARYINGS = {
+    "CYLINDERS": (("FLAT FLOAT", "v_tile_up"),),
     "PROFILE": (("FLAT FLOAT", "v_row"),),
     "RIMS": (("FLAT VEC3", "v_left_lower"), ("FLAT VEC3", "v_left_upper")),
     "TILES": (
@@ -45,7 +48,10 @@ _LOOK_VARYINGS = {
 
 @variants(
     casts=(False, True),
-    variants=((), ("PROFILE",), ("RIMS",), ("PROFILE", "RIMS"), ("TILES",)),
+    variants=(
+        *((), ("PROFILE",), ("RIMS",), ("PROFILE", "RIMS")),
+        *(("TILES",), ("TILES", "CYLINDERS")),
+    ),
     in_wavelengths=(False, True),
     through_lens=(False, True),
 )

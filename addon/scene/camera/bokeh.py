@@ -61,11 +61,6 @@ def _describe(camera, real_lens, corner, opening):
     settings = camera.aplanat.bokeh
     shaping = real_lens if real_lens and real_lens.shapes_bokeh else None
     appearance, problems = _read_appearance(camera, shaping, corner, opening)
-    if shaping is None and real_lens and camera.dof.use_dof:
-        problems += (
-            f"lens '{real_lens.prescription.name}' shapes no bokeh, for it has cylinders:"
-            " highlights are left to the lens samples, in layered pictures to a thin lens",
-        )
     vignetting = settings.vignetting
     if vignetting == "LENS" and shaping is None:
         vignetting = "NONE"

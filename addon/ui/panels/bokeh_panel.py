@@ -142,9 +142,8 @@ class APLANAT_CAMERA_PT_bokeh_appearance(_BokehPanel, PresetsHeader, bpy.types.P
         settings, column = self.begin(context)
         camera = context.camera
         lens = real_lens_of(camera)
-        if lens is not None and not lens.shapes_bokeh:
-            lens = None
-        self._draw_discs(context, column, lens)
+        # The three discs of a lens with cylinders are a thin lens'.
+        self._draw_discs(context, column, lens if lens and lens.shapes_bokeh else None)
         if lens is None:
             column.prop(settings, "hardness", slider=True)
         else:

@@ -8,8 +8,15 @@
 // Blur of the tiles in units of half their width, and how they are counted: splat_pupil.py.
 #define TILE_BLUR_SHARP (1.0 / 48.0)
 #define TILE_BLUR_SOFT vec4(1.0 / 20.0, 1.0 / 9.0, 1.0 / 4.0, 1.0 / 2.0)
+#ifdef CYLINDERS
+// Fields along x and y: cylinder_beams.py.
+#define TILE_ACROSS 5
+#define TILE_FIELDS 25
+#define TILE_DEPTHS 9
+#else
 #define TILE_FIELDS 9
 #define TILE_DEPTHS 25
+#endif
 #define STOP_OFFSET 1.5
 #define STOP_SCALE 3.0
 
@@ -66,12 +73,42 @@ vec2 azimuth_of(vec2 chief)
   return (size > 1e-9) ? chief / size : vec2(0.0, 1.0);
 }
 
+// Axes of the tiles in the picture, for their x and y: away from the axis is y. A lens with cylinders has
+// no such frame: it is its own mirror image on both sides of both axes.
+mat2 tile_axes(vec2 chief)
+{
+#ifdef CYLINDERS
+  return mat2((chief.x < 0.0) ? -1.0 : 1.0, 0.0, 0.0, (chief.y < 0.0) ? -1.0 : 1.0);
+#else
+  vec2 away = azimuth_of(chief);
+  return mat2(vec2(away.y, -away.x), away);
+#endif
+}
+
 // Outward shift of the middle of a bokeh pattern, and half its width across and along the azimuth,
 // all divided by |c| + c0. `at`: field and depth, counted in tiles.
 vec3 tile_place(sampler2D tx, vec2 at)
 {
   return texture(tx, (at.yx + 0.5) / vec2(TILE_DEPTHS, TILE_FIELDS)).xyz;
 }
+
+#ifdef CYLINDERS
+// Shift of the middle of a pattern, and half its width, each along x and y, all divided by |c| + c0.
+// `at`: field along x, and depth; `up`: field along y.
+vec4 tile_place_of(sampler2D tx, vec2 at, float up)
+{
+  vec2 size = vec2(TILE_DEPTHS, TILE_FIELDS);
+  vec2 low = clamp(floor(vec2(at.x, up)), vec2(0.0), vec2(TILE_ACROSS - 2));
+  vec2 part = vec2(at.x, up) - low;
+  float row = low.y * float(TILE_ACROSS) + low.x;
+  vec4 places[4];
+  for (int i = 0; i < 4; i++) {
+    float field = row + float(i % 2) + float(i / 2) * float(TILE_ACROSS);
+    places[i] = texture(tx, vec2(at.y + 0.5, field + 0.5) / size);
+  }
+  return mix(mix(places[0], places[1], part.x), mix(places[2], places[3], part.x), part.y);
+}
+#endif
 
 vec3 tile_corner(sampler2DArray tx, vec2 uv, float first, ivec2 at)
 {
@@ -85,6 +122,23 @@ vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at)
   if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) {
     return vec3(0.0);
   }
+#ifdef CYLINDERS
+  ivec2 low = ivec2(clamp(floor(at), vec2(0.0), vec2(TILE_ACROSS - 2, TILE_DEPTHS - 2)));
+  vec2 part = at - vec2(low);
+  int above = int(clamp(floor(v_tile_up), 0.0, float(TILE_ACROSS - 2)));
+  vec3 rows[2];
+  for (int i = 0; i < 2; i++) {
+    ivec2 first_of = ivec2((above + i) * TILE_ACROSS, 0) + low;
+    vec3 left = mix(tile_corner(tx, uv, first, first_of),
+                    tile_corner(tx, uv, first, first_of + ivec2(0, 1)),
+                    part.y);
+    vec3 right = mix(tile_corner(tx, uv, first, first_of + ivec2(1, 0)),
+                     tile_corner(tx, uv, first, first_of + ivec2(1, 1)),
+                     part.y);
+    rows[i] = mix(left, right, part.x);
+  }
+  return mix(rows[0], rows[1], v_tile_up - float(above));
+#else
   ivec2 low = ivec2(clamp(floor(at), vec2(0.0), vec2(TILE_FIELDS - 2, TILE_DEPTHS - 2)));
   vec2 part = at - vec2(low);
   vec3 near = mix(tile_corner(tx, uv, first, low),
@@ -94,6 +148,7 @@ vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at)
                  tile_corner(tx, uv, first, low + ivec2(1, 1)),
                  part.y);
   return mix(near, far, part.x);
+#endif
 }
 
 // Light and place in the stop at a place of a tile, in the meridional frame.

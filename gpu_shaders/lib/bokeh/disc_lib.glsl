@@ -37,13 +37,12 @@ vec3 disc_density(vec2 place, out vec2 lens)
   }
 #endif
 #ifdef TILES
-  vec2 away = azimuth_of(v_chief);
   vec3 light = tile_light(sharp_tx, soft_tx, place, v_blur, v_tile_at);
   // The even disc that the lens' pattern is blended with (Lens Profile below 1).
   float edge = clamp(0.5 + (1.0 - length(place)) / max(v_blur, 1e-6), 0.0, 1.0);
   light.x = mix(edge / 3.14159265, light.x, splat_buf.rows.w);
   light.yz = mix(lens * v_upright, light.yz, splat_buf.rows.w);
-  lens = light.y * vec2(away.y, -away.x) + light.z * away;
+  lens = tile_axes(v_chief) * light.yz;
   lens /= max(length(lens), 1.0);
   vec3 density = vec3(light.x);
   if (splat_buf.field.w > 0.5) {

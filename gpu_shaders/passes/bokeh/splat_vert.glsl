@@ -184,16 +184,29 @@ void main()
 #endif
 #ifdef TILES
   v_row = look_row(coc, splat_buf.rows);
+#ifdef CYLINDERS
+  vec2 node = clamp(abs(v_chief) * splat_buf.field.xy, 0.0, 1.0) * float(TILE_ACROSS - 1);
+  v_tile_up = node.y;
+  v_tile_at = vec2(node.x, v_row * float(TILE_DEPTHS - 1));
+  // The middle of the pattern, and half its width.
+  vec4 pattern = tile_place_of(places_tx, v_tile_at, v_tile_up);
+#else
   v_tile_at = vec2(clamp(length(v_chief) * splat_buf.field.x, 0.0, 1.0) * float(TILE_FIELDS - 1),
                    v_row * float(TILE_DEPTHS - 1));
-  vec3 pattern = tile_place(places_tx, v_tile_at) * (radius + splat_buf.rows.z);
-  pattern = mix(vec3(0.0, radius, radius), pattern, splat_buf.rows.w);
-  radius = sqrt(pattern.y * pattern.z);
+  vec4 pattern = vec4(0.0, tile_place(places_tx, v_tile_at));
+#endif
+  pattern *= radius + splat_buf.rows.z;
+  pattern = mix(vec4(0.0, 0.0, radius, radius), pattern, splat_buf.rows.w);
+  radius = sqrt(pattern.z * pattern.w);
   float wide = widened(radius, blur, TILE_BLUR_SOFT.w);
-  pattern.yz *= wide / radius;
+  pattern.zw *= wide / radius;
   v_blur = min(blur / wide, TILE_BLUR_SOFT.w);
   v_upright = (coc < 0.0) ? -1.0 : 1.0;
-  v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (pattern.y * pattern.z));
+  v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (pattern.z * pattern.w));
+#ifdef CYLINDERS
+  // What an opening leaves of even light.
+  v_left_lower = v_left_upper = vec3(1.0 / 3.14159265);
+#else
   if (splat_buf.field.w > 0.5) {
     vec2 layers = opening_layers(float(textureSize(opening_tx, 0).z), v_blur);
     // Three tables a layer of the opening: for the blur of the previous layer, its own and the next.
@@ -205,15 +218,17 @@ void main()
                        tile_left(left_tx, table + 3.0, v_chief, v_tile_at),
                        layers.y);
   }
+#endif
   // Reach of the tiles at their widest blur, or of the pattern with its own.
-  vec2 reach = 1.0 + vec2(min(2.0 * v_blur + 0.07, 0.5)) + 0.5 / pattern.yz;
+  vec2 reach = 1.0 + vec2(min(2.0 * v_blur + 0.07, 0.5)) + 0.5 / pattern.zw;
   v_place = (pos * 2.0 - 1.0) * reach;
-  vec2 away = azimuth_of(v_chief);
-  vec2 local = v_place * pattern.yz + vec2(0.0, pattern.x);
-  vec2 offset = (local.x * vec2(away.y, -away.x) + local.y * away) / vec2(ratio, 1.0);
-  vec2 origin = vec2(0.0, -pattern.x / pattern.z);
-  mat2 axes = mat2(vec2(away.y, away.x) * ratio / pattern.yz, vec2(-away.x, away.y) / pattern.yz);
-  float farthest = abs(pattern.x) + max(pattern.y, pattern.z) * max(reach.x, reach.y);
+  mat2 frame = tile_axes(v_chief);
+  vec2 offset = frame * (v_place * pattern.zw + pattern.xy) / vec2(ratio, 1.0);
+  vec2 origin = -pattern.xy / pattern.zw;
+  // The frame turns or mirrors: its inverse is its transpose.
+  mat2 axes = mat2(vec2(frame[0].x, frame[1].x) * ratio / pattern.zw,
+                   vec2(frame[0].y, frame[1].y) / pattern.zw);
+  float farthest = length(pattern.xy) + max(pattern.z, pattern.w) * max(reach.x, reach.y);
 #else
   float most = OPENING_LEAST_BLUR * exp2(float(textureSize(opening_tx, 0).z) - 1.0);
   float wide = widened(radius, blur, most);
