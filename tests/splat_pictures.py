@@ -34,6 +34,7 @@ def plan_of(
         colors=None,
         draft=False,
         artist=None,
+        cylinders=None,
     )
     return SimpleNamespace(
         bokeh=bokeh,

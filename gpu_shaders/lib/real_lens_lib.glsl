@@ -43,6 +43,15 @@ float real_lens_blur(sampler2D blur_tx, vec3 eye, RealLensParams params)
   return added * max((1.0 / depth - params.vergence.y) * params.vergence.z, 1.0);
 }
 
+// How much larger the whole iris shows a small surface than a pinhole does.
+float real_lens_area(sampler2D area_tx, vec3 eye, RealLensParams params)
+{
+  float depth = max(-eye.z, 1e-6);
+  vec4 area = textureLod(area_tx, real_lens_place(eye.xy / depth, params), 0.0);
+  float v = min(params.vergence.x / depth, 1.0);
+  return area.x + v * (area.y + v * (area.z + v * area.w));
+}
+
 // What a point of camera space is moved by, m. At the camera's plane and behind it: as just before it.
 vec2 real_lens_shift(sampler2D moves_tx, vec3 eye, int slot, RealLensParams params)
 {

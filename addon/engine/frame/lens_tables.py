@@ -37,9 +37,11 @@ class LensTables:
         self.follow(plan)
         falloff = real_lens.light_texture(self._lens.falloff[None])
         light = real_lens.SampleLight(falloff, self._table(1))
-        self._blur = None
+        self._blur = self._area = None
         middle = self._upload(np.zeros((1, 2)))
-        self._middle = real_lens.LensSample(0, middle, light, blur=self._blurred)
+        self._middle = real_lens.LensSample(
+            0, middle, light, blur=self._blurred, area=self._enlarged
+        )
 
     def follow(self, plan):
         """Go on with a plan that has more samples."""
@@ -149,8 +151,13 @@ class LensTables:
     def _blurred(self):
         if self._blur is None:
             blur = self._lens.tables.blur * np.float32(self._focal_px)
-            self._blur = real_lens.blur_texture(blur)
+            self._blur = real_lens.field_texture(blur)
         return self._blur
+
+    def _enlarged(self):
+        if self._area is None:
+            self._area = real_lens.field_texture(self._lens.tables.area)
+        return self._area
 
     def _table(self, count, first=0):
         grid = self._lens.grid

@@ -7,8 +7,6 @@ frame. The rays are those of lens samples, as sums of terms. Lengths are tangent
 
 import numpy as np
 
-from ..samples.disc_terms import disc_terms
-from ..samples.landing import landed
 from .splat_pupil import BLURS, SHARP, SOFT, PupilTiles, reach, store
 from .tile_drawing import RAYS, WholeGrid, blur_matrix, draw_whole_tile
 
@@ -48,8 +46,7 @@ class CylinderBeams:
         self._places = places.astype(np.float32)
         away = np.hypot(*places.T)[:, None]
         held = places * np.minimum(_OUTERMOST / np.maximum(away, 1e-9), 1.0)
-        terms = disc_terms(rays.orders, held).reshape(len(places), -1)
-        middle = disc_terms(rays.orders, np.zeros((1, 2))).reshape(1, -1)
+        terms, middle = rays.terms(held), rays.terms(np.zeros((1, 2)))
         self._terms = terms.astype(np.float32)
         self._from_middle = (terms - middle).astype(np.float32)
         moves, self._chief = rays.moves(nodes)
@@ -57,7 +54,7 @@ class CylinderBeams:
         self._moves[..., 0] *= rays.stretch
         step = _STEP * np.array([x[-1], y[-1]])
         around = [nodes, *(nodes + sign * part for part in np.diag(step) for sign in (1, -1))]
-        found = landed(rays, aperture_radius, grid, np.concatenate(around))
+        found = rays.landed(aperture_radius, grid, np.concatenate(around))
         here, right, left, up, down = np.split(found, 5, axis=-1)
         self._light = here, (right - left) / (2.0 * step[0]), (up - down) / (2.0 * step[1])
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..tables.spline import spline_matrix
 from .disc_terms import disc_orders, disc_terms
+from .landing import landed
 from .stop_rays import StopAim
 from .stop_shapes import paraxial_pupil
 
@@ -93,6 +94,14 @@ class CylinderRays:
         powers = np.linalg.inv((self.vergences / self.largest_vergence)[:, None] ** np.arange(4))
         moves = np.einsum("jk,pkct->tpjc", powers, found)
         return moves, np.einsum("jk,pkc->pjc", powers, chief)
+
+    def terms(self, places):
+        """Return the terms at places of the iris, shapes (N, 2 T) and (N, 2)."""
+        return disc_terms(self.orders, places).reshape(len(places), -1)
+
+    def landed(self, aperture_radius, grid, wanted):
+        """Return light and clearances by the places where rays land; see `landing.landed`."""
+        return landed(self, aperture_radius, grid, wanted)
 
     def light_and_rims(self, nodes):
         """Lay out light and clearances of the rims; as of `LensRays`."""

@@ -89,7 +89,8 @@ def _info(casts, variants, in_wavelengths=False, through_lens=False):
         ),
     )
     info = chromatic.over_field(info) if in_wavelengths else info
-    return real_lens.declared(info, real_lens.LIGHT_SAMPLERS) if through_lens else info
+    samplers = real_lens.LIGHT_SAMPLERS + real_lens.AREA_SAMPLERS
+    return real_lens.declared(info, samplers) if through_lens else info
 
 
 def splat(square, count, textures, look, view_buffer, rays=None):

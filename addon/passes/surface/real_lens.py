@@ -19,6 +19,8 @@ DEFINES = (("REAL_LENS", "1"),)
 # Of passes that tell or weigh the circle of confusion.
 BLUR_SAMPLERS = (("FLOAT_2D", "blur_tx"),)
 BLUR_DEFINES = (("LENS_BLUR", "1"),)
+# Of passes that draw what the whole iris shows of a point.
+AREA_SAMPLERS = (("FLOAT_2D", "area_tx"),)
 # Of passes that weigh samples, or divide by their weights, over the picture.
 LIGHT_SAMPLERS = (("FLOAT_2D", "light_tx"),)
 LIGHT_CONSTANTS = (("VEC4", "light_table"), ("INT", "light_sets"))
@@ -44,8 +46,8 @@ class LensSample:
     tables : int
         Number of the tables that are drawn one after the other, from its own on: of the middle of
         the lens one for each band of wavelengths.
-    blur : callable or None
-        Returns the `blur_texture`, for passes that have one.
+    blur, area : callable or None
+        Return the `field_texture` of either, for passes that have one.
     """
 
     slot: int
@@ -55,6 +57,7 @@ class LensSample:
     sets: int = 1
     tables: int = 1
     blur: object = None
+    area: object = None
 
     @property
     def blur_resources(self):
@@ -67,6 +70,8 @@ class LensSample:
             bind_resource(shader, name, resource)
         if shader.declares("blur_tx"):
             shader.uniform_sampler("blur_tx", self.blur())
+        if shader.declares("area_tx"):
+            shader.uniform_sampler("area_tx", self.area())
         shader.uniform_int("lens_slot", self.slot)
 
 
@@ -169,20 +174,20 @@ def resources(moves, tables, size):
     return (("real_lens_buf", uniform_buffer(block)), ("moves_tx", texture))
 
 
-def blur_texture(blur):
-    """Upload what a lens adds to the signed radius of the circle of confusion.
+def field_texture(table):
+    """Upload a number for each field and vergence.
 
     Parameters
     ----------
-    blur : ndarray of float32, shape (rows, columns, 4)
-        At the nodes of the displacements, px: coefficients of the powers of the vergence over the
+    table : ndarray of float32, shape (rows, columns, 4)
+        At the nodes of the displacements: coefficients of the powers of the vergence over the
         largest.
 
     Returns
     -------
     GPUTexture
     """
-    texture = texture_2d(blur)
+    texture = texture_2d(table)
     texture.filter_mode(True)
     texture.extend_mode("EXTEND")
     return texture

@@ -2,7 +2,7 @@
 // Inputs: pos (corner, 0 or 1); sources_a_tx, sources_b_tx (see highlights_comp); tiles_tx (masks of
 // the sources, see visibility_lib); view_buf (of the frame), splat_buf. CHROMATIC: chromatic_buf,
 // field_tx (field table). REAL_LENS: real_lens_buf, moves_tx and lens_slot (tables of the lens' middle),
-// light_tx (light of the picture over that of an even one).
+// light_tx (light of the picture over that of an even one), area_tx (how much larger surfaces are seen).
 // Outputs: place on the opening in units of its radius before the anamorphic ratio (v_place), energy
 // density (v_density), blur of the disc in the same units (v_blur); see bokeh_look_lib for the rest; tile, number and region of the source.
 // Source: methods 1, 8, 13.
@@ -279,7 +279,8 @@ void main()
   }
 #ifdef REAL_LENS
   vec4 table = vec4(real_lens_buf.light.xy, 1.0, 0.0);
-  v_density *= light_at(light_tx, center / view_buf.film.xy, table).x;
+  v_density *= light_at(light_tx, center / view_buf.film.xy, table).x *
+               real_lens_area(area_tx, vec3(a.xy, -a.z), real_lens_buf);
 #endif
   if (v_tile.w == SOURCE_DROP) {
     // No disc: a triangle without area.
