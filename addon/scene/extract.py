@@ -161,12 +161,9 @@ class SceneExtractor:
         }
         needed = _needed_attributes(uids_of, slots_of, materials.materials, passes)
         readings = self._read_meshes(depsgraph, found, needed, for_motion)
-        order, counts = _sort_rows(found.looks, list(uids_of))
-        groups, first = [], 0
-        for (look, uids), count in zip(uids_of.items(), counts, strict=True):
-            mesh = readings[look.mesh].snapshot.uid
-            groups.append(InstanceGroup(mesh, uids, first, count, look.holdout))
-            first += count
+        seen = {look: uids for look, uids in uids_of.items() if look.camera}
+        order, groups = _rows_and_groups(found.looks, seen, readings)
+        meshes = _meshes_of(groups, readings)
         if for_motion:
             self._sources = RowSources(
                 places=[found.places[i] for i in order],
@@ -177,11 +174,12 @@ class SceneExtractor:
         notes = [note for reading in readings.values() for note in reading.notes]
         world, world_notes = read_world(_world_of(depsgraph), materials.image_reader)
         return SceneContent(
-            meshes={reading.snapshot.uid: reading.snapshot for reading in readings.values()},
+            meshes=meshes,
             images=materials.images,
             materials=materials.materials,
             instances=self._instance_table(found, order, passes),
-            groups=tuple(groups),
+            groups=groups,
+            unseen=self._unseen(found, uids_of, readings, passes),
             lights=tuple(found.lights),
             world=world,
             report=tuple(
@@ -195,6 +193,22 @@ class SceneExtractor:
                     ]
                 )
             ),
+        )
+
+    def _unseen(self, found, uids_of, readings, passes):
+        """Return the content that only hides light, or None."""
+        uids_of = {look: uids for look, uids in uids_of.items() if not look.camera}
+        if not uids_of:
+            return None
+        order, groups = _rows_and_groups(found.looks, uids_of, readings)
+        used = {uid for group in groups for uid in group.materials}
+        materials = {u: m for u, m in self._materials.materials.items() if u in used}
+        return SceneContent(
+            meshes=_meshes_of(groups, readings),
+            images=self._materials.images,
+            materials=materials,
+            instances=self._instance_table(found, order, passes),
+            groups=groups,
         )
 
     def _instance_table(self, found, order, passes):
@@ -249,6 +263,23 @@ def _needed_attributes(uids_of, slots_of, materials, passes):
             for slot in slots_of[look.mesh]:
                 needed[look.mesh] |= attributes_read(materials[uids[slot]].graph)
     return {key: frozenset(keys) for key, keys in needed.items()}
+
+
+def _rows_and_groups(row_looks, uids_of, readings):
+    """Return the rows with one of the looks in the order of groups, and the groups."""
+    order, counts = _sort_rows(row_looks, list(uids_of))
+    groups, first = [], 0
+    for (look, uids), count in zip(uids_of.items(), counts, strict=True):
+        mesh = readings[look.mesh].snapshot.uid
+        groups.append(InstanceGroup(mesh, uids, first, count, look.holdout, look.shadow))
+        first += count
+    return order, tuple(groups)
+
+
+def _meshes_of(groups, readings):
+    used = {group.mesh for group in groups}
+    found = (reading.snapshot for reading in readings.values())
+    return {mesh.uid: mesh for mesh in found if mesh.uid in used}
 
 
 def _sort_rows(row_looks, looks):

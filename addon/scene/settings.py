@@ -9,6 +9,7 @@ from ..errors import InputError
 from ..settings.scene_settings import (
     ADVANCED,
     LEVELS,
+    LIGHT,
     MEASURING,
     PASSES,
     PREVIEW,
@@ -101,7 +102,7 @@ def read_preview_sampling(scene):
 def _read_sampling(settings, numbers, prefix):
     wanted = getattr(settings, f"{prefix}_error") if settings.use_target_error else None
     return Sampling(
-        **fields_of(settings, SAMPLING, numbers, ADVANCED, LEVELS, MEASURING),
+        **fields_of(settings, SAMPLING, numbers, ADVANCED, LEVELS, LIGHT, MEASURING),
         target_error=wanted,
         time_limit=getattr(settings, f"{prefix}_time_limit") or None,
         reuse_grid=settings.sharing_cells if settings.use_sharing else 0,

@@ -124,6 +124,12 @@ LEVELS = Section("Level of detail", "Render Properties > Level of Detail", (
             told="least_triangles"),
 ))
 
+LIGHT = Section("Light", "Render Properties > Light", (
+    Setting("use_shadows", True, "Shadows", "Objects shadow one another. Each lens sample sees the"
+            " scene from one place on one light, too, so that shadows become as soft as the lights"
+            " are large while the blur becomes smooth", field="shadows", told="shadows"),
+))
+
 PERFORMANCE = Section("Performance", "Render Properties > Performance", (
     Setting("chunk_milliseconds", 50, "Chunk", "How long a final render may draw before it lets"
             " the window answer, in milliseconds. Longer renders a little faster; shorter keeps"
@@ -157,5 +163,5 @@ PASSES = Section("Passes", "View Layer Properties > Passes > Data", (
 ))
 # fmt: on
 
-SCENE = (SAMPLING, RENDER, PREVIEW, ADVANCED, LEVELS, PERFORMANCE, MEASURING)
+SCENE = (SAMPLING, RENDER, PREVIEW, ADVANCED, LEVELS, LIGHT, PERFORMANCE, MEASURING)
 VIEW_LAYER = (PASSES,)

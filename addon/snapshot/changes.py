@@ -64,7 +64,9 @@ def compare_content(old, new):
     ):
         if getattr(old, name) != getattr(new, name):
             change |= flag
-    return change
+    if (old.unseen is None) != (new.unseen is None):
+        return change | Change.GROUPS
+    return change if old.unseen is None else change | compare_content(old.unseen, new.unseen)
 
 
 def compare(old, new):

@@ -190,6 +190,8 @@ class InstanceGroup:
         Rows of the instance table.
     holdout : bool
         A holdout: transparent in the picture, and hides what is behind it.
+    shadow : bool
+        It hides light.
     """
 
     mesh: int
@@ -197,11 +199,12 @@ class InstanceGroup:
     first: int
     count: int
     holdout: bool = False
+    shadow: bool = True
 
 
 @dataclass(frozen=True)
 class Light:
-    """A light without shadows.
+    """A light.
 
     Parameters
     ----------
@@ -228,6 +231,8 @@ class Light:
         Of an area light's rectangle, in m.
     highlights : bool
         False: what surfaces reflect of it is never splatted, however bright it is.
+    shadow : bool
+        What lies in its way hides it.
     """
 
     kind: str
@@ -242,6 +247,7 @@ class Light:
     axes: tuple[tuple[float, float, float], ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
     half_size: tuple[float, float] = (0.0, 0.0)
     highlights: bool = True
+    shadow: bool = True
 
 
 @dataclass(frozen=True)
@@ -292,6 +298,8 @@ class SceneContent:
     world : World
     report : tuple of str
         Warnings: what cannot be drawn and what is drawn instead, one line each.
+    unseen : SceneContent or None
+        Meshes that the camera does not see, but that hide light.
     """
 
     meshes: dict[int, MeshSnapshot]
@@ -302,3 +310,4 @@ class SceneContent:
     lights: tuple[Light, ...] = ()
     world: World = field(default_factory=World)
     report: tuple[str, ...] = ()
+    unseen: "SceneContent | None" = None

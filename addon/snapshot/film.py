@@ -70,6 +70,8 @@ class Sampling:
         The layers' colours depend on the place on the lens that they are seen from.
     cones : bool
         Its rays are as thick as their distance from one another asks for.
+    shadows : bool
+        Objects shadow one another from the lights.
     """
 
     method: str = "REFERENCE"
@@ -90,3 +92,4 @@ class Sampling:
     layer_source: str = "SLICES"
     layers_from_eyes: bool = False
     cones: bool = True
+    shadows: bool = True

@@ -16,7 +16,7 @@ STATED = {
     "OutputWorld": (EXACT, "Surface; no Volume"),
     "OutputLight": (APPROXIMATE, "one Emission of constant inputs"),
     "BsdfTransparent": (APPROXIMATE, "light that passes keeps its colour, dimmed by the mean"),
-    "BsdfDiffuse": (APPROXIMATE, "no shadows, no light from other surfaces"),
+    "BsdfDiffuse": (APPROXIMATE, "no light from other surfaces"),
     "BsdfAnisotropic": (APPROXIMATE, "mirrors lights and the world; no anisotropy"),
     "BsdfPrincipled": (
         APPROXIMATE,
@@ -26,7 +26,7 @@ STATED = {
     "BsdfMetallic": (APPROXIMATE, "edges of conductors by Schlick; no anisotropy, no thin film"),
     "BsdfGlass": (APPROXIMATE, "what is behind is seen straight through, not blurred"),
     "BsdfRefraction": (APPROXIMATE, "what is behind is seen straight through, not blurred"),
-    "BsdfTranslucent": (APPROXIMATE, "of lights and the world, no shadows"),
+    "BsdfTranslucent": (APPROXIMATE, "of lights and the world"),
     "SubsurfaceScattering": (APPROXIMATE, "light leaves where it enters: a diffuse surface"),
     "BsdfSheen": (APPROXIMATE, "fibres scatter the light of lamps as a diffuse surface does"),
     "BsdfToon": (APPROXIMATE, "the world as a diffuse surface reflects it"),

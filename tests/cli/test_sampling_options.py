@@ -41,6 +41,10 @@ def test_a_number_of_samples_takes_the_place_of_the_threshold():
     assert not settings.use_sharing
 
 
+def test_without_shadows():
+    assert not in_force("--no-shadows").use_shadows
+
+
 def test_without_options_all_is_as_in_the_file():
     assert vars(in_force()) == {
         "method": "ADAPTIVE",

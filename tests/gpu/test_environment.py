@@ -55,4 +55,3 @@ def test_levels_are_made_once_an_image_and_not_for_colour_rotation_or_lights():
     buffers.update(content_in(World((2.0, 1.0, 1.0), image.uid, turned), images))
     assert dict(buffers.lighting)["environment_levels_tx"] is first
     assert buffers.uploads["environments"] == 1
-    assert buffers.uploads["light_tables"] == 1

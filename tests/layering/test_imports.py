@@ -20,6 +20,7 @@ ROOMS = {
     "optics": (),
     "optics.rays": ("optics",),
     "sampling": (),
+    "sampling.lights": (),
     "lens_bokeh": (),
     # Settings, each declared once: name, type, bounds, default; and the presets.
     "settings": ("sampling",),
@@ -79,7 +80,7 @@ ROOMS = {
         *("snapshot", "levels"),
     ),
     "engine.drawing": (
-        *("device", "sampling", "passes", "passes.surface", "passes.visibility"),
+        *("device", "sampling", "sampling.lights", "passes", "passes.surface", "passes.visibility"),
         *("levels", "levels.making"),
     ),
     # The scene through depth layers, in place of a drawing for each lens sample.

@@ -19,7 +19,7 @@ from ...scene.camera.lenses import read_real_lens
 from ...scene.settings import read_passes, read_sampling
 from ...settings.bokeh_settings import BOKEH
 from ...settings.scene_part_settings import ABERRATIONS
-from ...settings.scene_settings import ADVANCED, LEVELS, RENDER, SAMPLING
+from ...settings.scene_settings import ADVANCED, LEVELS, LIGHT, RENDER, SAMPLING
 from ...settings.setting import settings_of, told, told_by
 
 
@@ -111,7 +111,7 @@ def _sampling(scene):
     """Return how a frame is sampled; null is what the method does not use."""
     sampling = read_sampling(scene)
     automatic = sampling.method == "ADAPTIVE" and sampling.target_error is not None
-    numbers = told_by(sampling, SAMPLING, RENDER, ADVANCED, LEVELS) | {
+    numbers = told_by(sampling, SAMPLING, RENDER, ADVANCED, LEVELS, LIGHT) | {
         "target_error": sampling.target_error,
         "time_limit_s": sampling.time_limit,
         "share_drawings": sampling.reuse_grid,

@@ -97,6 +97,7 @@ class HighlightSearch:
         ----------
         fullscreen : GPUBatch
         """
+        self._lights = self._drawing.lights.steady()
         for search in self._searches():
             tiles = tiles_of(search.part, search.subpixels)
             if not tiles or not (search.world or search.surfaces):
@@ -241,8 +242,9 @@ class HighlightSearch:
             return
         others, shining, *_ = draws
         peel.draw_opaque(others, params, buffers.instances, lens)
+        instances, lights = buffers.instances, self._lights
         peel.list_highlights(
-            shining, params, buffers.instances, lens, lists, self._split, counts, counting
+            shining, params, instances, lens, lists, self._split, counts, counting, lights
         )
         for draw in (*others, *shining):
             self._drawing.counts.draw_calls += 1
@@ -276,7 +278,8 @@ class HighlightSearch:
         with framebuffer.bind(), state.scissored(0, 0, *size):
             peel.hide_highlights(hiders, params, self._buffers.instances, lens, lists)
             if veils:
-                peel.list_veils(veils, params, self._buffers.instances, lens, lists, self._split)
+                instances = self._buffers.instances
+                peel.list_veils(veils, params, instances, lens, lists, self._split, self._lights)
         for draw in (*hiders, *veils):
             self._drawing.counts.draw_calls += 1
             self._drawing.counts.triangles += draw.triangles * draw.count

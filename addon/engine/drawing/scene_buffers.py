@@ -13,9 +13,12 @@ from ...device.geometry import MeshBuffers
 from ...device.textures import TextureCache, image_texture, texture_2d
 from ...device.uniforms import uniform_buffer
 from ...levels.making.graded_levels import MergeTree
-from ...passes.surface import environment, environment_bake, light_table
+from ...passes.surface import environment, environment_bake
+from ...sampling.lights.sky_samples import Sky
 from .occluders import ShapeCache
 
+# Columns of a world's image from which directions of its light are chosen.
+_SKY_TEXELS, _LEAST_SKY_TEXELS = 256, 64
 # Must agree with lib/surface/instance_lib.glsl.
 INSTANCES_PER_ROW = 256
 INSTANCE_TEXELS = 6
@@ -47,14 +50,18 @@ class SceneBuffers:
     instances : GPUTexture
         The instance table.
     lighting : tuple of (str, GPUUniformBuf or GPUTexture)
-        Resources of lit surfaces: lights and world.
+        Resources of lit surfaces: the world.
+    unseen : SceneBuffers or None
+        Of what only hides light.
+    sky : sampling.lights.sky_samples.Sky
+        The world that lights the scene.
     environment_buffer, environment_image : GPUUniformBuf, GPUTexture or None
         The world for the background; no image where it is one colour.
     captured : engine.layered.stack_layers.StackLayers or None
         A captured picture, where one takes the place of the content.
     uploads : dict of str to int
-        Numbers of meshes, images, materials, instance tables and light tables that were uploaded,
-        and of environments that were prefiltered so far.
+        Numbers of meshes, images, materials and instance tables that were uploaded, and of
+        environments that were prefiltered so far.
     """
 
     def __init__(self, look_textures=None):
@@ -68,14 +75,14 @@ class SceneBuffers:
         self.captured = None
         self.instances = None
         self.lighting = ()
+        self.unseen = self.sky = None
         self._shown = _Environment()
         self._lit_by = _Environment()
         self.uploads = dict.fromkeys(
-            ("meshes", "images", "materials", "instance_tables", "light_tables", "environments"), 0
+            ("meshes", "images", "materials", "instance_tables", "environments"), 0
         )
         self._level_meshes = {}
         self._merge_trees = {}
-        self._lights = None
         self._fixed = None
         self._materials = {}
         self._instance_table = None
@@ -116,16 +123,16 @@ class SceneBuffers:
             self._instance_table = content.instances
             self.uploads["instance_tables"] += 1
         yield from self._update_lighting(content)
+        if content.unseen is None:
+            self.unseen = None
+        else:
+            self.unseen = self.unseen or SceneBuffers(self.look_textures)
+            yield from self.unseen.update_steps(content.unseen)
         self._content = content
 
     def _update_lighting(self, content):
         if self._fixed is None:
             self._fixed = (environment.ggx_texture(), environment.single_texel())
-        table = dict(self.lighting).get("lights_tx")
-        if table is None or self._lights != content.lights:
-            table = light_table.light_texture(content.lights)
-            self._lights = content.lights
-            self.uploads["light_tables"] += 1
         shown = content.world
         # One that lights the scene, too, is prefiltered; another is made for that alone.
         lit_by = self._shown if shown.lighting is None else self._lit_by
@@ -133,10 +140,10 @@ class SceneBuffers:
             if found.update(world, content.images, self.images, found is lit_by):
                 self.uploads["environments"] += 1
                 yield
+        self.sky = lit_by.sky[1]
         table_of_ggx, empty = self._fixed
         self.lighting = (
             ("environment_buf", lit_by.buffer),
-            ("lights_tx", table),
             ("environment_tx", lit_by.image or empty),
             ("environment_levels_tx", lit_by.levels or empty),
             ("ggx_tx", table_of_ggx),
@@ -231,10 +238,11 @@ class SceneBuffers:
 
 
 class _Environment:
-    """A world on the device: its block, its image, and its levels for lighting."""
+    """A world on the device: its block, its image, and its levels for lighting; and its `Sky`."""
 
     def __init__(self):
         self.buffer = self.image = self.levels = None
+        self.sky = self._small = None
         self._world = None
 
     def update(self, world, images, textures, lights):
@@ -243,12 +251,16 @@ class _Environment:
         same_image = known == (world.image, world.amplification, world.graph)
         computes = bool(world.image) and (not same_image or (lights and self.levels is None))
         if not same_image:
-            self.image = self.levels = None
+            self.image = self.levels = self._small = None
         if computes:
             self._compute(world, images, textures, lights)
         if self._world != world:
             self.buffer = environment.environment_buffer(world)
             self._world = world
+        if lights and (computes or self.sky is None or self.sky[0] != world):
+            small = np.ones((32, 64, 3)) if self._small is None else self._small
+            lit = small * np.array(world.color)
+            self.sky = (world, Sky(lit, np.array(world.rotation, np.float64)))
         return computes
 
     def _compute(self, world, images, textures, lights):
@@ -260,6 +272,8 @@ class _Environment:
         pixels = environment.world_pixels(pixels, world)
         if lights:
             self.levels = environment.prefilter(pixels)
+            small = environment.shrink(pixels, _SKY_TEXELS)
+            self._small = environment.squared(small, _LEAST_SKY_TEXELS).astype(np.float64)
         changed = world.graph is not None or world.amplification
         if image.srgb or image.pixels.dtype == np.uint8 or changed:
             opaque = np.ones((*pixels.shape[:2], 1), np.float32)

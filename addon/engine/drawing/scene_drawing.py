@@ -5,7 +5,7 @@ that share a drawing of it.
 """
 
 from contextlib import nullcontext
-from dataclasses import astuple, dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,31 +23,11 @@ from ...levels.choosing import (
 from ...passes.surface import surface
 from . import culling
 from .divided_drawings import DividedDrawings
+from .drawing_counts import DrawingCounts
 from .graded_drawings import GradedDrawings
+from .light_maps import LightMaps
 from .scene_buffers import instance_texels
 from .shared_drawings import SharedDrawings
-
-
-@dataclass
-class DrawingCounts:
-    """Work done so far.
-
-    Attributes
-    ----------
-    draw_calls, triangles, sprites_drawn, sprites_copied : int
-    triangles_full_detail : int
-        Triangles of every instance at full detail, for every sample.
-    """
-
-    draw_calls: int = 0
-    triangles: int = 0
-    triangles_full_detail: int = 0
-    sprites_drawn: int = 0
-    sprites_copied: int = 0
-
-    def __add__(self, other):
-        """Return the sum of two counts."""
-        return DrawingCounts(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
 
 
 class SceneDrawing:
@@ -73,6 +53,8 @@ class SceneDrawing:
         Level of detail of each instance in this frame.
     full_detail : int
         Triangles of all instances at full detail.
+    lights : LightMaps
+        Of the frame.
     """
 
     def __init__(self, content, buffers, target, graded):
@@ -106,6 +88,7 @@ class SceneDrawing:
         self._shared = SharedDrawings("MATTES" in target.defines)
         self._graded = GradedDrawings(content, buffers, graded)
         self._divided = DividedDrawings(content)
+        self.lights = LightMaps(content, buffers, self._spheres, self._corners)
 
     def aim(self, plan, optics=None, highlights=None, part=None):
         """Prepare a frame or a round of it: levels, shared drawings, order of the instances.
@@ -134,6 +117,7 @@ class SceneDrawing:
         self.nearest = float(seen.nearest[self._seen].min(initial=np.inf))
         self.farthest = float(seen.farthest[self._seen].max(initial=0.0))
         self.levels = self._choose_levels(seen)
+        self.lights.aim(plan, self._seen, seen)
         whole = np.flatnonzero(self._visible & (self.levels < 1.0))
         self._divided.find(whole, self._group_of, seen.nearest, plan)
         self._find_graded()
@@ -154,6 +138,13 @@ class SceneDrawing:
 
     def _triangles_of(self, row):
         return self._graded.triangles(row, self._triangles[self._group_of[row]])
+
+    def _slack(self, row):
+        """Return how far a graded mesh may be from the true surface, in its units."""
+        mesh = self._content.meshes[self._content.groups[self._group_of[row]].mesh]
+        count = max(self._triangles_of(row)[0], 1)
+        # Its coarsest parts are larger than the mean.
+        return 2.0 * float(np.sqrt(mesh.triangle_area * len(mesh.triangles) / count))
 
     def _find_graded(self):
         plan = self._plan
@@ -251,8 +242,9 @@ class SceneDrawing:
         if graded is None:
             return [replace(draw, first=place, count=1) for draw in found]
         own = [(draw, *graded.batches[draw.slot]) for draw in found if draw.slot in graded.batches]
+        slack = self._slack(row) if graded is not self._divided.mesh(row) else 0.0
         return [
-            replace(draw, batch=batch, triangles=triangles, first=place, count=1)
+            replace(draw, batch=batch, triangles=triangles, first=place, count=1, slack=slack)
             for draw, batch, triangles in own
         ]
 
@@ -266,11 +258,11 @@ class SceneDrawing:
                 listed += self._of_row(draws, row, level, index)
         return listed
 
-    def _draw(self, listed, view, lens_sample, index, optics):
+    def _draw(self, listed, view, lens_sample, index, optics, lights):
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         state.opaque()
-        resources = {"highlights": self._highlights, "optics": optics}
+        resources = {"highlights": self._highlights, "optics": optics, "lights": lights}
         surface.draw_sample(listed, view, self._table, lens_sample, index, **resources)
 
     def confine(self, part):
@@ -297,18 +289,23 @@ class SceneDrawing:
         """
         plan, shared = self._plan, self._shared
         listed = self._list(self._draws, index) + self._of_single(self._by_level, index)
+        # Before anything is bound: light maps have a frame buffer of their own.
+        lights = self.lights.of_samples(index, (index,))
         with framebuffer.bind(), self.confined():
             optics = self._optics(index)
-            self._draw(listed, view, plan.lens_sample(index), index, optics)
+            self._draw(listed, view, plan.lens_sample(index), index, optics, lights)
 
-        def draw_parent(sprite):
+        def draw_parent(sprite, lights):
             drawn = self._of_row(self._by_level, sprite.row, sprite.level, index)
             parent = sprite.parent
             optics = self._optics(parent)
-            self._draw(drawn, view, plan.lens_sample(parent), parent, optics)
+            self._draw(drawn, view, plan.lens_sample(parent), parent, optics, lights)
+
+        def light_parent(sprite):
+            return self.lights.of_samples(index, sprite.members)
 
         before = shared.drawn + shared.copied
-        shared.copy(index, framebuffer, targets, draw_parent)
+        shared.copy(index, framebuffer, targets, draw_parent, light_parent)
         self.counts.draw_calls += shared.drawn + shared.copied - before
         self.counts.sprites_drawn = shared.drawn
         self.counts.sprites_copied = shared.copied
@@ -318,9 +315,11 @@ class SceneDrawing:
         listed = self._list(self._glows, index) + self._of_single(self._glows_by_level, index)
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
+        lights = listed and self.lights.of_samples(index, (index,))
         with framebuffer.bind(), self.confined():
             lens_sample = self._plan.lens_sample(index)
             resources = {"highlights": self._highlights, "optics": self._optics(index)}
+            resources["lights"] = lights
             surface.draw_glows(listed, view, self._table, lens_sample, **resources)
 
     @property
@@ -387,7 +386,11 @@ class SceneDrawing:
 
     def texture_bytes(self):
         """Return how many bytes shared drawings take on the device."""
-        return self._shared.bytes()
+        return self._shared.bytes() + self.lights.bytes
+
+    def release(self):
+        """Give light maps back to the device."""
+        self.lights.release()
 
 
 def _by_level(draws):

@@ -119,7 +119,7 @@ class SharedDrawings:
         names += [("scratch_mattes", "RGBA32F")] * self._mattes
         return tuple(TargetSpec(name, kind) for name, kind in names)
 
-    def copy(self, sample, framebuffer, targets, draw_parent):
+    def copy(self, sample, framebuffer, targets, draw_parent, light_parent):
         """Copy the sprites of a lens sample into its frame buffer, drawing those that are new.
 
         Parameters
@@ -128,12 +128,16 @@ class SharedDrawings:
         framebuffer : GPUFrameBuffer
         targets : Targets
         draw_parent : callable
-            Draws a `Sprite` for its parent into the bound frame buffer.
+            Draws a `Sprite` for its parent, lit by what follows, into the bound frame buffer.
+        light_parent : callable
+            Returns what a `Sprite` is lit by; called before anything is bound.
         """
         for found in self._members.get(sample, {}).values():
             kept = self._kept.get(id(found))
             if kept is None:
-                kept = self._kept[id(found)] = self._make(found, targets, draw_parent)
+                kept = self._kept[id(found)] = self._make(
+                    found, targets, draw_parent, light_parent(found)
+                )
             x, y, width, height = found.rectangle
             across, up = found.members[sample]
             with framebuffer.bind(), state.confined(x + across, y + up, width, height):
@@ -148,7 +152,7 @@ class SharedDrawings:
             if sample == max(found.members):
                 self._pool.setdefault((width, height), []).append(self._kept.pop(id(found)))
 
-    def _make(self, found, targets, draw_parent):
+    def _make(self, found, targets, draw_parent, lights):
         x, y, width, height = found.rectangle
         names = ("scratch", "scratch_mattes") if self._mattes else ("scratch",)
         framebuffer = targets.framebuffer(*names, depth="scratch_depth")
@@ -156,7 +160,7 @@ class SharedDrawings:
             framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
             if self._mattes:
                 targets.clear("scratch_mattes", (0.0, 0.0, 0.0, 0.0))
-            draw_parent(found)
+            draw_parent(found, lights)
         spare = self._pool.get((width, height))
         kept = spare.pop() if spare else Targets(width, height, _kept_specs(self._mattes))
         kept.forget_framebuffers()

@@ -91,6 +91,8 @@ class FrameRenderer(ReadableFrame):
         levels = self._buffers.levels_version
         if (snapshot.content, target, levels) != (self._content, self._target, self._levels):
             self._content, self._target, self._levels = snapshot.content, target, levels
+            if self._drawing:
+                self._drawing.release()
             self._drawing = SceneDrawing(snapshot.content, self._buffers, target, self._graded)
             self._occluders = SceneOccluders(snapshot.content, self._buffers)
         world = snapshot.content.world
@@ -385,10 +387,8 @@ class FrameRenderer(ReadableFrame):
         """Release the renderer's resources on the device; it cannot be used afterwards."""
         self._bokeh.release()
         self._release_targets()
-        if self._layers:
-            self._layers.release()
-        if self._plain:
-            self._plain.release()
+        for part in filter(None, (self._layers, self._plain, self._drawing)):
+            part.release()
         self._plain = self._buffers = self._drawing = self._blur = self._graded = None
         self._tiles = None
         self._occluders = self._pictures = None

@@ -82,6 +82,7 @@ class LayeredDrawing:
         else:
             optics = self._optics(None)
             resources = {"highlights": self._highlights, "optics": optics.wavelength}
+            resources["lights"] = self._drawing.lights.shared()
             # Layers are seen from the middle of the lens: rays bend, the surfaces stay.
             bends = optics.lens is not None and "LENS_BLUR" in self._target.defines
             blur = optics.lens.blur_resources if bends else ()
@@ -201,6 +202,7 @@ class LayeredDrawing:
         """Draw surfaces with stochastic transparency over what the sample sees."""
         if not self._by_chance:
             return
+        lights = self._drawing.lights.of_samples(index, (index,))
         with framebuffer.bind(), self._drawing.confined():
             state.opaque()
             surface.draw_sample(
@@ -211,6 +213,7 @@ class LayeredDrawing:
                 index,
                 highlights=self._highlights,
                 optics=self._optics(index),
+                lights=lights,
             )
         counts = self._drawing.counts
         counts.draw_calls += len(self._by_chance)

@@ -44,7 +44,7 @@ def draw_scene_layers(plan, drawing, draws, shapes, instances, mattes, resources
     mattes : bool
         The draws have a second target, of mattes.
     resources : dict
-        ``highlights`` and ``optics`` of `passes.surface.surface.draw_sample`.
+        ``highlights``, ``optics`` and ``lights`` of `passes.surface.surface.draw_sample`.
     blur : tuple of (str, GPUUniformBuf or GPUTexture)
         `passes.surface.real_lens.LensSample.blur_resources`, with a real lens and mattes.
 

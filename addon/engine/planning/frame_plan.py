@@ -107,6 +107,8 @@ class FramePlan:
         How samples are rays through depth layers; None: each is a drawing of the scene.
     real_lens : RealLensPlan or None
         The lens that the samples see through; None: the thin lens.
+    shadows : bool
+        Objects shadow one another from the lights.
     report : tuple of str
         Warnings about settings of the camera that cannot be met, one sentence each.
     """
@@ -147,6 +149,7 @@ class FramePlan:
     time_limit: float | None = None
     layered: LayeredPlan | None = None
     real_lens: RealLensPlan | None = None
+    shadows: bool = False
     report: tuple[str, ...] = ()
 
     @property

@@ -263,6 +263,7 @@ def _plan(snapshot, sampling, automatic=None):
         source=source,
         automatic=automatic,
         time_limit=sampling.time_limit,
+        shadows=sampling.shadows,
         layered=plan_layered(sampling, source, snapshot.stack, projection),
     )
 

@@ -94,7 +94,7 @@ def draw_opaque(draws, view_buffer, instances, lens):
     surface.draw_sample(draws, view_buffer, instances, (*lens, 0.0, 0.0), 0)
 
 
-def list_highlights(draws, view_buffer, instances, lens, lists, split, counts, counting):
+def list_highlights(draws, view_buffer, instances, lens, lists, split, counts, counting, lights):
     """Append fragments above the highlight threshold to lists, and draw the depth of opaque ones.
 
     Parameters
@@ -110,14 +110,15 @@ def list_highlights(draws, view_buffer, instances, lens, lists, split, counts, c
     counts : highlights.TexelCounts
     counting : bool
         The texels that are drawn are added to `counts`.
+    lights : passes.surface.light_map.Lighting
     """
     state.opaque()
     sample = (*lens, 0.0, 0.0)
     bindings = (*lists.bindings(), *counts.bindings(counting))
-    surface.draw_sample(draws, view_buffer, instances, sample, 0, bindings, split)
+    surface.draw_sample(draws, view_buffer, instances, sample, 0, bindings, split, lights=lights)
 
 
-def list_veils(draws, view_buffer, instances, lens, lists, split):
+def list_veils(draws, view_buffer, instances, lens, lists, split, lights):
     """Append see-through fragments without light above the threshold to lists that have any.
 
     Parameters
@@ -130,10 +131,12 @@ def list_veils(draws, view_buffer, instances, lens, lists, split):
         With highlights; read since they were listed, so that the device has finished them.
     split : GPUUniformBuf
         `HighlightParams`.
+    lights : passes.surface.light_map.Lighting
     """
     state.opaque()
     sample = (*lens, 0.0, 0.0)
-    surface.draw_sample(draws, view_buffer, instances, sample, 0, lists.bindings(), split)
+    bindings = lists.bindings()
+    surface.draw_sample(draws, view_buffer, instances, sample, 0, bindings, split, lights=lights)
 
 
 def hide_highlights(draws, view_buffer, instances, lens, lists):

@@ -1,8 +1,12 @@
-"""The lights of a scene as a texture, one row a light (`lib/surface/light_lib.glsl`)."""
+"""The lights of a scene and the light samples of a frame as a texture.
+
+The first row says how many lights there are (x), in which row the light samples begin (y), and in
+which the tables of the sky (z). Then a row a light (``lib/surface/light_lib.glsl``), a row a light
+sample (``lib/surface/light_map_lib.glsl``), and for the two sequences of light samples what
+`Sky.corrections` gives.
+"""
 
 import numpy as np
-
-from ...device.textures import texture_2d
 
 KINDS = {"SUN": 1, "POINT": 2, "SPOT": 3, "AREA": 4}
 _TEXELS = 7
@@ -18,9 +22,9 @@ def light_texels(lights):
     Returns
     -------
     ndarray of shape (rows, 7, 4)
-        float32; one unlit row where there are no lights.
+        float32.
     """
-    texels = np.zeros((max(1, len(lights)), _TEXELS, 4), np.float32)
+    texels = np.zeros((len(lights), _TEXELS, 4), np.float32)
     for row, light in zip(texels, lights, strict=False):
         row[0] = (*light.position, KINDS[light.kind])
         row[1] = (*light.radiance, light.radius)
@@ -32,11 +36,30 @@ def light_texels(lights):
     return texels
 
 
-def light_texture(lights):
-    """Upload lights.
+def table_texels(lights, samples, skies=()):
+    """Lay out lights and light samples.
+
+    Parameters
+    ----------
+    lights : sequence of Light
+    samples : ndarray of shape (M, R, 4)
+        Rows of light samples.
+    skies : sequence of ndarray of shape (n, n)
+        Tables of the sky.
 
     Returns
     -------
-    GPUTexture
+    ndarray of shape (rows, columns, 4)
+        float32.
     """
-    return texture_2d(light_texels(lights))
+    rows = light_texels(lights)
+    tables = [np.asarray(sky, np.float32)[..., None] for sky in skies]
+    parts = [part for part in (rows, samples, *tables) if len(part)]
+    columns = max((part.shape[1] for part in parts), default=1)
+    table = np.zeros((1 + sum(map(len, parts)), columns, 4), np.float32)
+    table[0, 0, :3] = len(rows), 1 + len(rows), 1 + len(rows) + len(samples)
+    place = 1
+    for part in parts:
+        table[place : place + len(part), : part.shape[1], : part.shape[2]] = part
+        place += len(part)
+    return table

@@ -4,6 +4,7 @@ One shader a shape of node tree and set of mesh attributes; draws are sorted by 
 material, so that a frame changes state as rarely as it can.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 from ...device import shader_source, state
@@ -15,9 +16,23 @@ from ..nodes import surface_code
 from . import environment
 from .surface_target import COLOR, whole
 
-# Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and the
-# reflectance table of GGX lobes.
-LIGHTING_TEXTURES = ("lights_tx", "environment_tx", "environment_levels_tx", "ggx_tx")
+# Samplers of a lit surface: the light table and the light maps, the world's image and its
+# prefiltered levels, and the reflectance table of GGX lobes.
+LIGHTING_TEXTURES = (
+    "lights_tx",
+    "light_maps_tx",
+    "environment_tx",
+    "environment_levels_tx",
+    "ggx_tx",
+)
+# Which light samples a drawing is lit by, and how far a coarser level of detail may be from the
+# true surface, in the mesh's units.
+LIGHTING_CONSTANTS = (
+    ("IVEC4", "light_places"),
+    ("IVEC4", "more_light_places"),
+    ("IVEC2", "steady_places"),
+    ("FLOAT", "slack"),
+)
 
 VIEW_PARAMS = UniformStruct("shared/view_params.glsl", "ViewParams")
 HIGHLIGHT_PARAMS = UniformStruct("shared/highlight_params.glsl", "HighlightParams")
@@ -57,6 +72,8 @@ class Draw:
         Its level of detail.
     slot : int
         The material slot of its mesh.
+    slack : float
+        How far its triangles may be from the true surface, in the mesh's units.
     """
 
     shader: object
@@ -72,6 +89,7 @@ class Draw:
     group: int = 0
     level: int = 0
     slot: int = 0
+    slack: float = 0.0
 
 
 def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, glow=False):
@@ -124,6 +142,11 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
         forward.append("  v_object_position = pos;")
     vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
     vertex = shader_source.join((shader_source.Text(vertex), target.vertex))
+    if target.splits and target.shades and not holdout:
+        # Lighting asks whether light may be splatted.
+        libraries_of_split = ("lib/lens_lib.glsl", "lib/bokeh/highlight_lib.glsl")
+    else:
+        libraries_of_split = ()
     structs, uniforms = target.structs, [*target.uniforms]
     samplers = [("FLOAT_2D", "instances_tx"), *target.samplers]
     push_constants = [("INT", "instance_base"), *target.push_constants]
@@ -147,9 +170,10 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
         structs += environment.ENVIRONMENT_PARAMS.source
         uniforms.append(("EnvironmentParams", "environment_buf"))
         samplers += [("FLOAT_2D", name) for name in LIGHTING_TEXTURES]
+        push_constants += LIGHTING_CONSTANTS
     if target.names_material and not holdout:
         push_constants.append(("FLOAT", "material_id"))
-    libraries = (*_LIBRARIES, *(code.libraries if shades else ()))
+    libraries = (*libraries_of_split, *_LIBRARIES, *(code.libraries if shades else ()))
     fragment = shader_source.join((*libraries, shader_source.Text(generated), target.fragment))
     return ShaderInfo(
         name="aplanat_surface",
@@ -244,11 +268,19 @@ def _list_draws(content, buffers, target, glow, wanted=None):
                 group=number,
                 level=level,
                 slot=slot,
+                slack=_slack(content, buffers, mesh, level),
             )
             place = (order, materials[material.uid], meshes[group.mesh], slot, level)
             draws.append((place, draw))
     draws.sort(key=lambda item: item[0])
     return [draw for _, draw in draws]
+
+
+def _slack(content, buffers, mesh, level):
+    """Return how far a level of detail may be from the true surface: about an edge's length."""
+    if not level:
+        return 0.0
+    return math.sqrt(buffers.level_meshes(mesh)[level].triangle_area)
 
 
 def _code_and_shader(material, mesh, holdout, target, glow, split):
@@ -271,7 +303,9 @@ def _levels_of_groups(content, buffers):
             yield number, level, group, buffer
 
 
-def draw_glows(draws, view_buffer, instances, lens_sample, highlights=None, optics=None):
+def draw_glows(
+    draws, view_buffer, instances, lens_sample, highlights=None, optics=None, lights=None
+):
     """Add the light of glowing transparent surfaces to what the frame buffer shows behind them.
 
     Opacity is decided by a random number per sample; this light is added wherever no surface of
@@ -281,12 +315,12 @@ def draw_glows(draws, view_buffer, instances, lens_sample, highlights=None, opti
     ----------
     draws : list of Draw
         Of `build_glow_draws`; the same depth buffer as `draw_sample`'s must be bound.
-    view_buffer, instances, lens_sample, highlights, optics
+    view_buffer, instances, lens_sample, highlights, optics, lights
         As for `draw_sample`.
     """
     if draws:
         state.glow()
-        resources = {"highlights": highlights, "optics": optics}
+        resources = {"highlights": highlights, "optics": optics, "lights": lights}
         draw_sample(draws, view_buffer, instances, lens_sample, 0, **resources)
 
 
@@ -299,6 +333,7 @@ def draw_sample(
     bindings=(),
     highlights=None,
     optics=None,
+    lights=None,
 ):
     """Draw one lens sample into the bound frame buffer.
 
@@ -318,6 +353,8 @@ def draw_sample(
         `HighlightParams`, for a target that splits light.
     optics : chromatic.ChromaticSample, real_lens.LensSample or real_lens.SampleOptics, optional
         Of a target `in_wavelengths`, `through_lens`, or both.
+    lights : light_map.Lighting or None
+        For a target that shades.
     """
     current = None
     for draw in draws:
@@ -335,11 +372,15 @@ def draw_sample(
                 shader.uniform_block("highlight_buf", highlights)
             if optics is not None:
                 optics.bind(shader)
+            if shader.declares("light_maps_tx"):
+                lights.bind(shader)
         if draw.material_id is not None:
             shader.uniform_float("material_id", draw.material_id)
         if draw.constants is not None:
             shader.uniform_block("material_buf", draw.constants)
         for name, texture in draw.textures:
             shader.uniform_sampler(name, texture)
+        if shader.declares("slack"):
+            shader.uniform_float("slack", draw.slack)
         shader.uniform_int("instance_base", draw.first)
         shader.draw_instanced(draw.batch, draw.count)

@@ -66,7 +66,7 @@ class MeshSource:
 
 @dataclass(frozen=True)
 class Look:
-    """Key of instances that can be drawn together: mesh, materials, holdout.
+    """Key of instances that can be drawn together: mesh, materials, visibility.
 
     Parameters
     ----------
@@ -75,11 +75,15 @@ class Look:
     slots : int
         Which of `InstanceList.slots`.
     holdout : bool
+    camera, shadow : bool
+        The camera sees it; it hides the light of lamps and the sky.
     """
 
     mesh: object
     slots: int
     holdout: bool
+    camera: bool = True
+    shadow: bool = True
 
 
 @dataclass(eq=False)
@@ -257,8 +261,9 @@ class _Reader:
     def _read_kind(self, obj, parent, number, show_self, show_particles):
         """Return what `read` does, and the warnings of an instance."""
         holdout, indirect_only, parent_visible = self._flags_of_place(parent)
-        visible = obj.visible_camera and parent_visible
-        if not visible or (indirect_only and not holdout) or not self._is_in_view(obj):
+        camera = obj.visible_camera and parent_visible and (holdout or not indirect_only)
+        shadow = obj.visible_shadow and parent.visible_shadow
+        if not (camera or shadow) or not self._is_in_view(obj):
             return None, ()
         name = obj.name
         switches = self._view_layer
@@ -267,7 +272,7 @@ class _Reader:
         if show_self and obj.type == "MESH" and switches.use_solid:
             self._add_source(obj, parent, number)
             values = tuple(obj.color), object_number(name), obj.pass_index
-            drawn = Look(number, self._slots(obj), holdout), name, values
+            drawn = Look(number, self._slots(obj), holdout, camera, shadow), name, values
             if obj.is_shadow_catcher:
                 notes.append("a shadow catcher is drawn as any other surface")
             if _is_diced(obj):
@@ -283,7 +288,8 @@ class _Reader:
             what, switch, size = _UNDRAWN[obj.type]
             if getattr(switches, switch) and size(obj.data):
                 notes.append(f"{what} cannot be drawn; left out")
-        return drawn, tuple((name, note) for note in notes)
+        # What only throws shadows is not missed in the picture.
+        return drawn, tuple((name, note) for note in notes if camera)
 
     def _is_in_view(self, obj):
         return self._space is None or obj.visible_in_viewport_get(self._space)
@@ -371,6 +377,8 @@ def _light_object_notes(obj, parent):
         yield "is to be seen by the camera; what a lamp lights is drawn, the lamp itself is not"
     if obj.light_linking.receiver_collection is not None:
         yield "light linking is not done; everything is lit"
+    if obj.light_linking.blocker_collection is not None:
+        yield "shadow linking is not done; everything throws shadows"
 
 
 def _is_diced(obj):

@@ -20,8 +20,9 @@ from ...snapshot.surface_graph import (
 from ..images import color_spaces
 from .node_tree import source_of
 
-# Samplers beside the lights', the world's and the instance table's, of the 32 that a shader has.
-MAX_IMAGES = 24
+# Samplers beside the lights', their maps', the world's and the instance table's, of the 32 that a
+# shader has.
+MAX_IMAGES = 23
 # Rows of tables, of the 4096 that a uniform block holds at least: room is left for constants.
 MAX_TABLE_ROWS = 3584
 

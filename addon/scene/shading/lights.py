@@ -71,6 +71,7 @@ def read_light(light, matrix):
             diffuse_factor=light.diffuse_factor,
             specular_factor=light.specular_factor,
             highlights=light.aplanat.highlights != "NEVER",
+            shadow=light.use_shadow,
             **values,
         ),
         notes,

@@ -38,6 +38,18 @@ class APLANAT_RENDER_PT_level_of_detail(SwitchHeader, EnginePanel, bpy.types.Pan
         row.operator(APLANAT_OT_rebuild_levels.bl_idname, icon="FILE_REFRESH", text="Rebuild")
 
 
+class APLANAT_RENDER_PT_light(EnginePanel, bpy.types.Panel):
+    """How lights reach surfaces."""
+
+    bl_label = "Light"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw the settings of the scene."""
+        self.column().prop(context.scene.aplanat, "use_shadows")
+
+
 class APLANAT_RENDER_PT_film(EnginePanel, bpy.types.Panel):
     """Film: transparency."""
 
@@ -170,6 +182,19 @@ class APLANAT_VIEWLAYER_PT_override(EnginePanel, bpy.types.Panel):
         column.prop(context.view_layer, "world_override")
 
 
+class APLANAT_LIGHT_PT_shadow(EnginePanel, bpy.types.Panel):
+    """Whether what lies in a light's way hides it."""
+
+    bl_label = "Shadow"
+    bl_context = "data"
+    bl_parent_id = "DATA_PT_EEVEE_light"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw Blender's switch."""
+        self.column().prop(context.light, "use_shadow", text="Cast Shadow")
+
+
 class APLANAT_LIGHT_PT_influence(EnginePanel, bpy.types.Panel):
     """How strongly a light is seen in reflections of each kind."""
 
@@ -187,7 +212,7 @@ class APLANAT_LIGHT_PT_influence(EnginePanel, bpy.types.Panel):
 
 
 class APLANAT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
-    """Whether the camera sees an object."""
+    """Whether the camera sees an object, and whether it hides light."""
 
     bl_label = "Ray Visibility"
     bl_context = "object"
@@ -200,8 +225,10 @@ class APLANAT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
         return super().poll(context) and obj is not None and obj.type in _GEOMETRY
 
     def draw(self, context):
-        """Draw Blender's switch."""
-        self.column().prop(context.object, "visible_camera", text="Camera")
+        """Draw those of Blender's switches that are followed."""
+        column = self.column()
+        column.prop(context.object, "visible_camera", text="Camera")
+        column.prop(context.object, "visible_shadow", text="Shadow")
 
 
 class APLANAT_MATERIAL_PT_settings(EnginePanel, bpy.types.Panel):
@@ -256,6 +283,7 @@ class APLANAT_WORLD_PT_whites(EnginePanel, bpy.types.Panel):
 
 CLASSES = (
     APLANAT_RENDER_PT_level_of_detail,
+    APLANAT_RENDER_PT_light,
     APLANAT_RENDER_PT_film,
     APLANAT_RENDER_PT_performance,
     APLANAT_RENDER_PT_simplify,
@@ -265,6 +293,7 @@ CLASSES = (
     APLANAT_VIEWLAYER_PT_override,
     APLANAT_OBJECT_PT_ray_visibility,
     APLANAT_MATERIAL_PT_settings,
+    APLANAT_LIGHT_PT_shadow,
     APLANAT_LIGHT_PT_influence,
     APLANAT_LIGHT_PT_bokeh,
     APLANAT_WORLD_PT_whites,

@@ -1,4 +1,5 @@
-// Lights without shadows. A light is 7 texels of a row of the light table; kind 0 is no light.
+// Lights without shadows. A light is 7 texels of a row of the light table, from its second row on; kind 0
+// is no light.
 #ifndef LIGHT_LIB_GLSL
 #define LIGHT_LIB_GLSL
 
@@ -27,11 +28,12 @@ struct Light {
 
 int light_count(sampler2D lights_tx)
 {
-  return textureSize(lights_tx, 0).y;
+  return int(texelFetch(lights_tx, ivec2(0, 0), 0).x + 0.5);
 }
 
-Light light_fetch(sampler2D lights_tx, int row)
+Light light_fetch(sampler2D lights_tx, int number)
 {
+  int row = number + 1;
   vec4 a = texelFetch(lights_tx, ivec2(0, row), 0);
   vec4 b = texelFetch(lights_tx, ivec2(1, row), 0);
   vec4 c = texelFetch(lights_tx, ivec2(2, row), 0);
@@ -77,13 +79,18 @@ float horizon_cosine(float cosine, float sin2)
   return max(form / (3.14159265358979 * sin2), 0.0);
 }
 
-// Factor of a spot's or an area light's beam in the direction `ray`, away from the light.
-float light_beam(Light light, vec3 ray)
+// Factor of a spot's or an area light's beam in the direction `ray`, away from the light, at a distance.
+float light_beam(Light light, vec3 ray, float distance)
 {
   if (light.kind == LIGHT_SPOT) {
     vec3 local = vec3(dot(light.axis_u, ray), dot(light.axis_v, ray), dot(light.axis_w, ray));
     float z = local.z / max(length(local), 1e-12);
-    float t = clamp((z - light.cone.x) * light.cone.y, 0.0, 1.0);
+    // Each place on the lamp has a cone of its own: the edge is as much wider as its variance grows. That
+    // of a smooth step is 1/20 of its width squared, that of a disk of radius r seen edge on r^2 / 4.
+    float width = 1.0 / light.cone.y;
+    float seen = sqrt(max(1.0 - z * z, 0.0)) * light.radius / max(distance, light.radius);
+    float wider = sqrt(width * width + 5.0 * seen * seen);
+    float t = clamp((z - light.cone.x - 0.5 * width) / wider + 0.5, 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
   }
   if (light.kind == LIGHT_AREA) {
@@ -124,7 +131,7 @@ Illumination light_illuminate(Light light, vec3 position)
   vec3 offset = light.position - position;
   float distance2 = max(dot(offset, offset), 1e-12);
   vec3 towards = offset * inversesqrt(distance2);
-  float beam = light_beam(light, -towards);
+  float beam = light_beam(light, -towards, sqrt(distance2));
   result.towards = towards;
   if (light.kind == LIGHT_AREA) {
     // Lambert's formula for a polygon; its direction is the mean direction of the light.

@@ -3,7 +3,11 @@
 
 Closure reflecting(Reflected reflected)
 {
-  return Closure(finite_light(reflected.light), vec3(0.0), 0.0, finite_light(reflected.unsplit));
+  return Closure(finite_light(reflected.light),
+                 vec3(0.0),
+                 0.0,
+                 finite_light(reflected.unsplit),
+                 finite_light(reflected.shift));
 }
 
 Lobe no_lobe()
@@ -41,7 +45,7 @@ Closure closure_diffuse(Shading s, Bsdf bsdf)
   Reflected reflected = diffuse_light(s);
   // Negative colours reflect nothing, as in Cycles; negative lamps do take light away.
   vec3 c = max(number_or_zero(bsdf.color), vec3(0.0));
-  return reflecting(Reflected(c * reflected.light, c * reflected.unsplit));
+  return reflecting(Reflected(c * reflected.light, c * reflected.unsplit, c * reflected.shift));
 }
 
 Closure closure_glossy(Shading s, Bsdf bsdf)
@@ -76,6 +80,7 @@ Closure coated(Shading s, Bsdf bsdf, Closure below)
   Closure above = reflecting(glossy_light(s, r, lobe, no_lobe()));
   above.radiance += below.radiance * left;
   above.unsplit += below.unsplit * left;
+  above.shift += below.shift * left;
   above.transmittance = below.transmittance * left;
   return above;
 }
@@ -127,6 +132,7 @@ Closure closure_principled(Shading s, Bsdf bsdf)
     Reflected diffuse = diffuse_light(shaped(s, bsdf));
     reflected.light += base * left * (1.0 - glass) * diffuse.light;
     reflected.unsplit += base * left * (1.0 - glass) * diffuse.unsplit;
+    reflected.shift += base * left * (1.0 - glass) * diffuse.shift;
     // Half of the tint at each of two faces.
     passed = sqrt(base) * left * glass;
   }

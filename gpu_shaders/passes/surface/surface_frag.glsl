@@ -75,7 +75,7 @@ void main()
   Closure closure = surface_closure();
 #ifdef GLOW
 #ifdef HIGHLIGHTS
-  closure.radiance = without_highlights(closure);
+  closure.radiance = without_highlights(closure) + closure.shift;
 #endif
   out_color = vec4(closure.radiance, 0.0);
 #ifdef MATTES
@@ -87,6 +87,7 @@ void main()
 #ifdef GLOW_APART
   closure.radiance = vec3(0.0);
   closure.unsplit = vec3(0.0);
+  closure.shift = vec3(0.0);
 #endif
   float through = closure_through(closure);
   if (through > 0.0) {
@@ -102,11 +103,12 @@ void main()
     float scale = 1.0 / max(1.0 - through, 1e-6);
     closure.radiance *= scale;
     closure.unsplit *= scale;
+    closure.shift *= scale;
     hole = min(hole * scale, 1.0);
   }
 #endif
 #ifdef HIGHLIGHTS
-  closure.radiance = without_highlights(closure);
+  closure.radiance = without_highlights(closure) + closure.shift;
 #endif
   out_color = vec4(closure.radiance, 1.0 - hole);
 #ifdef MATTES

@@ -1,8 +1,10 @@
-// Lighting of closures: reflection of lights (without shadows) and of the world.
+// Lighting of closures: reflection of lights and of the world. All lights are added up as if nothing hid
+// them; then what light samples do not reach is taken away again, in proportion to what each stands for.
 // Included into shaders that draw surfaces. Without SHADES only the transmittance is computed, and no
 // light is read.
 // Inputs: world_position, world_normal where the mesh has normals; view_buf, lens_sample (OF_LAYER: eye);
-// lights_tx (light table); environment_buf, environment_tx (image), environment_levels_tx
+// lights_tx (light table), light_maps_tx, light_places, steady_places (light samples), slack;
+// environment_buf, environment_tx (image), environment_levels_tx
 // (prefiltered), ggx_tx (albedo table).
 // Source: split-sum environment, Karis, SIGGRAPH 2013 course; closures as Cycles composes them.
 // Outside of conditions: nodes call these, too, and a file is included once.
@@ -30,6 +32,7 @@ vec3 glass_transmittance(Bsdf bsdf, float cos_view)
 #include "lib/surface/bsdf_lib.glsl"
 #include "lib/surface/environment_lib.glsl"
 #include "lib/surface/light_lib.glsl"
+#include "lib/surface/light_map_lib.glsl"
 #include "lib/surface/texture_lib.glsl"
 
 // Least roughness under lights, so that the highlights of mirrors have a finite size.
@@ -43,6 +46,7 @@ vec3 glass_transmittance(Bsdf bsdf, float cos_view)
 
 struct Shading {
   vec3 position;
+  vec3 geometric;  // normal of the triangle, of any length
   vec3 normal;  // shading normal on the side that is seen
   vec3 view;    // towards the lens sample
   float cos_view;
@@ -65,6 +69,7 @@ struct Lobe {
 struct Reflected {
   vec3 light;
   vec3 unsplit;  // part of it that is never splatted (of lamps without highlights)
+  vec3 shift;    // see Closure
 };
 
 // `bent`: a normal that nodes have made, 0 for the surface's own.
@@ -74,7 +79,8 @@ Shading surface_shading(vec3 bent)
   s.position = world_position;
   s.view = point_view();
   // The side that is seen is a property of the triangle, not of its interpolated normal.
-  vec3 normal = point_smooth_normal(point_geometric_normal(s.view));
+  s.geometric = point_geometric_normal(s.view);
+  vec3 normal = point_smooth_normal(s.geometric);
   normal = (dot(bent, bent) > 0.0) ? bent : normal;
   float size = length(normal);
   s.normal = (size > 0.0) ? normal / size : s.view;
@@ -103,42 +109,59 @@ float diffuse_response(Shading s, vec3 towards, float sin2)
   return horizon_cosine(dot(s.normal, towards), sin2) / PI;
 }
 
-// The world that a white surface of the shape reflects.
-vec3 diffuse_world(Shading s)
+// The normal of a Lambertian surface that reflects the world as the shape does, in proportion.
+vec3 diffuse_axis(Shading s)
 {
-  vec3 sum = environment_buf.color.rgb;
   vec3 axis = s.normal;
 #ifdef SHAPES
   if (s.shape.kind != SHAPE_LAMBERT) {
-    sum *= shape_albedo(s.shape, s.cos_view);
     axis = (s.shape.kind == SHAPE_HAIR_THROUGH) ? -axis : axis;
     axis = (s.shape.kind == SHAPE_TOON_GLOSSY) ? 2.0 * dot(axis, s.view) * axis - s.view : axis;
   }
 #endif
-  if (environment_buf.color.w > 0.5) {
-    vec2 place = direction_to_octahedron(environment_direction(axis));
-    sum *= environment_level(environment_levels_tx, place, ENVIRONMENT_DIFFUSE);
-  }
-  return sum;
+  return axis;
 }
+
+// How much of the world's light a white surface of the shape reflects, over a Lambertian one.
+vec3 diffuse_share(Shading s)
+{
+#ifdef SHAPES
+  if (s.shape.kind != SHAPE_LAMBERT) {
+    return vec3(shape_albedo(s.shape, s.cos_view));
+  }
+#endif
+  return vec3(1.0);
+}
+
+// The world's light on a white Lambertian surface.
+vec3 environment_diffuse(vec3 normal)
+{
+  if (environment_buf.color.w < 0.5) {
+    return environment_buf.color.rgb;
+  }
+  vec2 place = direction_to_octahedron(environment_direction(normal));
+  return environment_buf.color.rgb *
+         environment_level(environment_levels_tx, place, ENVIRONMENT_DIFFUSE);
+}
+
+#include "passes/surface/surface_shadows.glsl"
 
 // Of a white surface.
 Reflected diffuse_light(Shading s)
 {
-  vec3 sum = diffuse_world(s);
+  vec3 sum = diffuse_share(s) * environment_diffuse(diffuse_axis(s));
   vec3 unsplit = vec3(0.0);
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
     if (light.kind == LIGHT_NONE) {
       continue;
     }
-    Illumination incoming = light_illuminate(light, s.position);
-    vec3 reflected = incoming.irradiance *
-                     (light.factors.x * diffuse_response(s, incoming.towards, incoming.sin2));
+    vec3 reflected = lamp_diffuse(s, light, light_illuminate(light, s.position));
     sum += reflected;
     unsplit += reflected * light.unsplit;
   }
-  return Reflected(sum, unsplit);
+  Reflected hidden = hidden_diffuse(s, sum);
+  return Reflected(sum - hidden.light, unsplit - hidden.unsplit, hidden.shift);
 }
 
 // The world in a direction, averaged over a lobe of a roughness.
@@ -225,6 +248,83 @@ vec3 environment_reflection(Shading s, float roughness, Lobe a, vec3 repeat_a, L
   return sum * environment_buf.color.rgb / float(FACETS);
 }
 
+// Two lobes of one roughness.
+struct Lobes {
+  float alpha;
+  vec3 mirrored;
+  Lobe a;
+  vec3 repeat_a;
+  Lobe b;
+  vec3 repeat_b;
+};
+
+// Reflected by two lobes, of one lamp.
+vec3 lamp_glossy(Shading s, Light light, Lobes lobes)
+{
+  float alpha = lobes.alpha;
+  Illumination incoming = light_illuminate(light, s.position);
+  // Half vectors of the light's disk subtend half its angle, more across the plane of incidence.
+  float cos_d = dot(s.view, normalize(incoming.towards + s.view));
+  float reach = sqrt(incoming.sin2) / (1.0 + sqrt(1.0 - incoming.sin2)) *
+                inversesqrt(max(cos_d, 0.05));
+  // A lobe narrower than the light reflects the part that a mirror would show, a wide one all of it.
+  float narrow = reach * reach / (reach * reach + alpha * alpha);
+  vec3 shown = light_representative(light, incoming, s.position, lobes.mirrored);
+  float cos_light = mix(horizon_cosine(dot(s.normal, incoming.towards), incoming.sin2),
+                        max(dot(s.normal, shown), 0.0),
+                        narrow);
+  if (cos_light <= 0.0) {
+    return vec3(0.0);
+  }
+  cos_d = dot(s.view, normalize(mix(incoming.towards, shown, narrow) + s.view));
+  cos_d = clamp(cos_d, 0.0, 1.0);
+  float cos_h = clamp(dot(s.normal, normalize(incoming.towards + s.view)), 0.0, 1.0);
+  float lobe = ggx_distribution_over_disk(cos_h, reach, alpha) *
+               ggx_visibility(s.cos_view, cos_light, alpha) * cos_light;
+  return incoming.irradiance * (light.factors.y * lobe) *
+         lobes_reflect(lobes.a, lobes.repeat_a, lobes.b, lobes.repeat_b, cos_d);
+}
+
+// Of what lobes reflect, what light samples of a list do not reach.
+// The sky's light `mirrored` is hidden as it is from a white Lambertian surface that faces the mirrored
+// direction.
+Reflected hidden_glossy_of(Shading s, Shadowing shadowing, Lobes lobes, vec3 mirrored)
+{
+  Reflected hidden = Reflected(vec3(0.0), vec3(0.0), vec3(0.0));
+  for (int i = 0; i < LIGHT_MAPS; i++) {
+    if ((shadowing.hiding >> uint(i)) == 0u) {
+      break;
+    }
+    if (((shadowing.hiding >> uint(i)) & 1u) == 0u) {
+      continue;
+    }
+    int row = light_sample_row(shadowing, i);
+    vec4 head = texelFetch(lights_tx, ivec2(0, row), 0);
+    if (head.x < 0.0) {
+      vec3 whole = max(abs(environment_diffuse(lobes.mirrored)), vec3(1e-12));
+      vec3 part = sky_diffuse(lobes.mirrored, head, row) * (head.y * shadowing.share) / whole;
+      hidden.light += mirrored * part;
+      continue;
+    }
+    Light light = light_fetch(lights_tx, int(head.x + 0.5));
+    vec3 reflected = lamp_glossy(s, light, lobes) * (head.y * shadowing.share);
+    hidden.light += reflected;
+    hidden.unsplit += reflected * light.unsplit;
+  }
+  return hidden;
+}
+
+Reflected hidden_glossy(Shading s, vec3 lit, Lobes lobes, vec3 mirrored)
+{
+  Reflected own = hidden_glossy_of(s, own_shadowing(s), lobes, mirrored);
+  if (!light_is_steady(lit)) {
+    return own;
+  }
+  Reflected steady = hidden_glossy_of(s, steady_shadowing(s), lobes, mirrored);
+  steady.shift = steady.light - own.light;
+  return steady;
+}
+
 // Light reflected by two lobes of one roughness.
 Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
 {
@@ -244,37 +344,20 @@ Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
     }
   }
   float alpha = max(roughness * roughness, MIN_ALPHA);
+  Lobes lobes = Lobes(alpha, mirrored, a, repeat_a, b, repeat_b);
+  vec3 of_sky = sum;
   vec3 unsplit = vec3(0.0);
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
     if (light.kind == LIGHT_NONE) {
       continue;
     }
-    Illumination incoming = light_illuminate(light, s.position);
-    // Half vectors of the light's disk subtend half its angle, more across the plane of incidence.
-    float cos_d = dot(s.view, normalize(incoming.towards + s.view));
-    float reach = sqrt(incoming.sin2) / (1.0 + sqrt(1.0 - incoming.sin2)) *
-                  inversesqrt(max(cos_d, 0.05));
-    // A lobe narrower than the light reflects the part that a mirror would show, a wide one all of it.
-    float narrow = reach * reach / (reach * reach + alpha * alpha);
-    vec3 shown = light_representative(light, incoming, s.position, mirrored);
-    float cos_light = mix(horizon_cosine(dot(s.normal, incoming.towards), incoming.sin2),
-                          max(dot(s.normal, shown), 0.0),
-                          narrow);
-    if (cos_light <= 0.0) {
-      continue;
-    }
-    cos_d = dot(s.view, normalize(mix(incoming.towards, shown, narrow) + s.view));
-    cos_d = clamp(cos_d, 0.0, 1.0);
-    float cos_h = clamp(dot(s.normal, normalize(incoming.towards + s.view)), 0.0, 1.0);
-    float lobe = ggx_distribution_over_disk(cos_h, reach, alpha) *
-                 ggx_visibility(s.cos_view, cos_light, alpha) * cos_light;
-    vec3 reflected = incoming.irradiance * (light.factors.y * lobe) *
-                     lobes_reflect(a, repeat_a, b, repeat_b, cos_d);
+    vec3 reflected = lamp_glossy(s, light, lobes);
     sum += reflected;
     unsplit += reflected * light.unsplit;
   }
-  return Reflected(sum, unsplit);
+  Reflected hidden = hidden_glossy(s, sum, lobes, of_sky);
+  return Reflected(sum - hidden.light, unsplit - hidden.unsplit, hidden.shift);
 }
 
 #include "passes/surface/surface_closures.glsl"

@@ -1,0 +1,1 @@
+"""Turns of lights, places on them and directions of the sky; plain numpy."""
