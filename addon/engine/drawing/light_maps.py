@@ -28,6 +28,8 @@ _WIDEST_ATLAS = 8192
 _MOST_PLACES = 128
 # Light samples after which every light has had its turns, where their number is not known.
 _PERIOD = 64
+# Square root of the largest mean area of the triangles of what hides light, in texels of the map.
+_FINER = 0.6
 # Places from which a lens sample is lit at most, and from which a picture is lit at least where
 # that allows it: half of the sky's directions are below a surface, and the rest are far apart.
 _MOST_EACH = 4
@@ -50,19 +52,54 @@ class _Casters:
     def instances(self):
         return self._buffers.instances
 
-    def listed(self, view):
-        """List the draw calls of what may be in a view."""
+    def _find(self):
+        content, buffers = self._content, self._buffers
+        draws = surface.build_draws(content, buffers, light_map.TARGET)
+        shadow = [group.shadow for group in content.groups]
+        self._draws = [draw for draw in draws if shadow[draw.group]]
+        # Lengths of edges of each row at each level of detail.
+        most = max((draw.level for draw in self._draws), default=0)
+        self._edges = np.full((len(self.spheres.radii), most + 1), np.inf)
+        scale = np.linalg.norm(content.instances.world[:, :3, :3], axis=1).max(axis=1, initial=0.0)
+        for group in content.groups:
+            rows = slice(group.first, group.first + group.count)
+            levels = buffers.level_meshes(content.meshes[group.mesh])[: most + 1]
+            edges = np.sqrt([level.triangle_area for level in levels])
+            self._edges[rows, : len(edges)] = scale[rows, None] * edges
+
+    def listed(self, view, rectangle, simplifies):
+        """List the draw calls of what may be in a view.
+
+        Parameters
+        ----------
+        view : light_views.LightView
+        rectangle : tuple of 4 int
+            Of its map.
+        simplifies : bool
+            At a level of detail whose triangles are as small as texels of the map.
+
+        Returns
+        -------
+        list of surface.Draw
+        """
         if self._draws is None:
-            draws = surface.build_draws(self._content, self._buffers, light_map.TARGET)
-            shadow = [group.shadow for group in self._content.groups]
-            self._draws = [draw for draw in draws if draw.level == 0 and shadow[draw.group]]
-        hiding = view.sees(self.spheres.centers, self.spheres.radii)
+            self._find()
+        centers, radii = self.spheres.centers, self.spheres.radii
+        hiding = view.sees(centers, radii)
+        levels = np.zeros(len(radii), int)
+        if simplifies:
+            texels = view.texel_sizes(rectangle, centers, radii)
+            levels = (self._edges[:, 1:] <= _FINER * texels[:, None]).sum(axis=1)
         listed = []
         for draw in self._draws:
-            rows = draw.first + np.flatnonzero(hiding[draw.first : draw.first + draw.count])
+            there = slice(draw.first, draw.first + draw.count)
+            chosen = levels[there] == draw.level
+            rows = draw.first + np.flatnonzero(hiding[there] & chosen)
+            # Between rows of one level only rows that nothing is lost with may be drawn along.
+            passing = draw.triangles if chosen.all() else np.inf
             listed += [
                 replace(draw, first=first, count=count)
-                for first, count in culling.runs(rows, draw.triangles)
+                for first, count in culling.runs(rows, passing)
             ]
         return listed
 
@@ -312,7 +349,8 @@ class LightMaps:
             )
         )
         for casters in self._casters:
-            listed = casters.listed(view)
+            simplifies = self._plan.level_bias is not None
+            listed = casters.listed(view, rectangle, simplifies)
             light_map.draw(listed, params, casters.instances, place + (self._batch << 8))
             self.draw_calls += len(listed)
             self.triangles += sum(draw.triangles * draw.count for draw in listed)

@@ -92,6 +92,30 @@ class LightView:
                 seen &= place - depth * size <= radii * np.hypot(1.0, size)
         return seen
 
+    def _texel(self, rectangle):
+        """Return the size of a texel of its map at depth 1, or if parallel at any."""
+        _, _, width, height = rectangle
+        return 2.0 * max(np.linalg.norm(self.across) / width, np.linalg.norm(self.up) / height)
+
+    def texel_sizes(self, rectangle, centers, radii):
+        """Return the size of a texel of its map where it is smallest in each sphere, m.
+
+        Parameters
+        ----------
+        rectangle : tuple of 4 int
+        centers : ndarray of shape (I, 3)
+        radii : ndarray of shape (I,)
+
+        Returns
+        -------
+        ndarray of shape (I,)
+        """
+        texel = np.full(len(radii), self._texel(rectangle))
+        if self.parallel:
+            return texel
+        depth = (centers - self.origin) @ self.along - radii
+        return texel * np.maximum(depth, self.near)
+
     def texels(self, rectangle):
         """Return its texels in the light table; ``lib/surface/light_map_lib.glsl``.
 
@@ -104,8 +128,7 @@ class LightView:
         -------
         ndarray of shape (5, 4)
         """
-        _, _, width, height = rectangle
-        texel = 2.0 * max(np.linalg.norm(self.across) / width, np.linalg.norm(self.up) / height)
+        texel = self._texel(rectangle)
         return np.array(
             [
                 (*self.origin, float(self.parallel)),
