@@ -5,7 +5,7 @@ import pytest
 
 from addon.passes.nodes import surface_code
 from addon.passes.surface.environment import ggx_table
-from addon.passes.surface.light_table import light_texels
+from addon.passes.surface.light_table import table_texels
 from addon.snapshot.content import Light
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 from tests.surface_graphs import emission_graph
@@ -69,8 +69,12 @@ def test_smooth_lobes_reflect_everything_and_rough_ones_lose_what_theory_says():
     assert total[-1, -1] == pytest.approx(expected, abs=5e-3)
 
 
-def test_no_lights_are_one_row_that_is_none():
-    assert light_texels(()).shape == (1, 7, 4)
-    assert light_texels(())[0, 0, 3] == 0.0
-    sun = Light("SUN", (0, 0, 0), (0, 0, -1), (1, 1, 1))
-    assert light_texels([sun] * 3)[:, 0, 3].tolist() == [1.0, 1.0, 1.0]
+def test_the_light_table_says_how_many_lights_there_are():
+    none = table_texels((), np.zeros((0, 3, 4)))
+    assert none.shape[0] == 1 and none[0, 0].tolist() == [0.0, 1.0, 1.0, 0.0]
+    sun = Light("SUN", (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), (1.0, 1.0, 1.0))
+    table = table_texels([sun] * 3, np.full((2, 9, 4), 7.0), (np.full((4, 4), 0.5),))
+    assert table[0, 0].tolist() == [3.0, 4.0, 6.0, 0.0]
+    assert table[1:4, 0, 3].tolist() == [1.0, 1.0, 1.0]
+    assert (table[4:6] == 7.0).all()
+    assert (table[6:10, :4, 0] == 0.5).all()
