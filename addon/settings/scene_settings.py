@@ -125,9 +125,10 @@ LEVELS = Section("Level of detail", "Render Properties > Level of Detail", (
 ))
 
 LIGHT = Section("Light", "Render Properties > Light", (
-    Setting("use_shadows", True, "Shadows", "Objects shadow one another. Each lens sample sees the"
+    Setting("use_shadows", False, "Shadows", "Objects shadow one another. Each lens sample sees the"
             " scene from one place on one light, too, so that shadows become as soft as the lights"
-            " are large while the blur becomes smooth", field="shadows", told="shadows"),
+            " are large while the blur becomes smooth. A frame takes several times as long",
+            field="shadows", told="shadows"),
 ))
 
 PERFORMANCE = Section("Performance", "Render Properties > Performance", (

@@ -92,4 +92,4 @@ class Sampling:
     layer_source: str = "SLICES"
     layers_from_eyes: bool = False
     cones: bool = True
-    shadows: bool = True
+    shadows: bool = False

@@ -42,6 +42,7 @@ def test_a_number_of_samples_takes_the_place_of_the_threshold():
 
 
 def test_without_shadows():
+    assert in_force("--shadows").use_shadows
     assert not in_force("--no-shadows").use_shadows
 
 

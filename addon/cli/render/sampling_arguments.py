@@ -1,5 +1,7 @@
 """The sampling options of `aplanat render`, as in Sampling, Level of Detail and Light."""
 
+import argparse
+
 from ...errors import InputError
 from ...settings.scene_settings import SCENE
 from ...settings.setting import MOST_WHOLE, settings_of
@@ -93,7 +95,11 @@ def add_sampling(parser):
         type=whole_number(*bounds("min_triangles")),
         help="adaptive method: no level of detail has fewer",
     )
-    add("--no-shadows", action="store_true", help="nothing hides the light of lamps and sky")
+    add(
+        "--shadows",
+        action=argparse.BooleanOptionalAction,
+        help="objects shadow one another, or nothing hides the light of lamps and sky",
+    )
     add(
         "--layers",
         metavar="K",
@@ -198,8 +204,8 @@ def apply_sampling(settings, render, arguments):
         settings.use_levels = False
     elif arguments.level_bias is not None or arguments.min_triangles is not None:
         settings.use_levels = True
-    if arguments.no_shadows:
-        settings.use_shadows = False
+    if arguments.shadows is not None:
+        settings.use_shadows = arguments.shadows
     if arguments.sharing_cells is not None:
         settings.use_sharing = arguments.sharing_cells > 0
         settings.sharing_cells = max(arguments.sharing_cells, 1)

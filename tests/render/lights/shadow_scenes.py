@@ -22,6 +22,7 @@ def shadow_scene(bpy, kind, pixels=64):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.resolution_x = scene.render.resolution_y = pixels
+    scene.aplanat.use_shadows = True
     material = diffuse(bpy, 0.8)
     mesh = bpy.ops.mesh
     mesh.primitive_plane_add(size=20)
