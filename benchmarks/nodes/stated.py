@@ -20,7 +20,7 @@ STATED = {
     "BsdfAnisotropic": (APPROXIMATE, "mirrors lights and the world; no anisotropy"),
     "BsdfPrincipled": (
         APPROXIMATE,
-        "all but anisotropy and thin film; glass does not bend or blur; light below the surface"
+        "all but anisotropy and thin film; glass does not bend, blur or tint; light below the"
         " leaves where it enters",
     ),
     "BsdfMetallic": (APPROXIMATE, "edges of conductors by Schlick; no anisotropy, no thin film"),

@@ -43,6 +43,21 @@ def test_diffuse_light_of_a_sky_is_the_share_of_it_that_a_surface_sees():
     assert edge == pytest.approx(0.5, abs=0.02)
 
 
+@pytest.mark.parametrize("elevation", [0.2, 0.35, 0.7, 1.2])
+def test_a_small_sun_lights_from_where_it_is(elevation):
+    """Against the sum over all texels; a cell of the sums is 7.5 degrees wide."""
+    height, width = 256, 512
+    rows = ((np.arange(height) + 0.5) / height - 0.5) * np.pi
+    row = int((elevation / np.pi + 0.5) * height)
+    pixels = np.full((height, width, 3), 0.1, np.float32)
+    pixels[row - 1 : row + 2, 280:283] = 2000.0
+    weights = np.maximum(np.sin(rows), 0.0) * np.cos(rows)
+    wanted = (pixels[..., 0] * weights[:, None]).sum() * 2.0 * np.pi / (height * width)
+    tile = read(environment.prefilter(pixels))[:, -environment.TILE :]
+    # Straight up lies between four texels; a texel is 1.5 degrees.
+    assert tile[63:65, 63:65, 0].mean() == pytest.approx(wanted, rel=3e-3)
+
+
 def test_levels_are_made_once_an_image_and_not_for_colour_rotation_or_lights():
     rng = np.random.default_rng(0)
     image = ImageSnapshot(next_uid(), "sky", rng.random((16, 32, 4)).astype(np.float32))

@@ -32,8 +32,8 @@ TILE = 128
 # Halvings of the image that the lobe's samples are read from.
 _PYRAMID = 6
 _LARGEST_SOURCE = 1024
-# Diffuse light is smooth: it is summed up from an image of this width.
-_SMALL_SOURCE = 48
+# Diffuse light is smooth: it is summed up from so many cells, rows and columns.
+_CELLS = (24, 48)
 
 _PREFILTER = ShaderInfo(
     name="aplanat_environment",
@@ -42,7 +42,7 @@ _PREFILTER = ShaderInfo(
     attributes=(("VEC2", "pos"),),
     outputs=(("VEC4", "out_color"),),
     samplers=tuple(("FLOAT_2D", f"level_{i}_tx") for i in range(_PYRAMID))
-    + (("FLOAT_2D", "small_tx"),),
+    + tuple(("FLOAT_2D", f"moment_{axis}_tx") for axis in "xyz"),
 )
 
 
@@ -133,6 +133,44 @@ def _halve(pixels):
     return (sums / counts[..., None]).astype(np.float32)
 
 
+def light_moments(pixels):
+    """Sum up an image's light, times the direction it comes from, in cells of the image.
+
+    A surface that faces a whole cell gets the scalar product of its normal and the cell's moment:
+    exactly, wherever in the cell the light is. A small sun counts where it is.
+
+    Parameters
+    ----------
+    pixels : ndarray of shape (height, width, 3)
+        Scene linear; equirectangular, bottom row first.
+
+    Returns
+    -------
+    ndarray of shape (3, rows, columns, 4)
+        float32, radiance times sr, by component of the direction; the fourth channel is that of an
+        even radiance of 1.
+    """
+    height, width = pixels.shape[:2]
+    elevation = ((np.arange(height) + 0.5) / height - 0.5) * np.pi
+    azimuth = (0.5 - (np.arange(width) + 0.5) / width) * 2.0 * np.pi
+    angle = np.cos(elevation)[:, None] * (np.pi / height) * (2.0 * np.pi / width)
+    across = np.cos(elevation)[:, None]
+    directions = (
+        across * np.cos(azimuth),
+        across * np.sin(azimuth),
+        np.broadcast_to(np.sin(elevation)[:, None], (height, width)),
+    )
+    light = np.concatenate([pixels, np.ones((height, width, 1))], axis=-1) * angle[..., None]
+    rows, columns = (
+        np.linspace(0, size, min(size, most) + 1).round().astype(int)[:-1]
+        for size, most in zip((height, width), _CELLS, strict=True)
+    )
+    return np.stack([
+        np.add.reduceat(np.add.reduceat(light * part[..., None], rows), columns, axis=1)
+        for part in directions
+    ]).astype(np.float32)  # fmt: skip
+
+
 # Memo of its arguments alone: the same table for every scene.
 @cache
 def ggx_table(size=32, samples=512):
@@ -217,8 +255,10 @@ def prefilter(pixels):
         `LEVELS` octahedral maps in a row, and one of the diffuse light.
     """
     level = squared(shrink(pixels, _LARGEST_SOURCE))
-    small = squared(shrink(level, _SMALL_SOURCE), _SMALL_SOURCE)
-    textures = {"small_tx": _opaque_texture(small)}
+    moments = light_moments(squared(level, _CELLS[1]))
+    textures = {
+        f"moment_{axis}_tx": texture_2d(moment) for axis, moment in zip("xyz", moments, strict=True)
+    }
     for i in range(_PYRAMID):
         textures[f"level_{i}_tx"] = _opaque_texture(level)
         level = _halve(level)

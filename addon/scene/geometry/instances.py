@@ -153,7 +153,8 @@ def read_instances(depsgraph, space=None, with_places=False):
         look, name, (color, number, pass_index) = found
         out.looks.append(look)
         out.names.append(name)
-        number = instance.random_id if instance.is_instance else number
+        # Blender shows these 32 bits as a signed number.
+        number = instance.random_id % 2**32 if instance.is_instance else number
         values.append((*color, _share(number), pass_index))
         # Blender fills the same matrix again for the next instance.
         matrices.append(instance.matrix_world.copy())

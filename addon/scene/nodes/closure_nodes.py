@@ -76,7 +76,7 @@ def _principled(reader, node, groups):
     return reader.add("principled", inputs)
 
 
-_THROUGH_GLASS = "node '{}' does not bend what is seen through it, nor blur it"
+_THROUGH_GLASS = "node '{}' does not bend, blur or tint what is seen through it"
 
 _AS_ENTERED = "subsurface light of node '{}' leaves where it enters: it is drawn as diffuse"
 

@@ -10,6 +10,8 @@ from . import fitted_skies, multiple_scattering, single_scattering
 _COLUMNS, _ROWS = 512, 256
 # Of the equirectangular image: so fine that the sun's disc is a few texels wide.
 _WIDTH = 2048
+# Of a texel along each side, where the disc is.
+_PARTS = 8
 # How much darker the edge of the sun is than its middle.
 _LIMB = 0.6
 # Where a sky ends at the horizon it fades to black this far below it, in radians, with this power:
@@ -151,17 +153,25 @@ def _disc(sky, elevation, azimuth):
     lower, upper = (
         _sunlight(sky, max(e, 0.0)) for e in (sun_elevation - half, sun_elevation + half)
     )
-    cosine = np.clip(directions(elevation[rows], azimuth) @ np.array(sky.sun), -1.0, 1.0)
-    angle = np.arccos(cosine) / half
-    # A texel at the edge is covered in part.
-    texel = np.pi / len(elevation) / half
-    covered = np.clip((1.0 - angle) / texel + 0.5, 0.0, 1.0)
+    # A texel has the mean of its parts: the disc is few texels wide, each with much of its light.
+    parts = (np.arange(_PARTS) + 0.5) / _PARTS - 0.5
+    fine_rows = (elevation[rows, None] + parts * np.pi / len(elevation)).ravel()
+    fine_columns = (azimuth[:, None] + parts * 2.0 * np.pi / len(azimuth)).ravel()
+    angle = _angles(fine_rows, fine_columns, sky.sun) / half
     limb = 1.0 - _LIMB * (1.0 - np.sqrt(np.clip(1.0 - angle * angle, 0.0, 1.0)))
-    height = ((elevation[rows] - sun_elevation) / sky.disc + 0.5)[:, None, None]
+    limb[angle > 1.0] = 0.0
+    height = ((fine_rows - sun_elevation) / sky.disc + 0.5)[:, None, None]
     solid = 2.0 * np.pi * (1.0 - np.cos(half))
     light = (lower + (upper - lower) * np.clip(height, 0.0, 1.0)) / solid
-    image[rows] = (sky.intensity * covered * limb)[..., None] * light
+    fine = (sky.intensity * limb)[..., None] * light
+    image[rows] = fine.reshape(len(rows), _PARTS, len(azimuth), _PARTS, 3).mean(axis=(1, 3))
     return image
+
+
+def _angles(elevation, azimuth, towards):
+    """Return the angles of directions from a unit vector, shape (H, W); exact for small ones."""
+    chord = directions(elevation, azimuth) - np.array(towards)
+    return 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(chord, axis=-1), 1.0))
 
 
 def _sunlight(sky, elevation):

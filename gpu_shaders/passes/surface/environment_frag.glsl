@@ -1,7 +1,8 @@
 // Prefilters an equirectangular image over GGX lobes and a cosine lobe: octahedral maps in a row,
 // rougher to the right, the cosine lobe last, each with a gutter that repeats its other side.
 // Inputs: level_0_tx .. level_5_tx, the image and its halvings (equirectangular, scene linear);
-// small_tx, one small enough to be summed up.
+// moment_x_tx, moment_y_tx, moment_z_tx, light times its direction in cells of the image, and in alpha that
+// of an even world.
 // Outputs: scene-linear colour.
 // Source: Krivanek and Colbert, GPU Gems 3, chapter 20; Karis, SIGGRAPH 2013 course.
 #include "lib/surface/bsdf_lib.glsl"
@@ -55,22 +56,21 @@ float radical_inverse(uint i)
   return float(bits >> 8u) * (1.0 / 16777216.0);
 }
 
-// Mean of the image over the cosine lobe, summed over all texels.
+// Mean of the image over the cosine lobe, summed over all cells.
 vec3 diffuse_mean(vec3 normal)
 {
-  ivec2 size = textureSize(small_tx, 0);
-  vec3 sum = vec3(0.0);
-  float weight = 0.0;
+  ivec2 size = textureSize(moment_x_tx, 0);
+  vec4 sum = vec4(0.0);
   for (int y = 0; y < size.y; y++) {
-    float area = cos((float(y) + 0.5) / float(size.y) * PI - 0.5 * PI);
     for (int x = 0; x < size.x; x++) {
-      vec3 light = equirect_to_direction((vec2(float(x), float(y)) + 0.5) / vec2(size));
-      float share = area * max(dot(normal, light), 0.0);
-      sum += texelFetch(small_tx, ivec2(x, y), 0).rgb * share;
-      weight += share;
+      ivec2 cell = ivec2(x, y);
+      vec4 facing = normal.x * texelFetch(moment_x_tx, cell, 0) +
+                    normal.y * texelFetch(moment_y_tx, cell, 0) +
+                    normal.z * texelFetch(moment_z_tx, cell, 0);
+      sum += max(facing, 0.0);
     }
   }
-  return sum / max(weight, 1e-6);
+  return sum.rgb / max(sum.a, 1e-6);
 }
 
 void main()

@@ -189,7 +189,8 @@ Closure closure_fog(Shading s, Bsdf bsdf)
                       vec3(lessThan(extinction * bsdf.thickness, vec3(1e-4))));
   Reflected lit = diffuse_light(shaped(s, bsdf));
   vec3 scattered = max(number_or_zero(bsdf.color), vec3(0.0)) * arriving;
-  Closure closure = reflecting(Reflected(scattered * lit.light, scattered * lit.unsplit));
+  Closure closure = reflecting(
+      Reflected(scattered * lit.light, scattered * lit.unsplit, scattered * lit.shift));
   closure.radiance += finite_light(bsdf.emission_color * arriving);
   closure.transmittance = passed;
   return closure;

@@ -35,6 +35,19 @@ def test_objects_and_instances_of_one_mesh_share_its_snapshot(bpy):
     assert sorted(content.instances.world[:, 0, 3]) == [0, 0, 1, 2]
 
 
+def test_random_numbers_of_instances_are_shares(bpy):
+    """Object Info > Random is from 0 to 1; Blender shows its 32 bits as a signed number."""
+    folder = bpy.data.collections.new("folder")
+    scenes.add(bpy, "inside", scenes.cube(bpy), collection=folder)
+    for i in range(16):
+        empty = scenes.add(bpy, f"empty {i}", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", folder
+    shares = extract(bpy).instances.looks[:, 4]
+    assert len(shares) == 16
+    assert shares.min() >= 0.0 and shares.max() <= 1.0
+    assert shares.max() - shares.min() > 0.5
+
+
 def test_copies_with_other_materials_or_holdout_are_other_groups_of_the_same_mesh(bpy):
     data = scenes.cube(bpy)
     data.materials.append(scenes.emission(bpy, "a", (1, 0, 0)))
