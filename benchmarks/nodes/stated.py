@@ -21,7 +21,7 @@ STATED = {
     "BsdfPrincipled": (
         APPROXIMATE,
         "all but anisotropy and thin film; glass does not bend, blur or tint; light below the"
-        " leaves where it enters",
+        " surface leaves where it enters",
     ),
     "BsdfMetallic": (APPROXIMATE, "edges of conductors by Schlick; no anisotropy, no thin film"),
     "BsdfGlass": (APPROXIMATE, "what is behind is seen straight through, not blurred"),
