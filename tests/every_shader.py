@@ -137,7 +137,7 @@ GRAPHS = {
     "attribute": _LIT_BY_ATTRIBUTE,
 }
 # Graphs on meshes that between them read all that shaders can read: what a target changes in one of
-# the others it changes in these. The others are tried with the plain targets.
+# the others it changes in these. The others are tried with one plain target on each mesh.
 _TELLING = {
     ("nothing", "bare"),
     ("emission", "whole"),
@@ -147,6 +147,7 @@ _TELLING = {
     ("attribute", "bare"),
 }
 _PLAIN = (surface_target.COLOR, surface_target.COLOR_AND_MATTES)
+_TARGET_OF = {"bare": surface_target.COLOR, "whole": surface_target.COLOR_AND_MATTES}
 # With and without what a mesh may lack.
 MESHES = {
     "bare": {},
@@ -159,11 +160,16 @@ def surface_infos():
     for (target_name, target), (graph_name, graph), (mesh_name, mesh) in product(
         surface_targets(), GRAPHS.items(), MESHES.items()
     ):
-        if (graph_name, mesh_name) not in _TELLING and target not in _PLAIN:
+        if (graph_name, mesh_name) not in _TELLING and target is not _TARGET_OF[mesh_name]:
             continue
         code = surface_code.generate(graph, mesh)
         for holdout, deforms, glow in product((False, True), repeat=3):
             if glow and (holdout or not code.glows):
+                continue
+            # Deforming is of corners, the others are of the end of a fragment: singly with the
+            # plain targets, together with the others.
+            ends = holdout or glow
+            if (deforms and ends) if target in _PLAIN else (deforms != ends):
                 continue
             label = f"{target_name}, {graph_name}, {mesh_name}, {holdout=}, {deforms=}, {glow=}"
             yield label, surface.surface_info(target, code, mesh, holdout, deforms, glow)
