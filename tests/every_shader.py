@@ -46,6 +46,9 @@ def surface_targets():
             made = surface_target.through_lens(made) if bends else made
             yield f"color {splits=} {disperses=} {bends=}", made
     for target in (surface_target.COLOR, surface_target.COLOR_AND_MATTES):
+        shadowed = surface_target.with_shadows(target)
+        yield "shadows", shadowed
+        yield "layer shadows", surface_target.of_layers(shadowed)
         yield "layer", surface_target.of_layers(target)
         split = surface_target.without_highlights(target)
         yield "layer splits", surface_target.of_layers(split)

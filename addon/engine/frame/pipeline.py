@@ -83,6 +83,8 @@ class FrameRenderer(ReadableFrame):
         if plan.bokeh:
             target = surface_target.without_highlights(target, plan.bokeh.unsplit)
             self._highlights = highlight_buffer(plan)
+        if plan.shadows:
+            target = surface_target.with_shadows(target)
         if plan.chromatic:
             target = surface_target.in_wavelengths(target)
         layers_target = surface_target.blurred_by_lens(target) if plan.real_lens else target

@@ -51,6 +51,8 @@ class Lighting:
     def bind(self, shader):
         """Set what `surface.surface_info` has declared for lit surfaces in a bound shader."""
         shader.uniform_sampler("lights_tx", self.table)
+        if not shader.declares("light_maps_tx"):
+            return
         shader.uniform_sampler("light_maps_tx", self.maps)
         shader.uniform_int("light_places", self.places[:4])
         shader.uniform_int("more_light_places", self.places[4:])

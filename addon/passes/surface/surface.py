@@ -16,18 +16,17 @@ from ..nodes import surface_code
 from . import environment
 from .surface_target import COLOR, whole
 
-# Samplers of a lit surface: the light table and the light maps, the world's image and its
-# prefiltered levels, and the reflectance table of GGX lobes.
+# Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and the
+# reflectance table of GGX lobes.
 LIGHTING_TEXTURES = (
     "lights_tx",
-    "light_maps_tx",
     "environment_tx",
     "environment_levels_tx",
     "ggx_tx",
 )
 # Which light samples a drawing is lit by, and how far a coarser level of detail may be from the
 # true surface, in the mesh's units.
-LIGHTING_CONSTANTS = (
+SHADOW_CONSTANTS = (
     ("IVEC4", "light_places"),
     ("IVEC4", "more_light_places"),
     ("IVEC2", "steady_places"),
@@ -170,7 +169,9 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
         structs += environment.ENVIRONMENT_PARAMS.source
         uniforms.append(("EnvironmentParams", "environment_buf"))
         samplers += [("FLOAT_2D", name) for name in LIGHTING_TEXTURES]
-        push_constants += LIGHTING_CONSTANTS
+        if "SHADOWS" in defines:
+            samplers.append(("FLOAT_2D", "light_maps_tx"))
+            push_constants += SHADOW_CONSTANTS
     if target.names_material and not holdout:
         push_constants.append(("FLOAT", "material_id"))
     libraries = (*libraries_of_split, *_LIBRARIES, *(code.libraries if shades else ()))
@@ -372,7 +373,7 @@ def draw_sample(
                 shader.uniform_block("highlight_buf", highlights)
             if optics is not None:
                 optics.bind(shader)
-            if shader.declares("light_maps_tx"):
+            if shader.declares("lights_tx"):
                 lights.bind(shader)
         if draw.material_id is not None:
             shader.uniform_float("material_id", draw.material_id)

@@ -94,6 +94,20 @@ def without_highlights(target, unsplit=frozenset()):
     return replace(target, splits=True, unsplit=unsplit, defines=(*target.defines, SPLIT))
 
 
+def with_shadows(target):
+    """Return a target whose lit surfaces are shadowed; their shaders are larger.
+
+    Parameters
+    ----------
+    target : SurfaceTarget
+
+    Returns
+    -------
+    SurfaceTarget
+    """
+    return replace(target, defines=(*target.defines, "SHADOWS"))
+
+
 def whole(target):
     """Return the target for a surface whose light is not splatted."""
     if not target.splits:

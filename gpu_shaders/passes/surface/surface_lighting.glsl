@@ -160,8 +160,12 @@ Reflected diffuse_light(Shading s)
     sum += reflected;
     unsplit += reflected * light.unsplit;
   }
+#ifdef SHADOWS
   Reflected hidden = hidden_diffuse(s, sum);
   return Reflected(sum - hidden.light, unsplit - hidden.unsplit, hidden.shift);
+#else
+  return Reflected(sum, unsplit, vec3(0.0));
+#endif
 }
 
 // The world in a direction, averaged over a lobe of a roughness.
@@ -285,6 +289,7 @@ vec3 lamp_glossy(Shading s, Light light, Lobes lobes)
          lobes_reflect(lobes.a, lobes.repeat_a, lobes.b, lobes.repeat_b, cos_d);
 }
 
+#ifdef SHADOWS
 // Of what lobes reflect, what light samples of a list do not reach.
 // The sky's light `mirrored` is hidden as it is from a white Lambertian surface that faces the mirrored
 // direction.
@@ -325,6 +330,8 @@ Reflected hidden_glossy(Shading s, vec3 lit, Lobes lobes, vec3 mirrored)
   return steady;
 }
 
+#endif
+
 // Light reflected by two lobes of one roughness.
 Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
 {
@@ -356,8 +363,12 @@ Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
     sum += reflected;
     unsplit += reflected * light.unsplit;
   }
+#ifdef SHADOWS
   Reflected hidden = hidden_glossy(s, sum, lobes, of_sky);
   return Reflected(sum - hidden.light, unsplit - hidden.unsplit, hidden.shift);
+#else
+  return Reflected(sum, unsplit, vec3(0.0));
+#endif
 }
 
 #include "passes/surface/surface_closures.glsl"

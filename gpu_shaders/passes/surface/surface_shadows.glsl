@@ -4,6 +4,15 @@
 // samples, the same in every drawing, so that what is splatted and what lens samples keep add up; how the
 // shadows of this drawing differ from those is `shift`.
 
+// Reflected by a white surface of the shape, of one lamp.
+vec3 lamp_diffuse(Shading s, Light light, Illumination incoming)
+{
+  return incoming.irradiance *
+         (light.factors.x * diffuse_response(s, incoming.towards, incoming.sin2));
+}
+
+#ifdef SHADOWS
+
 // From this share of the highlight threshold on light may be splatted.
 #define STEADY_FROM 0.75
 // Most that a place on an area light gives of what its whole does.
@@ -80,13 +89,6 @@ int light_sample_row(Shadowing shadowing, int i)
          light_map_place(shadowing.places, shadowing.more_places, i) - 1;
 }
 
-// Reflected by a white surface of the shape, of one lamp.
-vec3 lamp_diffuse(Shading s, Light light, Illumination incoming)
-{
-  return incoming.irradiance *
-         (light.factors.x * diffuse_response(s, incoming.towards, incoming.sin2));
-}
-
 // What a place on an area light gives of the light of its whole, 1 on the average over places.
 float lamp_part(Shading s, Light light, Illumination incoming, vec3 place)
 {
@@ -153,3 +155,4 @@ Reflected hidden_diffuse(Shading s, vec3 lit)
   steady.shift = steady.light - own.light;
   return steady;
 }
+#endif
