@@ -78,13 +78,11 @@ class FrameRenderer(ReadableFrame):
         self._earlier_rounds = DrawingCounts()
         self._cryptomattes = cryptomatte_kinds(plan.passes)
         self._mattes = needs_mattes(plan)
-        target = surface_target.COLOR_AND_MATTES if self._mattes else surface_target.COLOR
+        target = surface_target.of_picture(self._mattes, plan.shadows)
         self._highlights = None
         if plan.bokeh:
             target = surface_target.without_highlights(target, plan.bokeh.unsplit)
             self._highlights = highlight_buffer(plan)
-        if plan.shadows:
-            target = surface_target.with_shadows(target)
         if plan.chromatic:
             target = surface_target.in_wavelengths(target)
         layers_target = surface_target.blurred_by_lens(target) if plan.real_lens else target

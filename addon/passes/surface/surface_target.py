@@ -94,6 +94,12 @@ def without_highlights(target, unsplit=frozenset()):
     return replace(target, splits=True, unsplit=unsplit, defines=(*target.defines, SPLIT))
 
 
+def of_picture(mattes, shadows):
+    """Return the target of the colour picture, with or without mattes and shadows."""
+    target = COLOR_AND_MATTES if mattes else COLOR
+    return with_shadows(target) if shadows else target
+
+
 def with_shadows(target):
     """Return a target whose lit surfaces are shadowed; their shaders are larger.
 
