@@ -32,7 +32,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 if str(REPOSITORY) not in sys.path:
     sys.path.insert(0, str(REPOSITORY))
 
-from addon.engine.drawing import scene_drawing  # noqa: E402  (after the path is set)
+from addon.engine.drawing import group_levels  # noqa: E402  (after the path is set)
 from addon.levels import choosing  # noqa: E402
 from benchmarks.referees.picture_metrics import srgb  # noqa: E402
 from benchmarks.tools.noise_threshold import SCENES, kept, opened  # noqa: E402
@@ -139,7 +139,7 @@ def picture(bench, options, seed, **settings):
 
 def forced(bench, options, level):
     """Draw a case with all objects at a level."""
-    modules = (choosing, scene_drawing)
+    modules = (choosing, group_levels)
     own = [(m.choose_levels, m.allowed_levels) for m in modules]
     for module in modules:
         module.choose_levels = lambda seen, *_: np.full(len(seen.radius), float(level))

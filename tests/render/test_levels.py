@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from addon.engine.drawing import scene_drawing
+from addon.engine.drawing import group_levels
 from addon.engine.shared_resources import listen
 from addon.levels import choosing
 from tests.pictures import energy_ratio, save_side_by_side, srgb
@@ -161,7 +161,7 @@ def test_levels_that_are_forced_keep_the_light(toys, monkeypatch, tmp_path, leve
     def forced(seen, _triangles, _plan, _bias=0.0):
         return np.full(len(seen.radius), float(level))
 
-    for module in (choosing, scene_drawing):
+    for module in (choosing, group_levels):
         monkeypatch.setattr(module, "choose_levels", forced)
         monkeypatch.setattr(module, "allowed_levels", lambda chosen, _wanted: chosen)
     picture, work = render(toys)
@@ -170,3 +170,27 @@ def test_levels_that_are_forced_keep_the_light(toys, monkeypatch, tmp_path, leve
     for channel in range(3):
         one, other = picture[..., channel : channel + 1], right[..., channel : channel + 1]
         assert energy_ratio(one, other) == pytest.approx(1.0, abs=0.01), tmp_path
+
+
+@pytest.mark.parametrize("toys", ["flat"], indirect=True)
+def test_slopes_through_a_ramp_keep_the_light(toys, tmp_path):
+    # The mean of what a ramp makes of the normals is not what it makes of their mean.
+    import bpy
+
+    for obj in [obj for obj in toys.objects if obj.type == "MESH"]:
+        obj.data.materials.clear()
+        material = bpy.data.materials.new("slope")
+        obj.data.materials.append(material)
+        material.node_tree.nodes.clear()
+        tree = Tree(material.node_tree)
+        normal = tree.node("NewGeometry").outputs["Normal"]
+        across = tree.node("SeparateXYZ", {"Vector": normal}).outputs["Z"]
+        ramp = tree.node("ValToRGB", {"Fac": across})
+        ramp.color_ramp.elements[0].position = 0.45
+        ramp.color_ramp.elements[1].position = 0.5
+        tree.emission(ramp.outputs["Color"])
+    toys.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.0, 0.0, 0.0, 1.0)
+    right, _ = render(toys, use_levels=False)
+    picture, _ = render(toys)
+    save_side_by_side(tmp_path / "slopes_full_difference.png", picture, right)
+    assert energy_ratio(picture, right) == pytest.approx(1.0, abs=0.003), tmp_path

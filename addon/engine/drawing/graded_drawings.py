@@ -38,12 +38,15 @@ class _Candidate:
     mesh : MeshSnapshot
     world : ndarray of shape (4, 4)
         Object to world space.
+    deepest : int
+        Coarsest level that its parts may have.
     depth : ndarray of shape (4,)
         Depth as a linear function of object space: a factor for each coordinate, and a constant.
     """
 
     mesh: object
     world: np.ndarray
+    deepest: int
     depth: np.ndarray
 
 
@@ -71,31 +74,33 @@ class GradedDrawings:
         self._candidates, self._shares, self._keys = {}, {}, {}
         self.rows = {}
 
-    def find(self, rows, group_of, plan):
+    def find(self, depths, group_of, plan):
         """Begin a frame: find the instances whose graded mesh would save triangles.
 
         Parameters
         ----------
-        rows : iterable of int
-            Rows of the instance table that are drawn at level 0.
+        depths : dict of int to int
+            By row of the instance table that is drawn at level 0, the coarsest level that its
+            parts may have.
         group_of : ndarray of shape (I,)
         plan : FramePlan
         """
         self._plan = plan
         self._candidates, self._shares, self._keys = {}, {}, {}
         self.rows = {}
-        for row in rows:
+        for row, deepest in depths.items():
             mesh = self._content.meshes[self._content.groups[group_of[row]].mesh]
             levels = self._buffers.levels.get(mesh.uid)
             count = len(mesh.triangles)
             if (
                 count < LEAST_GRADED_TRIANGLES
                 or not levels
+                or deepest == 0
                 or not self._pays(count, 0.0, plan.samples)
             ):
                 continue
             world = self._content.instances.world[row].astype(np.float64)
-            found = _Candidate(mesh, world, -(plan.view[2] @ world))
+            found = _Candidate(mesh, world, deepest, -(plan.view[2] @ world))
             share = self._share(found)
             if self._pays(count, share, plan.samples):
                 self._candidates[row] = found
@@ -151,7 +156,7 @@ class GradedDrawings:
         key = self._keys[row]
         if key not in self._made:
             found = self._candidates[row]
-            tree = self._buffers.merge_tree(found.mesh.uid)
+            tree = self._buffers.merge_tree(found.mesh.uid, found.deepest)
             self._made[key] = MeshBuffers(tree.grade(self._limits(found)))
         return self._made[key]
 
@@ -163,7 +168,7 @@ class GradedDrawings:
     def _share(self, found):
         if self._plan.progressive:
             return _USUAL_SHARE
-        tree = self._buffers.merge_tree(found.mesh.uid)
+        tree = self._buffers.merge_tree(found.mesh.uid, found.deepest)
         return tree.share(self._limits(found, tree.probes))
 
     def _limits(self, found, vertices=slice(None)):
@@ -179,7 +184,7 @@ class GradedDrawings:
             lens += tuple(plan.chromatic.overall().inverse_focus.tolist())
         shown = (plan.projection[1, 1], plan.height, plan.orthographic, plan.level_bias)
         place = (found.depth.tobytes(), found.world[:3, :3].tobytes())
-        return found.mesh.uid, levels, place, lens, shown
+        return found.mesh.uid, levels, found.deepest, place, lens, shown
 
     def _pays(self, triangles, share, drawings):
         saved = drawings * triangles * (1.0 - share)

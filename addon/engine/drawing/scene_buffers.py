@@ -12,6 +12,7 @@ from ...device.census import size_of_texture
 from ...device.geometry import MeshBuffers
 from ...device.textures import TextureCache, image_texture, texture_2d
 from ...device.uniforms import uniform_buffer
+from ...levels.bent_levels import unbent_levels
 from ...levels.making.graded_levels import MergeTree
 from ...passes.surface import environment, environment_bake
 from ...sampling.lights.sky_samples import Sky
@@ -83,6 +84,7 @@ class SceneBuffers:
         )
         self._level_meshes = {}
         self._merge_trees = {}
+        self._unbent = {}
         self._fixed = None
         self._materials = {}
         self._instance_table = None
@@ -100,7 +102,7 @@ class SceneBuffers:
         self._content = None
         for uid in self.meshes.keys() - content.meshes.keys():
             del self.meshes[uid]
-            for kept in (self.levels, self._level_meshes, self._merge_trees):
+            for kept in (self.levels, self._level_meshes, self._merge_trees, self._unbent):
                 kept.pop(uid, None)
         levels = (level.uid for levels in self._level_meshes.values() for level in levels)
         self.shapes.keep({*content.meshes, *levels})
@@ -179,20 +181,39 @@ class SceneBuffers:
         """
         self.levels[uid] = tuple(MeshBuffers(level) for level in levels)
         self._level_meshes[uid] = tuple(levels)
-        self._merge_trees.pop(uid, None)
+        for made_of_them in (self._merge_trees, self._unbent):
+            made_of_them.pop(uid, None)
         self.levels_version += 1
 
-    def merge_tree(self, uid):
-        """Return the `MergeTree` of a mesh with uploaded levels, made at its first use."""
-        tree = self._merge_trees.get(uid)
-        if tree is None:
-            tree = MergeTree(self._content.meshes[uid], self._level_meshes[uid])
-            self._merge_trees[uid] = tree
-        return tree
+    def unbent_levels(self, uid, keys):
+        """Return how many uploaded levels of a mesh keep the distributions of some attributes.
+
+        Parameters
+        ----------
+        uid : int
+        keys : frozenset of str
+            See `levels.bent_levels.unbent_levels`.
+
+        Returns
+        -------
+        int
+        """
+        known = self._unbent.setdefault(uid, {})
+        if keys not in known:
+            known[keys] = unbent_levels(self._content.meshes[uid], self._level_meshes[uid], keys)
+        return known[keys]
+
+    def merge_tree(self, uid, deepest):
+        """Return the `MergeTree` of a mesh down to an uploaded level, made at its first use."""
+        trees = self._merge_trees.setdefault(uid, {})
+        if deepest not in trees:
+            levels = self._level_meshes[uid][:deepest]
+            trees[deepest] = MergeTree(self._content.meshes[uid], levels)
+        return trees[deepest]
 
     def drop_levels(self):
         """Release the levels of detail; full detail is drawn until new ones are added."""
-        for kept in (self.levels, self._level_meshes, self._merge_trees):
+        for kept in (self.levels, self._level_meshes, self._merge_trees, self._unbent):
             kept.clear()
         self.levels_version += 1
 

@@ -11,20 +11,13 @@ import numpy as np
 
 from ...device import state
 from ...device.textures import texture_2d
-from ...levels.choosing import (
-    allowances,
-    allowed_levels,
-    blur_for_levels,
-    choose_levels,
-    extents,
-    level_for_sample,
-    world_corners,
-)
+from ...levels.choosing import extents, level_for_sample, world_corners
 from ...passes.surface import surface
 from . import culling
 from .divided_drawings import DividedDrawings
 from .drawing_counts import DrawingCounts
 from .graded_drawings import GradedDrawings
+from .group_levels import GroupLevels
 from .light_maps import LightMaps
 from .scene_buffers import instance_texels
 from .shared_drawings import SharedDrawings
@@ -72,14 +65,7 @@ class SceneDrawing:
         self._group_of = np.zeros(len(self._corners), np.int64)
         for number, group in enumerate(content.groups):
             self._group_of[group.first : group.first + group.count] = number
-        self._triangles = [
-            [level.triangles for level in buffers.mesh_levels(group.mesh)]
-            for group in content.groups
-        ]
-        self._blur_for_levels = [
-            blur_for_levels(*buffers.level_meshes(content.meshes[group.mesh]))
-            for group in content.groups
-        ]
+        self._group_levels = GroupLevels(content, buffers)
         self._by_level = _by_level(self._draws)
         self._glows_by_level = _by_level(self._glows)
         # Transparent and glowing surfaces differ from sample to sample: they share no drawing.
@@ -116,7 +102,7 @@ class SceneDrawing:
         seen = extents(self._corners, plan.view, plan.chromatic)
         self.nearest = float(seen.nearest[self._seen].min(initial=np.inf))
         self.farthest = float(seen.farthest[self._seen].max(initial=0.0))
-        self.levels = self._choose_levels(seen)
+        self.levels = self._group_levels.choose(seen, plan)
         self.lights.aim(plan, self._seen, seen)
         whole = np.flatnonzero(self._visible & (self.levels < 1.0))
         self._divided.find(whole, self._group_of, seen.nearest, plan)
@@ -137,7 +123,8 @@ class SceneDrawing:
         self._order_rows()
 
     def _triangles_of(self, row):
-        return self._graded.triangles(row, self._triangles[self._group_of[row]])
+        counts = self._group_levels.triangles[self._group_of[row]]
+        return self._graded.triangles(row, counts)
 
     def _slack(self, row):
         """Return how far a graded mesh may be from the true surface, in its units."""
@@ -154,21 +141,9 @@ class SceneDrawing:
             # Not graded where the light varies over the surface: highlights are found at full
             # detail.
             rows = [row for row in rows if self._group_of[row] not in plan.bokeh.uneven]
-        rows = [int(row) for row in rows if row not in self._divided.rows]
-        self._graded.find(rows, self._group_of, plan)
-
-    def _choose_levels(self, seen):
-        plan = self._plan
-        deepest = np.array([len(counts) - 1 for counts in self._triangles], int)[self._group_of]
-        if plan.level_bias is None or not deepest.any():
-            return np.zeros(len(self._corners))
-        full = np.array([counts[0] for counts in self._triangles], float)[self._group_of]
-        bias = plan.level_bias + allowances(self._content, plan)
-        chosen = choose_levels(seen, full, plan, bias)
-        for number, group in enumerate(self._content.groups):
-            rows = slice(group.first, group.first + group.count)
-            chosen[rows] = allowed_levels(chosen[rows], self._blur_for_levels[number])
-        return np.minimum(chosen, deepest)
+        depths = {int(row): self._group_levels.deepest(row) for row in rows}
+        depths = {row: deepest for row, deepest in depths.items() if row not in self._divided.rows}
+        self._graded.find(depths, self._group_of, plan)
 
     def _order_rows(self):
         """Sort the rows of each group by level of detail, so that equal levels are neighbours."""
