@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .layer_file import is_world
+from .layer_stack import is_world
 from .sinking import WHOLE, sink
 
 # Pixels that are copied before the farther layer's first whole one: colours are mixed between

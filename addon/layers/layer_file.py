@@ -11,6 +11,7 @@ Rows of EXR files run from the top; here, as everywhere, from the bottom.
 
 import json
 import math
+import re
 from dataclasses import asdict, fields
 
 import numpy as np
@@ -18,10 +19,12 @@ import numpy as np
 from ..errors import InputError, UnfinishedFileError
 from ..files.whole_file import reason_of, whole_file
 from .exr_file import read_exr
-from .layer_stack import DepthLayer, LayerCamera, LayerStack
+from .layer_stack import DepthLayer, LayerCamera, LayerStack, is_world
+from .stack_checks import check_stack
 
 FORMAT = "aplanat-depth-layers"
 FORMAT_VERSION = 1
+_PART_NAME = re.compile(r"layer\.\d\d+")
 _COLOR = "RGBA"
 _DEPTH = "Z"
 # Passes whose channels are coordinates; of the others three or four channels are colours.
@@ -103,7 +106,10 @@ def load_layers(path):
     header = _known_header(path, parts)
     try:
         told = json.loads(header["stack"])
-        bounds = told["layers"]
+        bounds = [
+            tuple(math.inf if bound is None else float(bound) for bound in (near, far))
+            for near, far in told["layers"]
+        ]
         stack_numbers = {name: told[name] for name in _STACK_NUMBERS}
         stack_numbers["overscan"] = tuple(told["overscan"])
         camera = _camera(told["camera"])
@@ -120,8 +126,7 @@ def load_layers(path):
             raise InputError(
                 f"'{path}' lacks layer {number} of {len(bounds)} (part '{name}'); capture again"
             )
-        bounds_ = [math.inf if bound is None else bound for bound in (near, far)]
-        layers.append(_layer(path, by_name[name], *bounds_))
+        layers.append(_layer(path, by_name[name], near, far))
     stack = LayerStack(layers=tuple(layers), camera=camera, report=report, **stack_numbers)
     check_stack(stack, f"'{path}'")
     return stack
@@ -153,84 +158,19 @@ def is_layer_file(path):
     Raises
     ------
     InputError
-        If it is no EXR file.
+        If it is no EXR file, or has lost what a file of layers tells of itself.
     """
-    return any(part.header.get("format") == FORMAT for part in read_exr(path, header_only=True))
-
-
-def check_stack(stack, name):
-    """Refuse a stack that nothing can be made of.
-
-    Parameters
-    ----------
-    stack : LayerStack
-    name : str
-        What it is, for messages.
-
-    Raises
-    ------
-    InputError
-    """
-    if not stack.layers:
-        raise InputError(f"{name} has no layers; capture again")
-    _check_camera(stack.camera, name)
-    size = stack.width + 2 * stack.overscan[0], stack.height + 2 * stack.overscan[1]
-    for number, layer in enumerate(stack.layers):
-        for what, pixels in (
-            ("colours", layer.color),
-            ("depth", layer.depth),
-            *((f"pass '{n}'", p) for n, p in layer.passes.items()),
-        ):
-            if pixels.shape[1::-1] != size:
-                raise InputError(
-                    f"{name}: {what} of layer {number} are {pixels.shape[1]} x {pixels.shape[0]}"
-                    f" pixels, and picture and overscan {size[0]} x {size[1]}; capture again"
-                )
-        _check_values(name, number, layer, number == len(stack.layers) - 1)
-
-
-def _check_camera(camera, name):
-    projection = np.array(camera.projection, np.float64)
-    usable = projection.shape == (4, 4) and np.isfinite(projection).all()
-    if not usable or np.linalg.matrix_rank(projection) < 4:
-        raise InputError(f"{name}: the camera's projection makes no picture; capture again")
-    for what, value in (
-        ("f-number", camera.f_stop),
-        ("focus distance", camera.focus_distance),
-        ("focal length", camera.focal_length_mm),
-        ("ratio of the aperture", camera.aperture_ratio),
-    ):
-        if not 0.0 < value < math.inf:
-            raise InputError(f"{name}: the camera's {what} is {value:g}; capture again")
-
-
-def is_world(layer):
-    """Whether a layer is a world: it has no depth anywhere and covers something."""
-    return bool(not np.isfinite(layer.depth).any() and layer.color[..., 3].any())
-
-
-def _check_values(name, number, layer, is_last):
-    if not np.isfinite(layer.color).all():
-        count = int((~np.isfinite(layer.color)).any(axis=-1).sum())
+    parts = read_exr(path, header_only=True)
+    if any(part.header.get("format") == FORMAT for part in parts):
+        return True
+    left = next((part.name for part in parts if _PART_NAME.fullmatch(part.name)), None)
+    if left is not None:
+        # Taken for any picture with a depth, it would be one layer of many.
         raise InputError(
-            f"{name}: layer {number} has colours that are no finite numbers at {count} pixels;"
-            " capture again"
+            f"'{path}' has a part '{left}' as depth layers have, but not their attributes: other"
+            " software has written it anew, or its first part is missing; capture again"
         )
-    depth = layer.depth
-    count = int((np.isnan(depth) | (depth < 0.0)).sum())
-    if count:
-        raise InputError(
-            f"{name}: layer {number} has depths that are negative or no numbers at {count} pixels;"
-            " capture again"
-        )
-    if is_last and is_world(layer):
-        return
-    count = int((np.isinf(depth) & (layer.color[..., 3] > 0.0)).sum())
-    if count:
-        raise InputError(
-            f"{name}: layer {number} has infinite depth at {count} pixels that it covers; only the"
-            " world may, as the last layer: capture again"
-        )
+    return False
 
 
 def _known_header(path, parts):
@@ -368,7 +308,7 @@ def _layer(path, part, near, far):
     return DepthLayer(
         color=picture(_COLOR),
         depth=picture(_DEPTH)[..., 0],
-        near=float(near),
-        far=float(far),
+        near=near,
+        far=far,
         passes={name: picture(names) for name, names in passes.items()},
     )

@@ -133,3 +133,8 @@ class LayerStack:
         if not held:
             return 2.0, 1.0
         return float(min(d.min() for d in held)), float(max(d.max() for d in held))
+
+
+def is_world(layer):
+    """Whether a layer is a world: it has no depth anywhere and covers something."""
+    return bool(not np.isfinite(layer.depth).any() and layer.color[..., 3].any())

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from addon.errors import CameraError, InputError
-from addon.layers.layer_file import check_stack, is_world
+from addon.layers.layer_stack import is_world
+from addon.layers.stack_checks import check_stack
 from tests.capture.conftest import laid_over
 
 

@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from addon.errors import InputError
 from addon.layers.flat_input import FlatOptions, load_flat
-from addon.layers.layer_file import check_stack, is_world, load_layers, save_layers
-from addon.layers.layer_stack import LayerCamera
+from addon.layers.layer_file import load_layers, save_layers
+from addon.layers.layer_stack import LayerCamera, is_world
+from addon.layers.stack_checks import check_stack
 
 HEIGHT, WIDTH = 6, 8
 DEPTH = np.linspace(2.0, 30.0, HEIGHT * WIDTH, dtype=np.float32).reshape(HEIGHT, WIDTH)

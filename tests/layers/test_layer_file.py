@@ -54,7 +54,8 @@ def stacks(draw):
         )
     )
     layers = []
-    for _ in range(draw(st.integers(1, 3))):
+    nears = draw(st.lists(st.floats(0.0, 1e30), min_size=1, max_size=3).map(sorted))
+    for near in nears:
         depth = draw(hnp.arrays(np.float32, size, elements=st.floats(0.0, 2.0**120, width=32)))
         color = draw(hnp.arrays(np.float32, (*size, 4), elements=finite))
         color[..., 3] = np.clip(color[..., 3], 0.0, 1.0)
@@ -64,7 +65,7 @@ def stacks(draw):
             DepthLayer(
                 color,
                 depth,
-                draw(st.floats(0.0, 1e30)),
+                near,
                 draw(st.floats(0.0, allow_nan=False)),
                 {
                     name: draw(hnp.arrays(np.float32, (*size, count), elements=finite))
@@ -244,6 +245,14 @@ def test_another_version_and_broken_numbers_are_refused(written):
         ("f_stop", 0.0, "f-number is 0"),
         ("f_stop", math.nan, "f-number is nan"),
         ("focus_distance", -1.0, "focus distance is -1"),
+        ("focus_distance", "near", "focus distance is 'near'"),
+        ("blades", "five", "number of blades is 'five'"),
+        ("blades", -3, "number of blades is -3"),
+        ("blade_rotation", math.inf, "blade rotation is inf"),
+        ("aperture_radius", -1.0, "aperture radius is -1"),
+        ("sensor_mm", (0.0, 0.0), "sensor is"),
+        ("unit_scale", math.nan, "unit scale is nan"),
+        ("orthographic", "yes", "kind is 'yes'"),
     ],
 )
 def test_a_camera_that_makes_no_picture_is_refused(name, value, told, tmp_path):
@@ -251,6 +260,40 @@ def test_a_camera_that_makes_no_picture_is_refused(name, value, told, tmp_path):
     stack = replace(stack, camera=replace(stack.camera, **{name: value}))
     with pytest.raises(InputError, match=told):
         save_layers(tmp_path / "a.exr", stack)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("width", 6.5, "width is 6.5"),
+        ("overscan", [-1, 0], "overscan is"),
+        ("pixel_aspect", 0, "pixel aspect is 0"),
+        ("frame", "x", "frame is 'x'"),
+        ("engine", None, "engine is None"),
+        ("layers", 7, "'stack' cannot be read"),
+        ("layers", [[5.0, None], [0.0, 5.0], [None, None]], "the foremost layer is not the first"),
+    ],
+)
+def test_numbers_of_a_picture_that_are_none_are_refused(name, value, told, written):
+    def change(number, header, _channels):
+        if number == 0:
+            header["stack"] = json.dumps(json.loads(header["stack"]) | {name: value})
+
+    rewritten(written, change)
+    assert told in refusal(written)
+
+
+def test_layers_that_lost_their_attributes_are_no_picture_with_a_depth_pass(written):
+    def forget(_number, header, _channels):
+        for name in ("format", "formatVersion", "stack", "passes"):
+            header.pop(name, None)
+
+    kept = written.read_bytes()
+    for change in (forget, lambda number, _header, _channels: number != 0):
+        written.write_bytes(kept)
+        rewritten(written, change)
+        with pytest.raises(InputError, match="but not their attributes"):
+            is_layer_file(written)
 
 
 def test_layers_that_do_not_fit_are_not_written(tmp_path):
