@@ -2,7 +2,8 @@
 
 from .cli import blender_command
 from .engine import render_engine, shared_resources
-from .ui.jobs import background, live_refocus
+from .ui.focus import focus_gizmo, focus_operators, focus_overlay, focus_panels
+from .ui.jobs import background, live_refocus, report_redraw
 from .ui.operators import (
     capture_operator,
     chromatic_curves,
@@ -13,6 +14,7 @@ from .ui.operators import (
     level_operators,
     refocus_operators,
     refocus_writing,
+    report_operators,
 )
 from .ui.panels import (
     aberration_panel,
@@ -25,6 +27,7 @@ from .ui.panels import (
     lens_panel,
     refocus_panel,
     render_panels,
+    report_panel,
     sampling_panel,
 )
 from .ui.presets import preset_menus
@@ -42,6 +45,9 @@ _MODULES = (
     blender_panels,
     preset_menus,
     level_operators,
+    report_redraw,
+    report_operators,
+    report_panel,
     sampling_panel,
     render_panels,
     lens_operators,
@@ -62,6 +68,10 @@ _MODULES = (
     refocus_operators,
     refocus_writing,
     refocus_panel,
+    focus_operators,
+    focus_overlay,
+    focus_gizmo,
+    focus_panels,
     compositor_operators,
     compositor_panel,
     blender_command,

@@ -30,6 +30,25 @@ def read_color(framebuffer, width, height, channels=4, slot=0):
     return pixels
 
 
+def read_depth():
+    """Copy the depth of the bound frame buffer, within its viewport, into a texture.
+
+    Returns
+    -------
+    texture : GPUTexture
+        R32F.
+    origin : tuple of 2 int
+        Lower left corner of the viewport in the frame buffer, px.
+    """
+    import gpu
+
+    x, y, width, height = gpu.state.viewport_get()
+    pixels = gpu.state.active_framebuffer_get().read_depth(x, y, width, height)
+    # A flat buffer is what a texture takes.
+    pixels.dimensions = width * height
+    return gpu.types.GPUTexture((width, height), format="R32F", data=pixels), (x, y)
+
+
 def read_texel(texture, layer, x, y):
     """Read a texel of four channels of an array texture.
 

@@ -137,3 +137,11 @@ def over():
 
     overwrite()
     gpu.state.blend_set("ALPHA_PREMULT")
+
+
+def veil():
+    """Alpha-blend colour that is not premultiplied over the target; no depth."""
+    import gpu
+
+    overwrite()
+    gpu.state.blend_set("ALPHA")

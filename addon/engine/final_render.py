@@ -61,7 +61,7 @@ def _render_view(engine, depsgraph, session, extractor, view):
     statistics = heard.statistics
     with statistics.timed("extract"):
         snapshot = extractor.extract(depsgraph, engine.frame_set, view)
-    _show_report(engine, session, frame_report(snapshot))
+    _show_report(engine, session, depsgraph.scene, frame_report(snapshot))
     heard.check_strict()
     with statistics.timed("plan"):
         plan = plan_frame(snapshot)
@@ -88,7 +88,7 @@ def _render_view(engine, depsgraph, session, extractor, view):
             statistics.sprites_drawn += counts.sprites_drawn
             statistics.sprites_copied += counts.sprites_copied
             session.note_picture(depsgraph.scene, renderer)
-            _show_report(engine, session, frame_report(snapshot, renderer))
+            _show_report(engine, session, depsgraph.scene, frame_report(snapshot, renderer))
             if renderer.highlights:
                 for name, number in vars(renderer.highlights).items():
                     statistics.highlights[name] += number
@@ -104,9 +104,10 @@ def _render_view(engine, depsgraph, session, extractor, view):
         heard.layers.append(picture)
 
 
-def _show_report(engine, session, lines):
+def _show_report(engine, session, scene, lines):
     for line in session.report(lines):
         engine.report({"WARNING"}, line)
+    session.note_findings(scene, "render", session.warnings)
 
 
 def _in_main_thread(engine, work):

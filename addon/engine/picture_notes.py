@@ -8,6 +8,25 @@ _MOST_SCENES = 64
 
 
 @dataclass(frozen=True)
+class Findings:
+    """What a picture lacks, for *Render > Report*.
+
+    Parameters
+    ----------
+    warnings : tuple of str
+        As `report.frame_report` returns them.
+    error : str
+        Why there is no picture, in one line; empty if there is one.
+    levels : float
+        Share of its levels of detail that are made, 0 to 1.
+    """
+
+    warnings: tuple[str, ...] = ()
+    error: str = ""
+    levels: float = 1.0
+
+
+@dataclass(frozen=True)
 class PictureNote:
     """Counts and warnings of the last picture of a scene.
 
@@ -21,12 +40,16 @@ class PictureNote:
         Numbers of highlight sources, as in `FrameRenderer.fates`.
     sampling : SamplingReport or None
         Samples and error that were reached.
+    viewport, render : Findings or None
+        Of the viewport and of the final render; None where there was none yet.
     """
 
     counts: dict | None = None
     problems: tuple = ()
     fates: dict = field(default_factory=dict)
     sampling: object = None
+    viewport: Findings | None = None
+    render: Findings | None = None
 
 
 class PictureNotes:
@@ -34,6 +57,7 @@ class PictureNotes:
 
     def __init__(self):
         self._notes = OrderedDict()
+        self._has_news = False
         self._lock = threading.Lock()
 
     def note(self, scene, renderer):
@@ -57,7 +81,10 @@ class PictureNotes:
         """Replace fields of the `PictureNote` of a scene."""
         number = scene.original.session_uid
         with self._lock:
-            self._notes[number] = replace(self._notes.get(number, PictureNote()), **values)
+            before = self._notes.get(number, PictureNote())
+            after = self._notes[number] = replace(before, **values)
+            if (before.viewport, before.render) != (after.viewport, after.render):
+                self._has_news = True
             self._notes.move_to_end(number)
             while len(self._notes) > _MOST_SCENES:
                 self._notes.popitem(last=False)
@@ -66,3 +93,9 @@ class PictureNotes:
         """Return the `PictureNote` of a scene."""
         with self._lock:
             return self._notes.get(scene.original.session_uid, PictureNote())
+
+    def take_news(self):
+        """Return whether any scene's `Findings` have changed since the last call."""
+        with self._lock:
+            news, self._has_news = self._has_news, False
+            return news

@@ -4,8 +4,9 @@ import bpy
 
 from ..errors import AplanatError, RenderCancelledError
 from ..scene.settings import read_passes
-from . import final_render, gpu_thread
+from . import final_render, gpu_thread, viewport_text
 from .frame import render_passes
+from .report import failure, one_line
 from .shared_resources import resources
 from .viewport import Viewport
 
@@ -46,6 +47,7 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
             heard.error = error
             self.error_set(str(error))
             self.report({"ERROR"}, str(error))
+            session.note_findings(depsgraph.scene, "render", session.warnings, one_line(error))
         except Exception as error:
             # Blender prints the traceback and goes on as if there were a picture: the listener
             # must still get the error.
@@ -54,6 +56,7 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
             # Without an error report Blender goes on to write the picture that is not there, and a
             # multilayer file of nothing crashes it.
             self.report({"ERROR"}, f"Aplanat failed, see the console: {error}")
+            session.note_findings(depsgraph.scene, "render", session.warnings, failure(error))
             raise
 
     def update_render_passes(self, scene=None, renderlayer=None):
@@ -80,8 +83,15 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
             )
         finally:
             self.update_stats("", self._viewport.text)
+            if self._viewport.failed and not _shows_text(context.space_data.overlay):
+                viewport_text.draw(self._viewport.text, context.area, context.region)
         if unfinished:
             self.tag_redraw()
+
+
+def _shows_text(overlay):
+    """Whether Blender itself writes the status line into a 3D view."""
+    return overlay.show_overlays and overlay.show_text
 
 
 _register, _unregister = bpy.utils.register_classes_factory((AplanatRenderEngine,))

@@ -4,13 +4,15 @@ A warning is a line that names the data-block, says what is wrong, and what is d
 Warnings come from reading the scene (`SceneContent.report`, `Camera.report`) and from drawing
 (`FrameRenderer.report`). `frame_report` gathers them; the final render gives them to Blender and to
 the listener's `RenderOutcome` (``--json``, ``--stats``, ``--strict``), the viewport shows the
-first.
+first, and *Render > Report* all of them.
 """
 
 import re
 
 # The number of copies in a warning, which may change from frame to frame.
 _COUNT = re.compile(r" \(\d+ copies\)$")
+# The data-block that a warning begins with.
+_SUBJECT = re.compile(r"(object|material|image|camera|world|scene|view layer) '(.*?)'(?=: | \(| )")
 
 
 def frame_report(snapshot, renderer=None):
@@ -42,3 +44,32 @@ def in_short(lines):
     if len(lines) == 1:
         return f"Warning: {lines[0]}"
     return f"{len(lines)} warnings, the first: {lines[0]}"
+
+
+def subject_of(line):
+    """Return the data-block that a warning is about.
+
+    Parameters
+    ----------
+    line : str
+
+    Returns
+    -------
+    kind, name : str
+        In Blender's words, in lower case: ``"object"``, ``"view layer"``. Both empty if the line
+        begins with none of them.
+    """
+    found = _SUBJECT.match(line)
+    return found.groups() if found else ("", "")
+
+
+def one_line(error):
+    """Return the message of an exception in one line."""
+    return " ".join(str(error).split())
+
+
+def failure(error):
+    """Return in one line what an exception that is a fault of Aplanat says of itself."""
+    told = one_line(error)
+    what = f"{type(error).__name__}: {told}" if told else type(error).__name__
+    return f"Aplanat failed ({what}); the console tells where"

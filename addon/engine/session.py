@@ -16,6 +16,7 @@ from ..scene.camera.irises import IrisReader
 from ..scene.extract import SceneExtractor
 from .drawing.scene_buffers import SceneBuffers
 from .outcome import RenderOutcome
+from .picture_notes import Findings
 from .report import without_count
 
 
@@ -37,6 +38,8 @@ class RenderSession:
         The shared library of lenses, and iris images of its own.
     look_textures : TextureCache
         Textures of the appearance of bokeh discs, kept for the next picture.
+    warnings : list of str
+        Those of the render in progress, or of the last one.
     """
 
     def __init__(self, shared):
@@ -45,6 +48,7 @@ class RenderSession:
         self.look_textures = TextureCache()
         self._levels, self._notes = shared.levels, shared.notes
         self._reported = set()
+        self.warnings = []
         self._handles = weakref.WeakSet()
         self._lock = threading.Lock()
         self._uses, self._closed = 0, False
@@ -74,6 +78,7 @@ class RenderSession:
     def begin_report(self):
         """Clear the list of reported warnings, for the next render."""
         self._reported.clear()
+        self.warnings.clear()
 
     def report(self, lines):
         """Add warnings to the outcome; return those that this render has not reported yet.
@@ -94,8 +99,21 @@ class RenderSession:
             words = without_count(line)
             if words not in self._reported:
                 self._reported.add(words)
+                self.warnings.append(line)
                 new.append(line)
         return new
+
+    def note_findings(self, scene, where, warnings, error="", levels=1.0):
+        """Store what a picture lacks for the panels.
+
+        Parameters
+        ----------
+        scene : bpy.types.Scene
+        where : {'viewport', 'render'}
+        warnings, error, levels
+            As of `Findings`.
+        """
+        self._notes.change(scene, **{where: Findings(tuple(warnings), error, levels)})
 
     def note_picture(self, scene, renderer):
         """Store counts and warnings of a picture for the panels; see `PictureNotes.note`."""

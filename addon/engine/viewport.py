@@ -18,7 +18,7 @@ from .bokeh.marks import shows_marks
 from .frame.pacing import Pacer
 from .frame.pipeline import FrameRenderer
 from .planning.plan import plan_frame
-from .report import frame_report, in_short
+from .report import failure, frame_report, in_short, one_line
 from .shared_resources import resources
 from .viewport_session import session_of_view
 
@@ -36,10 +36,13 @@ class Viewport:
     ----------
     text : str
         Status line: progress, or in one line why there is no picture.
+    failed : bool
+        There is no picture.
     """
 
     def __init__(self):
         self.text = ""
+        self.failed = False
         self._session = None
         self._drawn_session = None
         self._snapshot = None
@@ -81,16 +84,22 @@ class Viewport:
         if self._broken:
             return False
         try:
-            return self._draw(depsgraph, space, region, region_3d, pixel_size)
+            unfinished = self._draw(depsgraph, space, region, region_3d, pixel_size)
         except AplanatError as error:
-            self.text = " ".join(str(error).split())
+            self._fail(depsgraph, one_line(error))
             self._snapshot = None
             return False
-        except Exception:
+        except Exception as error:
             # Blender prints the traceback; once is enough until something changes.
             self._broken = True
-            self.text = "Aplanat failed, see the console"
+            self._fail(depsgraph, failure(error))
             raise
+        self.failed = False
+        return unfinished
+
+    def _fail(self, depsgraph, text):
+        self.failed, self.text = True, text
+        self._session.note_findings(depsgraph.scene, "viewport", (), text)
 
     def _draw(self, depsgraph, space, region, region_3d, pixel_size):
         device_context.ensure_context()
@@ -124,11 +133,13 @@ class Viewport:
         done, total = session.levels.progress
         if done < total:
             self.text += f" | Levels of detail {done / total:.0%}"
-        elif error := session.levels.error:
-            self.text += f" | No levels of detail: {error}"
-        warnings = in_short(frame_report(snapshot, renderer))
+        warnings = list(frame_report(snapshot, renderer))
+        if error := session.levels.error:
+            warnings.append(f"no levels of detail: {error}")
         if warnings:
-            self.text += f" | {warnings}"
+            self.text += f" | {in_short(warnings)}"
+        share = done / total if done < total else 1.0
+        session.note_findings(depsgraph.scene, "viewport", warnings, levels=round(share, 2))
         # A picture without its levels of detail starts again when they are made.
         return not renderer.finished() or done < total
 

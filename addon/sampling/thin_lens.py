@@ -5,8 +5,13 @@ from the place `E v` on the lens (v in the unit disk) is displaced in the camera
 `-R(d) v`, `R(d) = E (d_f - d) / d_f`: 0 at the focus plane, mirrored behind it. On the image,
 with the field of view kept while focusing as Blender does, the signed radius in pixels is
 `f_px E (d - d_f) / (d d_f)`: negative in front of the focus plane.
+
+Depth of field is where the circle's diameter `c (1/d_f - 1/d)` stays below an acceptable one, `a`:
+from `1 / (1/d_f + a/c)` to `1 / (1/d_f - a/c)`, infinitely far from the hyperfocal distance on.
+With a parallel projection the diameter is `c (d/d_f - 1)`.
 """
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -165,3 +170,79 @@ def _mean_distance(c):
     """Return the mean of ``|c + x|`` over a unit disk, for c from 0 to 1."""
     root = np.sqrt(1.0 - c**2)
     return 2.0 / np.pi * (c * np.arcsin(c) + root * (c**2 + 2.0) / 3.0)
+
+
+@dataclass(frozen=True)
+class DepthOfField:
+    """How a thin lens blurs along the optical axis.
+
+    Parameters
+    ----------
+    focus_distance : float
+        In m.
+    reach : float
+        Diameter of the circle of confusion, in pixels of the picture: times m at an unbounded
+        distance, for a parallel projection at twice the focus distance.
+    orthographic : bool
+    """
+
+    focus_distance: float
+    reach: float
+    orthographic: bool = False
+
+    def diameter(self, depth):
+        """Return the signed diameter of the circle of confusion, in pixels.
+
+        Parameters
+        ----------
+        depth : float or ndarray
+            Along the optical axis, m; positive.
+
+        Returns
+        -------
+        float or ndarray
+            Negative in front of the focus plane.
+        """
+        if self.orthographic:
+            return self.reach * (depth / self.focus_distance - 1.0)
+        return self.reach * (1.0 / self.focus_distance - 1.0 / depth)
+
+    def limits(self, acceptable):
+        """Return the nearest and the farthest depth that are acceptably sharp, in m.
+
+        Parameters
+        ----------
+        acceptable : float
+            Diameter of the circle of confusion, in pixels; positive.
+
+        Returns
+        -------
+        near, far : float
+            The second is infinite where there is no limit.
+        """
+        focus = self.focus_distance
+        if self.reach <= 0.0:
+            return 0.0, math.inf
+        share = acceptable / self.reach
+        if self.orthographic:
+            return max(0.0, focus * (1.0 - share)), focus * (1.0 + share)
+        behind = 1.0 / focus - share
+        return 1.0 / (1.0 / focus + share), 1.0 / behind if behind > 0.0 else math.inf
+
+
+def depth_of_field(lens, pixels_per_unit, orthographic=False):
+    """Return the `DepthOfField` of a thin lens.
+
+    Parameters
+    ----------
+    lens : ThinLens
+    pixels_per_unit : float
+        Pixels that a length of 1 m covers at a depth of 1 m, with a parallel projection anywhere.
+    orthographic : bool
+
+    Returns
+    -------
+    DepthOfField
+    """
+    reach = 2.0 * lens.aperture_radius * pixels_per_unit
+    return DepthOfField(lens.focus_distance, reach, orthographic)

@@ -134,9 +134,6 @@ def _of_scene(depsgraph):
     render = scene.render
     if render.use_motion_blur and depsgraph.view_layer.use_motion_blur:
         yield "motion blur is not drawn; everything is where it is at the frame itself"
-    lines = depsgraph.view_layer.use_freestyle and depsgraph.view_layer.freestyle_settings.linesets
-    if render.use_freestyle and lines:
-        yield "Freestyle lines are drawn by Blender over the finished picture, never blurred"
     # Without the add-on the scene has no settings of Cycles.
     cycles = getattr(scene, "cycles", None)
     if cycles is not None:

@@ -137,6 +137,17 @@ PERFORMANCE = Section("Performance", "Render Properties > Performance", (
             " Blender more responsive", limits=(10, 2000), soft=(None, 500)),
 ))
 
+FOCUS_OVERLAY = Section("Focus overlay", "3D View > Viewport Overlays > Focus", (
+    Setting("show_coc", False, "Circle of Confusion", "Color what a 3D view shows by its blur:"
+            " red in front of the focus, green in focus, blue behind it"),
+    Setting("show_focus_planes", False, "Depth of Field", "Show the plane of the focus and the"
+            " nearest and farthest planes that are acceptably sharp, with their distances. The"
+            " plane of the focus can be dragged"),
+    Setting("acceptable_blur", 2.0, "Acceptable Blur", "Diameter of the circle of confusion, in"
+            " pixels of the picture, that still counts as in focus", limits=(0.01, 1000.0),
+            soft=(0.25, 20.0), step=10, precision=2, subtype="PIXEL"),
+))
+
 PASSES = Section("Passes", "View Layer Properties > Passes > Data", (
     Setting("use_pass_coc", False, "Circle of Confusion", "Radius of the blur disk of the point"
             " in each pixel's centre, in pixels; negative in front of the focus plane",
@@ -164,5 +175,8 @@ PASSES = Section("Passes", "View Layer Properties > Passes > Data", (
 ))
 # fmt: on
 
-SCENE = (SAMPLING, RENDER, PREVIEW, ADVANCED, LEVELS, LIGHT, PERFORMANCE, MEASURING)
+SCENE = (
+    *(SAMPLING, RENDER, PREVIEW, ADVANCED, LEVELS, LIGHT, PERFORMANCE, MEASURING),
+    FOCUS_OVERLAY,
+)
 VIEW_LAYER = (PASSES,)

@@ -116,7 +116,7 @@ ROOMS = {
         *("engine.planning", "engine.drawing", "engine.layered", "engine.frame"),
     ),
     "engine": (
-        *("device", "snapshot", "lens_io", "levels", "scene", "scene.camera"),
+        *("device", "snapshot", "lens_io", "levels", "scene", "scene.camera", "passes.surface"),
         *("engine.planning", "engine.drawing", "engine.bokeh", "engine.frame"),
     ),
     # Another engine's pictures, or ours, as depth layers.
@@ -126,6 +126,8 @@ ROOMS = {
         *("lens_bokeh.openings", "lens_bokeh.look", "scene.camera", "engine", "engine.bokeh"),
     ),
     # What a user meets.
+    # Seeing and setting the focus in the 3D view.
+    "ui.focus": ("device", "passes", "scene.camera", "engine"),
     "ui.jobs": ("layers", "engine", "engine.refocus"),
     "ui.previews": (
         *("lens_bokeh.openings", "lens_bokeh.look", "lens_bokeh.tables", "plots"),
@@ -133,13 +135,13 @@ ROOMS = {
     ),
     "ui.operators": (
         *("optics", "sampling", "lens_io", "lens_io.importers.draft"),
-        *("files", "layers", "scene.camera", "engine", "engine.refocus", "capture", "ui.jobs"),
-        "compositor",
+        *("files", "layers", "scene", "scene.camera", "engine", "engine.refocus", "capture"),
+        *("compositor", "ui.jobs"),
     ),
     "ui.properties": (*("lens_io.glasses", "settings", "engine", "ui.operators", "ui.previews"),),
     "ui.presets": ("settings", "ui.operators", "ui.properties"),
     "ui.panels": (
-        *("optics", "scene.camera", "engine", "engine.refocus", "capture"),
+        *("optics", "scene", "scene.camera", "engine", "engine.refocus", "capture"),
         *("ui.jobs", "ui.operators", "ui.presets", "ui.previews"),
     ),
     "ui": (),
@@ -180,7 +182,7 @@ BLENDER_ROOMS = {
     *("engine", "engine.refocus", "capture", "compositor"),
     *(
         f"ui.{name}"
-        for name in ("jobs", "previews", "operators", "properties", "presets", "panels")
+        for name in ("focus", "jobs", "previews", "operators", "properties", "presets", "panels")
     ),
     *("cli", "cli.render", "cli.capture", "cli.refocus"),
 }

@@ -108,6 +108,7 @@ OTHERS = {
     "scene.nodes.vector_nodes": ("readers by kind of node", ("reads",)),
     "scene.nodes.volume_nodes": ("readers by kind of node", ("reads",)),
     # Panels.
+    "ui.focus.focus_overlay": ("handles with which 3D views draw", ("_handles",)),
     "ui.jobs.background": (
         "work for panels, and what the user stopped of it",
         ("_errors", "_queue", "_stopped"),

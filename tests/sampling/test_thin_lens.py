@@ -7,7 +7,13 @@ from hypothesis import strategies as st
 
 from addon.errors import FocusError
 from addon.sampling.iris import Iris
-from addon.sampling.thin_lens import ThinLens, aperture_radius, coc_radius_px, displacement_radius
+from addon.sampling.thin_lens import (
+    ThinLens,
+    aperture_radius,
+    coc_radius_px,
+    depth_of_field,
+    displacement_radius,
+)
 
 LENS = ThinLens(0.025, 5.0)
 
@@ -52,3 +58,22 @@ def test_an_impossible_f_number_is_refused(f_number):
 def test_an_impossible_iris_ratio_is_refused():
     with pytest.raises(FocusError, match="ratio"):
         ThinLens(0.02, 5.0, Iris(ratio=0.0))
+
+
+@pytest.mark.parametrize("orthographic", [False, True])
+def test_limits_of_the_depth_of_field_have_the_acceptable_blur(orthographic):
+    blur = depth_of_field(LENS, 1000.0, orthographic)
+    near, far = blur.limits(2.0)
+    assert blur.diameter(near) == pytest.approx(-2.0)
+    assert blur.diameter(far) == pytest.approx(2.0)
+    if not orthographic:
+        depth = np.array([1.0, 4.0, 50.0])
+        assert blur.diameter(depth) == pytest.approx(2.0 * coc_radius_px(depth, LENS, 1000.0))
+
+
+def test_from_the_hyperfocal_distance_on_there_is_no_far_limit():
+    blur = depth_of_field(LENS, 1000.0)
+    hyperfocal = blur.reach / blur.focus_distance
+    assert math.isinf(blur.limits(hyperfocal * 1.001)[1])
+    assert math.isfinite(blur.limits(hyperfocal * 0.999)[1])
+    assert depth_of_field(ThinLens(0.0, 5.0), 1000.0).limits(1.0) == (0.0, math.inf)

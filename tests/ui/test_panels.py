@@ -86,8 +86,9 @@ def test_panels_of_ours_are_for_aplanat_only(scene):
     assert len(panels) > 20
     for panel in panels:
         assert panel.is_registered and panel.bl_label
-        if panel.bl_space_type in ("IMAGE_EDITOR", "NODE_EDITOR"):
-            # Captures of all engines are refocused there, and pictures of all are composited.
+        if panel.bl_space_type in ("IMAGE_EDITOR", "NODE_EDITOR", "VIEW_3D"):
+            # Captures of all engines are refocused there, pictures of all are composited, and
+            # cameras of all are focused.
             assert not hasattr(panel, "COMPAT_ENGINES")
             continue
         # Whatever engine renders them, layers are captured by Aplanat.

@@ -141,7 +141,7 @@ def context(aplanat_bpy, empty_scene):
         material=bpy.data.materials.new("Material"),
         light=bpy.data.lights.new("Light", "POINT"),
         world=world,
-        space_data=SimpleNamespace(image=None),
+        space_data=SimpleNamespace(image=None, overlay=SimpleNamespace(show_overlays=True)),
         region=SimpleNamespace(width=400),
         preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
     )
@@ -172,7 +172,7 @@ def states(context):
 
 def test_panels_show_every_setting(context):
     panels = [cls for module in _MODULES for cls in getattr(module, "CLASSES", ())]
-    editors = {"PROPERTIES", "IMAGE_EDITOR"}
+    editors = {"PROPERTIES", "IMAGE_EDITOR", "VIEW_3D"}
     panels = [cls for cls in panels if "_PT_" in cls.__name__ and cls.bl_space_type in editors]
     shown = set()
     for _ in states(context):
@@ -231,7 +231,7 @@ def test_a_frame_is_sampled_as_the_settings_say_and_by_no_default_of_its_own():
 
 # Who reads a setting that no `field` passes on: modules of the extension, by property group.
 READERS = {
-    "AplanatSceneSettings": ("scene", "engine", "levels", "cli/render"),
+    "AplanatSceneSettings": ("scene", "engine", "levels", "cli/render", "ui/focus"),
     "AplanatCaptureSettings": ("capture", "ui/operators", "cli/capture"),
     "AplanatRefocusSettings": ("engine/refocus", "ui/operators", "ui/jobs"),
     "AplanatCameraSettings": ("scene/camera",),

@@ -280,11 +280,6 @@ class _Reader:
                 notes.append("adaptive subdivision is drawn as the levels of its modifier")
         elif show_self and obj.type == "LIGHT_PROBE":
             notes.append("a light probe is not used")
-        elif show_self and obj.type == "GREASEPENCIL":
-            if switches.use_grease_pencil and len(obj.data.layers):
-                notes.append(
-                    "grease pencil is drawn by Blender over the finished picture, never blurred"
-                )
         elif show_self and obj.type in _UNDRAWN:
             what, switch, size = _UNDRAWN[obj.type]
             if getattr(switches, switch) and size(obj.data):

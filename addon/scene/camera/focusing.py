@@ -1,0 +1,118 @@
+"""Focusing Blender's camera: on a place, with or without an object that it follows.
+
+The focus is Blender's own (`Camera.dof`), so it holds for every engine. A camera that follows a
+focus object goes on following it from the place that was picked: an empty there, a child of the
+object, becomes the focus object, and keeps its offset while the object moves.
+"""
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+from ...errors import FocusError
+from ...sampling.thin_lens import depth_of_field
+from .camera import camera_place, read_lens
+
+# Custom property of the empties that are made here.
+OFFSET_MARK = "aplanat_focus_offset"
+
+
+def depth_along(camera, point):
+    """Return how far a place is from a camera along its optical axis.
+
+    Parameters
+    ----------
+    camera : bpy.types.Object
+    point : sequence of 3 float
+        In world space.
+
+    Returns
+    -------
+    float
+        In m; negative behind the camera.
+    """
+    return -(camera_place(camera).inverted() @ Vector(point)).z
+
+
+def focus_on(scene, camera, point, follow=True):
+    """Focus a camera on a place.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+    camera : bpy.types.Object
+    point : sequence of 3 float
+        In world space.
+    follow : bool
+        Go on following the focus object, if there is one, from the place; otherwise it is let go.
+
+    Returns
+    -------
+    float
+        The focus distance, m.
+
+    Raises
+    ------
+    FocusError
+        If the place is not in front of the camera.
+    """
+    distance = depth_along(camera, point)
+    if not distance > 0.0:
+        raise FocusError("the place is behind the camera; the focus stays")
+    dof = camera.data.dof
+    dof.use_dof = True
+    followed = dof.focus_object if follow else None
+    if followed is None:
+        dof.focus_object = None
+    elif OFFSET_MARK in followed:
+        followed.matrix_world = Matrix.Translation(point)
+    else:
+        _follow_from(scene, camera, followed, point)
+    dof.focus_distance = distance
+    return distance
+
+
+def _follow_from(scene, camera, followed, point):
+    dof = camera.data.dof
+    empty = bpy.data.objects.new(f"{camera.name} Focus", None)
+    empty[OFFSET_MARK] = True
+    empty.empty_display_type = "SPHERE"
+    empty.empty_display_size = 0.05
+    empty.hide_render = True
+    home = next((c for c in camera.users_collection if c.is_editable), scene.collection)
+    home.objects.link(empty)
+    empty.parent = followed
+    if dof.focus_subtarget and followed.pose and dof.focus_subtarget in followed.pose.bones:
+        empty.parent_type, empty.parent_bone = "BONE", dof.focus_subtarget
+    # Blender solves it for the place within the parent.
+    empty.matrix_world = Matrix.Translation(point)
+    dof.focus_object, dof.focus_subtarget = empty, ""
+
+
+def read_depth_of_field(depsgraph, camera, real_lens=None):
+    """Return how a camera blurs, in pixels of the scene's picture.
+
+    Parameters
+    ----------
+    depsgraph : bpy.types.Depsgraph
+    camera : bpy.types.Object
+    real_lens : LensSettings or None
+
+    Returns
+    -------
+    DepthOfField or None
+        None without depth of field, or where nothing can be in focus.
+    """
+    camera = camera.evaluated_get(depsgraph)
+    if camera.data.type not in {"PERSP", "ORTHO"}:
+        return None
+    lens, _ = read_lens(depsgraph, camera, real_lens)
+    if lens is None:
+        return None
+    scene = depsgraph.scene
+    corners = np.array(camera.data.view_frame(scene=scene), np.float64)
+    orthographic = camera.data.type == "ORTHO"
+    if not orthographic:
+        corners /= -corners[:, 2:]
+    width = scene.render.resolution_x * scene.render.resolution_percentage / 100.0
+    return depth_of_field(lens, width / np.ptp(corners[:, 0]), orthographic)

@@ -1,0 +1,1 @@
+"""Seeing and setting the focus in the 3D view, for every render engine."""

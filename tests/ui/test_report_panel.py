@@ -1,0 +1,148 @@
+"""Render > Report: what the last pictures lack, where that counts, and what its button does."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from addon.engine.report import failure, subject_of
+from addon.engine.shared_resources import resources
+
+from .panel_drawing import draw
+
+
+@pytest.fixture
+def scene(empty_scene):
+    empty_scene.render.engine = "APLANAT"
+    return empty_scene
+
+
+@pytest.fixture
+def things(scene, aplanat_bpy):
+    """Three objects: one that renders leave out, and one whose material has an image in a group."""
+    bpy = aplanat_bpy
+    made = {}
+    for name in ("Rug", "Hidden", "it's"):
+        mesh = bpy.data.meshes.new(name)
+        made[name] = bpy.data.objects.new(name, mesh)
+        scene.collection.objects.link(made[name])
+    made["Hidden"].hide_render = True
+    inner = bpy.data.node_groups.new("Inner", "ShaderNodeTree")
+    inner.nodes.new("ShaderNodeTexImage").image = bpy.data.images.new("Wool", 4, 4)
+    material = bpy.data.materials.new("Knitted")
+    material.node_tree.nodes.new("ShaderNodeGroup").node_tree = inner
+    for filling in (bpy.data.materials.new("Plain"), material):
+        made["Rug"].data.materials.append(filling)
+    return made
+
+
+def lack(scene, where, *warnings, **more):
+    with resources().open_session() as session:
+        session.note_findings(scene, where, warnings, **more)
+
+
+def shown(scene):
+    from addon.ui.panels.report_panel import APLANAT_RENDER_PT_report
+
+    region, system = SimpleNamespace(width=400), SimpleNamespace(ui_scale=1.0)
+    context = SimpleNamespace(
+        engine="APLANAT",
+        scene=scene,
+        region=region,
+        preferences=SimpleNamespace(system=system),
+    )
+    return draw(APLANAT_RENDER_PT_report, context)
+
+
+@pytest.mark.parametrize(
+    ("line", "subject"),
+    [
+        ("object 'Rug': hair curves cannot be drawn; left out (3 copies)", ("object", "Rug")),
+        ("object 'it's': left out", ("object", "it's")),
+        ("image 'a.png' (//a.png) cannot be read; drawn in magenta", ("image", "a.png")),
+        ("view layer 'Far': passes are left out", ("view layer", "Far")),
+        ("library '//x.blend' cannot be read", ("", "")),
+    ],
+)
+def test_a_warning_begins_with_its_data_block(line, subject):
+    assert subject_of(line) == subject
+
+
+def test_each_line_says_where_it_counts(scene, things, aplanat_bpy):
+    from addon.ui.panels.report_panel import BOTH, RENDER, VIEWPORT, findings_of
+
+    both, in_view, in_render = (
+        "object 'Rug': is flat",
+        "object 'Hidden': is flat",
+        "scene 'Scene': motion blur is not drawn",
+    )
+    lack(scene, "viewport", both, in_view)
+    lack(scene, "render", in_render)
+    assert dict(findings_of(scene)) == {both: BOTH, in_view: VIEWPORT, in_render: RENDER}
+    # In a collection that renders leave out, too.
+    inner = aplanat_bpy.data.collections.new("Props")
+    scene.collection.children.link(inner)
+    scene.collection.objects.unlink(things["Rug"])
+    inner.objects.link(things["Rug"])
+    assert dict(findings_of(scene))[both] == BOTH
+    inner.hide_render = True
+    assert dict(findings_of(scene))[both] == VIEWPORT
+    # What the last render told, counts for it.
+    lack(scene, "render", both)
+    assert dict(findings_of(scene))[both] == BOTH
+
+
+def test_a_failure_stands_first_and_says_what_failed(scene, things):
+    from addon.ui.panels.report_panel import findings_of
+
+    lack(scene, "viewport", "object 'Rug': is flat", error=failure(KeyError("pupil\n table")))
+    first = findings_of(scene)[0][0]
+    assert first == "Aplanat failed (KeyError: 'pupil\\n table'); the console tells where"
+    drawn = " ".join(shown(scene).labels)
+    assert "KeyError" in drawn and "Rug" in drawn
+
+
+def test_levels_that_are_made_and_a_scene_without_faults_are_told(scene):
+    lack(scene, "viewport", levels=0.25)
+    assert "F12 waits for them" in " ".join(shown(scene).labels)
+    lack(scene, "viewport")
+    assert "Everything is drawn as it is set." in " ".join(shown(scene).labels)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"), [("object", "Rug"), ("material", "Knitted"), ("image", "Wool")]
+)
+def test_the_button_selects_what_shows_it(scene, things, aplanat_bpy, kind, name):
+    bpy = aplanat_bpy
+    lack(scene, "viewport", f"{kind} '{name}': is odd")
+    (button,) = shown(scene).operators
+    assert (button.kind, button.name) == (kind, name)
+    things["Hidden"].select_set(True)
+    done = bpy.ops.object.aplanat_select_reported(kind=button.kind, name=button.name)
+    assert done == {"FINISHED"}
+    assert bpy.context.selected_objects == [things["Rug"]] == [bpy.context.object]
+    if kind != "object":
+        assert things["Rug"].active_material.name == "Knitted"
+    assert bpy.ops.object.aplanat_select_reported(kind="object", name="gone") == {"CANCELLED"}
+
+
+def test_news_are_told_once(scene):
+    notes = resources().notes
+    notes.take_news()
+    lack(scene, "viewport", "object 'Rug': is flat")
+    assert notes.take_news() and not notes.take_news()
+    lack(scene, "viewport", "object 'Rug': is flat")
+    assert not notes.take_news()
+
+
+def test_a_final_render_leaves_its_warnings_and_its_failure(camera, scene, aplanat_bpy):
+    bpy = aplanat_bpy
+    scene.render.resolution_x, scene.render.resolution_y = 16, 8
+    scene.aplanat.method, scene.aplanat.render_samples = "REFERENCE", 1
+    scene.render.use_motion_blur = True
+    bpy.ops.render.render()
+    found = resources().notes.of(scene).render
+    assert not found.error and any("motion blur" in line for line in found.warnings)
+    camera.type = "PANO"
+    with pytest.raises(RuntimeError, match="panoramic"):
+        bpy.ops.render.render()
+    assert "panoramic" in resources().notes.of(scene).render.error
