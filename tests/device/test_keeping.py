@@ -65,6 +65,26 @@ def test_a_frame_buffer_goes_with_the_textures_that_only_it_holds():
     assert len(freed) == 2
 
 
+def test_the_many_of_a_frame_are_not_looked_at_for_each_new_one(monkeypatch):
+    looks, freed = [], []
+    monkeypatch.setattr(keeping, "_left", 0)
+    is_orphan = keeping.is_orphan
+    monkeypatch.setattr(keeping, "is_orphan", lambda holder: looks.append(1) or is_orphan(holder))
+    in_use = []
+    for number in range(4000):
+        texture = census.record("texture", Texture(freed))
+        if number % 4:
+            in_use.append(texture)
+        del texture
+        keeping.let_go_now_and_then()
+        # What nobody needs is never more than half of the rest, or few.
+        assert len(keeping._held) <= 1.5 * len(in_use) + 65
+    assert len(looks) < 6 * 4000
+    assert 0 < len(freed) < 1000
+    keeping.let_go()
+    assert len(freed) == 1000
+
+
 def test_a_census_counts_what_others_hold():
     freed = []
     with census.taken() as taken:

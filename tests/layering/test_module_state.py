@@ -68,7 +68,7 @@ OTHERS = {
     ),
     "device.keeping": (
         "textures wait here for the thread that may free them, which `let_go` does",
-        ("_held", "_owner"),
+        ("_held", "_left", "_owner"),
     ),
     "device.census": ("who counts objects of the device now, for tests", ("_in_progress",)),
     # This process.

@@ -232,7 +232,7 @@ class FrameRenderer(ReadableFrame):
             ``sum``), it returns a context manager in which the stage's work is sent to the device;
             within ``bokeh`` also with the stages of `BokehStage.run`.
         """
-        keeping.let_go()
+        keeping.let_go_now_and_then()
         self._targets.forget_framebuffers()
         end = self.samples_done + samples
         while self.samples_done < end and not self.sampled:

@@ -363,5 +363,7 @@ def _interpolated(fields, values, odd_x, odd_y, nodes):
     ]
     count = values.shape[:2]
     flat = values.reshape(*count, -1)
-    pairs = (matrices[0][:, :, None] * matrices[1][:, None]).reshape(len(nodes), -1)
+    pairs = matrices[0][:, :, None] * matrices[1][:, None]
+    # Not -1: there may be no place, where no ray of a field comes through.
+    pairs = pairs.reshape(len(nodes), count[0] * count[1])
     return (pairs @ flat.reshape(-1, flat.shape[2])).reshape(len(nodes), *values.shape[2:])
