@@ -3,14 +3,19 @@
 Both are rendered again and again with other seeds, each of which gives an independent estimate of
 the same picture, until noise does not decide any more: until the noise that the spread of these
 pictures tells is small against the bar, or the difference is larger than the bar by more than it.
+The two are rendered with the same seeds, and so with the same places on the lens: what they have
+in common of the noise goes out of their difference, and how much that is shows in the spread of
+the differences.
 
 - *Energy*: the sum of each channel of the mean picture differs by 1 % at most. Not asked of the
   layered method: its layers are texels, so that edges are soft by a part of a pixel, and what it
-  promises (`docs/layers.md`) is likeness.
+  promises (`docs/layers.md`) is likeness. A channel that has less than a tenth of the light of the
+  brightest one fails as any other where it surely differs by 1 %; but it is enough to know that it
+  differs by no more than 1 % of that tenth.
 - *Looks*: the mean difference of the two mean pictures as they are displayed (the scene's view
   transform, 8 bits) is 0.02 at most. Noise alone makes pictures differ; its share of the mean
-  difference, which half the mean difference of two halves of the pictures shows for each of the
-  two, is taken off.
+  difference, which half the change of the difference from one half of the pictures to the other
+  shows, is taken off.
 """
 
 import tempfile
@@ -21,8 +26,10 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from scipy.stats import chi2
 from scipy.stats import t as student
 
+from .estimates import DARK, Estimate, Spread, energies, units_of
 from .trades import fit_to_compare, has_plain_look, kept
 
 ENERGY_BAR = 0.01
@@ -30,6 +37,8 @@ LOOK_BAR = 0.02
 # Noise decides no more where its standard error is this share of the bar: two of them, which one
 # scene in twenty has by chance, are then half the bar.
 _QUIET = 0.25
+# How often noise may be underestimated where it is called quiet.
+_LUCK = 0.1
 # A scene fails by more than chance brings one of ten thousand scenes, at four numbers each and as
 # many looks at them as there are rounds.
 _CHANCE = 1e-6
@@ -39,10 +48,9 @@ _FEWEST, MOST = 3, 96
 # Processor time of a comparison, in seconds; see `compare`.
 PATIENCE = 20.0
 # Of a picture of the reference method: at first, at most. Its samples are spread evenly, so that
-# twice as many quieten it more than two pictures do: about to a half.
+# twice as many quieten it more than two pictures do: about to a half. They have less in common with
+# those of the other method, if anything: about half.
 _REFERENCE_SAMPLES = (64, 256)
-# Light below this, in a picture's mean, is black on every display and lost in single precision.
-_DARK = 1e-6
 
 
 @dataclass
@@ -86,11 +94,11 @@ def compare(scene, render, first, most=MOST, patience=PATIENCE):
     """
     end = time.process_time() + patience
     with fit_to_compare(scene) as changed:
-        own = _Estimate(scene, render, _set_seed)
+        own = Estimate(scene, render, _set_seed)
         if not changed:
             own.add(first)
         own.fill(_FEWEST)
-        reference = _reference(scene, render, _REFERENCE_SAMPLES[0])
+        reference = _reference(scene, render, _first_samples(scene.aplanat))
         while True:
             found = _judge(scene, own, reference)
             if found.fault or not found.measured["undecided"]:
@@ -99,89 +107,72 @@ def compare(scene, render, first, most=MOST, patience=PATIENCE):
             steps = [s for s in _steps(own, reference, most) if s.seconds <= left]
             if not steps:
                 return found
-            # Where noise is bought off cheapest: of the one method or of the other.
+            # Where noise is bought off cheapest.
             step = max(steps, key=lambda s: s.gain / s.seconds)
             if step.samples:
                 reference = _reference(scene, render, step.samples, reference.made)
-            else:
-                step.estimate.fill(2 * step.estimate.count)
+            own.fill(step.own)
+            reference.fill(step.reference)
+
+
+def _first_samples(settings):
+    """Return the samples of the first pictures of the reference method.
+
+    As many as the scene's own where that is its method: equal seeds then give equal pictures, but
+    for what else is different.
+    """
+    if settings.method == "REFERENCE":
+        return settings.render_samples
+    return _REFERENCE_SAMPLES[0]
 
 
 @dataclass(frozen=True)
 class _Step:
-    """What can be done about the noise: how much it takes off a variance, in which time."""
+    """What can be done about the noise: how many pictures of each there are then.
 
-    estimate: object
+    Parameters
+    ----------
+    own, reference : int
+        Pictures.
+    samples : int
+        Of a new picture of the reference method; 0: as before.
+    gain : float
+        By which the squared width of the difference's interval falls.
+    seconds : float
+    """
+
+    own: int
+    reference: int
+    samples: int
     gain: float
     seconds: float
-    samples: int = 0
 
 
 def _steps(own, reference, most):
-    parts = [estimate.variance(reference) for estimate in (own, reference)]
-    if max(parts) == 0.0:
-        # Only looks are undecided.
-        parts = [1.0, 1.0]
+    spread = Spread.of(own, reference)
+    counts = own.count, reference.count
+    before = spread.width(*counts)
+    further = [(2 * counts[0], counts[1], 0), (counts[0], 2 * counts[1], 0)]
+    further += [(2 * counts[0], 2 * counts[1], 0), (counts[0], _FEWEST, 2 * reference.samples)]
     steps = []
-    if 2 * own.count <= most:
-        steps.append(_Step(own, parts[0] / 2.0, own.count * own.seconds))
-    if reference.samples < _REFERENCE_SAMPLES[1]:
-        if reference.made + _FEWEST <= most:
-            seconds = 2.0 * _FEWEST * reference.seconds
-            steps.append(_Step(reference, parts[1] * 0.75, seconds, 2 * reference.samples))
-    elif reference.made + reference.count <= most:
-        steps.append(_Step(reference, parts[1] / 2.0, reference.count * reference.seconds))
-    return steps
+    for ours, theirs, samples in further:
+        made = theirs - counts[1] if samples == 0 else theirs
+        few = own.made + ours - counts[0] <= most and reference.made + made <= most
+        if not few or samples > _REFERENCE_SAMPLES[1]:
+            continue
+        after = (spread.with_more_samples() if samples else spread).width(ours, theirs)
+        seconds = (ours - counts[0]) * own.seconds
+        seconds += made * reference.seconds * (2.0 if samples else 1.0)
+        steps.append(_Step(ours, theirs, samples, before - after, seconds))
+    # Where only looks are undecided, nothing is gained by these numbers: more of both.
+    return [s for s in steps if s.gain > 0.0] or [s for s in steps if not s.samples][-1:]
 
 
 def _reference(scene, render, samples, made=0):
-    estimate = _Estimate(scene, render, partial(_render_reference, samples=samples))
-    estimate.samples, estimate.made = samples, made
+    prepare = partial(_render_reference, samples=samples)
+    estimate = Estimate(scene, render, prepare, samples, made)
     estimate.fill(_FEWEST)
     return estimate
-
-
-class _Estimate:
-    """Independent pictures of one scene by one method."""
-
-    def __init__(self, scene, render, prepare):
-        self._scene = scene
-        self._render = render
-        self._prepare = prepare
-        self._seed = scene.aplanat.seed
-        self._taken = []
-        self.pictures = {}
-        self.count = self.made = 0
-        self.samples = 0
-
-    @property
-    def seconds(self):
-        """Processor time of a picture; what is made once for all is in the first one's."""
-        return max(float(np.median(self._taken)) if self._taken else 0.0, 1e-3)
-
-    def add(self, passes):
-        for (layer, name), pixels in passes.items():
-            if name == "Combined":
-                self.pictures.setdefault(layer, []).append(pixels.astype(np.float64))
-        self.count += 1
-
-    def fill(self, count):
-        while self.count < count:
-            begun = time.process_time()
-            with self._prepare(self._scene, self._seed + self.count):
-                self.add(self._render(self._scene))
-            self.made += 1
-            self._taken.append(time.process_time() - begun)
-
-    def variance(self, reference):
-        """Largest variance of the energy of a channel, relative to the reference's."""
-        found = [0.0]
-        for layer, pictures in self.pictures.items():
-            scale = np.abs(np.mean(reference.pictures[layer], axis=(0, 1, 2)))
-            means = np.stack([p.mean(axis=(0, 1)) for p in pictures])
-            lit = scale > _DARK
-            found += list(means.var(axis=0, ddof=1)[lit] / len(means) / scale[lit] ** 2)
-        return float(max(found))
 
 
 @contextmanager
@@ -206,8 +197,7 @@ def _as_reference(scene, samples):
 
 @contextmanager
 def _render_reference(scene, seed, samples):
-    # Far from the seeds of the scene's own method, so that no noise is shared.
-    with _as_reference(scene, samples), _set_seed(scene, seed + 1_000_003):
+    with _as_reference(scene, samples), _set_seed(scene, seed):
         yield
 
 
@@ -225,21 +215,17 @@ def _judge(scene, own, reference):
 
 
 def _judge_energy(ours, theirs, measured):
-    means = [np.stack([p.mean(axis=(0, 1)) for p in pictures]) for pictures in (ours, theirs)]
-    reference = means[1].mean(axis=0)
-    lit = np.maximum(np.abs(reference), np.abs(means[0].mean(axis=0))) > _DARK
+    ours, theirs = energies(ours), energies(theirs)
+    reference = theirs.mean(axis=0)
+    lit = np.maximum(np.abs(reference), np.abs(ours.mean(axis=0))) > DARK
     if not lit.any():
         return ""
-    scale = np.maximum(np.abs(reference), _DARK)
-    difference = (means[0].mean(axis=0) - reference) / scale
-    variances = [m.var(axis=0, ddof=1) / len(m) for m in means]
-    noise = np.sqrt(sum(variances)) / scale
-    # The two spreads rest on few pictures each (Welch and Satterthwaite).
-    parts = sum(v**2 / (len(m) - 1) for v, m in zip(variances, means, strict=True))
-    least = min(len(m) for m in means) - 1
-    freedom = np.divide(
-        sum(variances) ** 2, parts, out=np.full_like(parts, least), where=parts > 0.0
-    )
+    scale = np.maximum(np.abs(reference), DARK)
+    difference = (ours.mean(axis=0) - reference) / scale
+    spread = Spread.between(ours / scale, theirs / scale)
+    noise = np.sqrt(spread.variance(len(ours), len(theirs)))
+    # The spreads rest on few pictures, and on no fewer than these.
+    freedom = min(len(ours), len(theirs)) - 1
     wide, usual = student.ppf(1.0 - _CHANCE, freedom), student.ppf(0.975, freedom) / 2.0
     worst = int(np.argmax(np.where(lit, np.abs(difference), 0.0)))
     if abs(difference[worst]) >= measured["energy"]:
@@ -252,16 +238,24 @@ def _judge_energy(ours, theirs, measured):
             f"energy of {'RGBA'[channel]} is {1.0 + difference[channel]:.4f} times the reference's"
             f" (noise {noise[channel]:.4f})"
         )
-    quiet = noise * usual < _QUIET * ENERGY_BAR
-    within = np.abs(difference) + 2.0 * usual * noise < ENERGY_BAR
-    if (lit & ~quiet & ~within).any() or (lit & quiet & (np.abs(difference) > ENERGY_BAR)).any():
+    # What may well be a fault is looked at until it is one, however faint.
+    suspect = np.abs(difference) - 2.0 * usual * noise > ENERGY_BAR
+    share = scale / units_of(reference)
+    difference, noise = np.abs(difference) * share, noise * share
+    # By chance a few pictures may be more alike than others would be.
+    wider = np.sqrt(freedom / chi2.ppf(_LUCK, freedom))
+    quiet = noise * wider < _QUIET * ENERGY_BAR
+    within = difference + 2.0 * usual * noise < ENERGY_BAR
+    unsure = suspect | (~quiet & ~within) | (quiet & (difference > ENERGY_BAR))
+    if (lit & unsure).any():
         measured["undecided"] = 1.0
     return ""
 
 
 def _judge_look(scene, ours, theirs, measured):
-    shown = [[displayed(scene, p) for p in _halves(pictures)] for pictures in (ours, theirs)]
-    noise = sum(float(np.abs(a - b).mean()) / 2.0 for a, b in shown)
+    halves = [[displayed(scene, p) for p in _halves(pictures)] for pictures in (ours, theirs)]
+    first, second = (one - other for one, other in zip(*halves, strict=True))
+    noise = float(np.abs(first - second).mean()) / 2.0
     means = [displayed(scene, np.mean(pictures, axis=0)) for pictures in (ours, theirs)]
     difference = max(0.0, float(np.abs(means[0] - means[1]).mean()) - noise)
     measured["look"] = max(measured["look"], difference)

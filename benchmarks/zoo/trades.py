@@ -8,13 +8,15 @@ _SCENE_TRADES = {
     "level_bias": lambda value: max(value, 0.0),
     "render_error": lambda value: min(value, 0.01),
     "render_min_samples": lambda value: max(value, 16),
-    "render_max_samples": lambda value: max(value, 256),
+    # Not more either: noise is bought off cheaper by more pictures.
+    "render_max_samples": lambda value: 256,
     "render_time_limit": lambda value: 0.0,
     "render_samples": lambda value: max(value, 64),
     "sharing_cells": lambda value: max(value, 2),
     "subsamples": lambda value: min(value, 4),
     "least_triangles": lambda value: max(value, 256),
 }
+_AUTOMATIC = frozenset({"render_error", "render_min_samples", "render_max_samples"})
 _BOKEH_TRADES = {
     "model": lambda value: "POINT",
     "visibility": lambda value: "AUTO",
@@ -60,6 +62,11 @@ def fit_to_compare(scene):
     groups = [(scene.aplanat, _SCENE_TRADES), (camera.bokeh, _BOKEH_TRADES)]
     if scene.aplanat.method == "LAYERED":
         groups += [(camera, _LAYERED_LENS), (camera.chromatic, _LAYERED_COLORS)]
+    # What does not count: the samples or the noise threshold, and the bokeh where there is none.
+    automatic = scene.aplanat.use_target_error
+    idle = {"render_samples"} if automatic else set(_AUTOMATIC)
+    if not camera.bokeh.use:
+        idle |= _BOKEH_TRADES.keys()
     changed = False
     with ExitStack() as stack:
         for group, trades in groups:
@@ -68,9 +75,7 @@ def fit_to_compare(scene):
                 value = getattr(group, name)
                 if bound(value) != value:
                     setattr(group, name, bound(value))
-                    # Neither counts where the other does.
-                    automatic = scene.aplanat.use_target_error
-                    changed |= name != ("render_samples" if automatic else "render_error")
+                    changed |= name not in idle
         yield changed
 
 
