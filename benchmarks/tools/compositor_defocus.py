@@ -1,10 +1,10 @@
 """A capture through our lens, and one layer of it through Blender's Defocus node and ours.
 
-    python -m benchmarks.tools.compositor_defocus LAYERS.exr --reference DEPTH_OF_FIELD.exr
+    python -m benchmarks.tools.compositor_defocus LAYERS.exr --reference SEED_0.exr SEED_1.exr
 
-Prints SSIM, worst tile and energy of each against the reference picture, which has the capture's
-own focus and f-number. The one layer is the capture laid over itself, with the depth of the first
-surface of each pixel.
+Prints SSIM, worst tile and energy of each against what two reference pictures with the capture's
+own focus and f-number, but other seeds, have in common (see `compare_with_two`). The one layer is
+the capture laid over itself, with the depth of the first surface of each pixel.
 """
 
 import argparse
@@ -125,12 +125,12 @@ def main(words=None):
     from addon.layers.layer_file import load_layers
     from addon.layers.layer_stack import DepthLayer
     from addon.snapshot.camera import BokehSettings
-    from benchmarks.referees.picture_metrics import compare, read_picture, srgb
+    from benchmarks.referees.picture_metrics import compare_with_two, read_picture, srgb
 
     addon.register()
     ensure_context()
     stack = load_layers(options.layers)
-    truth = read_picture(options.reference)
+    truths = [read_picture(file) for file in options.reference]
     color, depth = one_layer(stack)
     nothing = np.isinf(depth)[..., None]
     flat = replace(
@@ -153,7 +153,7 @@ def main(words=None):
         "one layer, Defocus node": defocused(color, depth, stack.camera),
     }
     for name, picture in pictures.items():
-        found = compare(picture[::-1, :, :3].astype(np.float64), truth)
+        found = compare_with_two(picture[::-1, :, :3].astype(np.float64), *truths)
         print(
             f"{name}: SSIM {found['ssim_srgb']:.4f}, worst tile {found['ssim_tile']:.3f}, energy"
             f" {found['energy']:.4f}"
@@ -162,7 +162,7 @@ def main(words=None):
         import imageio.v3 as iio
 
         options.pictures.mkdir(parents=True, exist_ok=True)
-        for name, picture in (pictures | {"reference": truth[::-1]}).items():
+        for name, picture in (pictures | {"reference": sum(truths)[::-1] / 2.0}).items():
             shown = (srgb(picture[::-1, :, :3]) * 255.0).astype(np.uint8)
             iio.imwrite(options.pictures / f"{name}.png", shown)
 
