@@ -94,7 +94,8 @@ def sink(colors, depths, steps):
         # What was gathered before is no longer premultiplied by its share.
         own = colors[near][at]
         light = own / own[:, 3:] * part[0][:, None] + colors[far][at]
-        alpha = np.where(inside, 1.0, np.minimum(total, 1.0))
+        whole = inside & (total > _MOST)
+        alpha = np.where(whole, 1.0, np.minimum(total, 1.0))
         colors[far][at] = light / total[:, None] * alpha[:, None]
         depth = [1.0 / np.maximum(depths[number][at], 1e-9) for number in (near, far)]
         depths[far][at] = total / (part[0] * depth[0] + part[1] * depth[1])
@@ -103,9 +104,10 @@ def sink(colors, depths, steps):
         colors[near][at], depths[near][at] = 0.0, np.inf
         rises[near][at] = 0.0
     for number, side in product(range(len(colors)), (SIDE, SIDE + 1)):
-        # What the neighbouring layers have of a pixel may have faded with the ends of their slices.
+        # What the neighbouring layers have of a pixel may have faded with the ends of their slices:
+        # a small part, as long as the ends are; what is left is the greater one.
         alpha = colors[number][..., 3]
-        rows, columns = np.nonzero((alpha > 0.0) & (alpha < WHOLE) & (rises[number] == 0.0))
+        rows, columns = np.nonzero((alpha > _MOST) & (alpha < WHOLE) & (rises[number] == 0.0))
         # A strand of hair, too, may lie between what is nearer and what is farther, but then
         # something is behind it.
         behind = covers[number + 1 : number + 1 + _BESIDE]

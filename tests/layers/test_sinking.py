@@ -93,3 +93,14 @@ def test_strands_before_a_wall_stay_thin():
     colors.append(np.ones((ROWS, COLUMNS, 4), np.float32))
     depths.append(np.full((ROWS, COLUMNS), 9.0, np.float32))
     assert not sink(colors, depths, steps).any
+
+
+def test_the_edge_of_a_leaf_between_others_does_not_become_a_leaf():
+    """Leaves before, at and behind a place lie as a floor's rows do by chance."""
+    rows = np.arange(ROWS)[:, None] * np.ones((1, COLUMNS), int)
+    shares = [np.where(found, 0.6, 0.0) for found in (rows < 8, rows == 8, rows > 8)]
+    shares[1][8, 4] = 0.1
+    depth = 1.0 / (NEAREST - rows * FALL)
+    colors = [np.stack([share] * 4, axis=-1).astype(np.float32) for share in shares]
+    depths = [np.where(share > 0.0, depth, np.inf).astype(np.float32) for share in shares]
+    assert laid_over(sink(colors, depths, steps).colors)[8, 4] == pytest.approx(np.full(4, 0.1))

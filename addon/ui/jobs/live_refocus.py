@@ -131,7 +131,9 @@ class LiveRefocus:
         if self._is_broken:
             return False
         try:
-            self._read_file(layers_path(scene), flat_options(scene))
+            if self._read_file(layers_path(scene), flat_options(scene)):
+                # Its first piece may take long: before it, a window tells of this file.
+                return True
             if self._picture is not None:
                 return self._refine(scene, depsgraph) or self.is_reading
         except AplanatError as error:
@@ -158,19 +160,22 @@ class LiveRefocus:
         return not self._picture.finished
 
     def _read_file(self, path, flat):
-        """Begin to read a file, or take what was read."""
+        """Begin to read a file, or take what was read; return whether there is a new one."""
+        taken = False
         if self._reading is not None:
             if not self._reading.done():
-                return
+                return False
             done, self._reading = self._reading, None
             self._drop_picture()
             self._show(*done.result())
+            taken = True
         # Captured layers tell all themselves.
         options_count = self.stack is None or self.is_flat
         known, of_options = self._wanted or (None, None)
         if path != known or (options_count and flat != of_options):
             self._wanted, self._failed = (path, flat), None
             self._reading = self._files.submit(read_file, path, flat)
+        return taken
 
     def _show(self, stack, is_flat):
         self._drop_picture()
