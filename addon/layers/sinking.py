@@ -20,11 +20,13 @@ import numpy as np
 WHOLE = 1.0 - 1e-3
 # How far to the sides it is looked for where layers end, px: pixel filters reach as far.
 SIDE = 2
-# Layers before and behind among which a surface goes on at the sides.
+# Layers before and behind among which a surface goes on at the sides. Anything from 4 to 20 is as
+# good (floors, roofs, stairs, hills, fences and foliage in 12 and 24 layers).
 _BESIDE = 12
-# Coverage of a pixel that has more of the surface than of what is around it.
+# Coverage of a pixel that has more of the surface than of what is around it. As good: 0.3 to 0.8.
 _MOST = 0.5
-# Largest distance of a slope's middle from the mean of its sides, as a share of its rise.
+# Largest distance of a slope's middle from the mean of its sides, as a share of its rise. As good:
+# 0.2 to 0.6; with 0.1 a sixth more pixels of those scenes are wrong.
 _BENT = 0.3
 
 
@@ -94,8 +96,7 @@ def sink(colors, depths, steps):
         # What was gathered before is no longer premultiplied by its share.
         own = colors[near][at]
         light = own / own[:, 3:] * part[0][:, None] + colors[far][at]
-        whole = inside & (total > _MOST)
-        alpha = np.where(whole, 1.0, np.minimum(total, 1.0))
+        alpha = np.where(inside, 1.0, np.minimum(total, 1.0))
         colors[far][at] = light / total[:, None] * alpha[:, None]
         depth = [1.0 / np.maximum(depths[number][at], 1e-9) for number in (near, far)]
         depths[far][at] = total / (part[0] * depth[0] + part[1] * depth[1])
@@ -104,10 +105,9 @@ def sink(colors, depths, steps):
         colors[near][at], depths[near][at] = 0.0, np.inf
         rises[near][at] = 0.0
     for number, side in product(range(len(colors)), (SIDE, SIDE + 1)):
-        # What the neighbouring layers have of a pixel may have faded with the ends of their slices:
-        # a small part, as long as the ends are; what is left is the greater one.
+        # What the neighbouring layers have of a pixel may have faded with the ends of their slices.
         alpha = colors[number][..., 3]
-        rows, columns = np.nonzero((alpha > _MOST) & (alpha < WHOLE) & (rises[number] == 0.0))
+        rows, columns = np.nonzero((alpha > 0.0) & (alpha < WHOLE) & (rises[number] == 0.0))
         # A strand of hair, too, may lie between what is nearer and what is farther, but then
         # something is behind it.
         behind = covers[number + 1 : number + 1 + _BESIDE]
@@ -138,6 +138,9 @@ def _slope(covers, depths, steps, pair, rows, columns, side=SIDE):
     """
     height, width = covers[0].shape
     near, far = pair
+    # The less of it there is, the more whole is what it is a part of.
+    here = sum(covers[number][rows, columns] for number in {near, far})
+    least = np.maximum(_MOST, 1.0 - here)
     before = range(max(near - _BESIDE, 0), near + 1)
     behind = range(far, min(far + 1 + _BESIDE, len(covers)))
 
@@ -159,21 +162,21 @@ def _slope(covers, depths, steps, pair, rows, columns, side=SIDE):
         return found / np.maximum(filled, 1e-9)
 
     around = range(before[0], behind[-1] + 1)
-    here = step_of(around, 0, 0)
+    middle = step_of(around, 0, 0)
     rise, inside = np.zeros(len(rows)), np.zeros(len(rows), bool)
     for y, x in ((side, 0), (-side, 0), (0, side), (0, -side)):
         # The near side is the one, the far side the other.
         found = (at(covers, far, y, x) == 0.0) & (at(covers, near, -y, -x) == 0.0)
-        found &= (total(before, y, x) > _MOST) & (total(behind, -y, -x) > _MOST)
+        found &= (total(before, y, x) > least) & (total(behind, -y, -x) > least)
         if not found.any():
             continue
         sides = step_of(before, y, x), step_of(behind, -y, -x)
         between = step_of(around, y // side, x // side), step_of(around, -y // side, -x // side)
         step = sides[1] - sides[0]
-        found &= (step > 0.0) & (np.abs(here - 0.5 * (sides[0] + sides[1])) < _BENT * step)
-        found &= (sides[0] <= between[0]) & (between[0] <= here)
-        found &= (here <= between[1]) & (between[1] <= sides[1])
-        across = [total(around, *place) > _MOST for place in ((x, y), (-x, -y))]
+        found &= (step > 0.0) & (np.abs(middle - 0.5 * (sides[0] + sides[1])) < _BENT * step)
+        found &= (sides[0] <= between[0]) & (between[0] <= middle)
+        found &= (middle <= between[1]) & (between[1] <= sides[1])
+        across = [total(around, *place) > least for place in ((x, y), (-x, -y))]
         rise = np.where(found, np.maximum(rise, step), rise)
         inside |= found & across[0] & across[1]
     return rise, inside
