@@ -12,13 +12,24 @@ Hillaire, A scalable and production ready sky and atmosphere rendering technique
 integration over a step.
 """
 
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
-EARTH_RADIUS = 6371.0
-THICKNESS = 100.0
+from .scattering import (
+    between_azimuths,
+    coarse_azimuths,
+    cosines_to_sun,
+    distance_after,
+    phase_of_air,
+    points_on_rays,
+    to_sphere,
+)
+
+_EARTH_RADIUS = 6371.0
+_THICKNESS = 100.0
+# Of the eye, m.
+_HIGHEST = 99999.0
 # Of the table of transmittances, and of the integral along a ray.
 _STEPS = 64
 _TABLE_COLUMNS, _TABLE_ROWS = 256, 64
@@ -42,7 +53,7 @@ _GROUND_ALBEDO = 0.3
 # Light scattered more than once, relative to the sun's: a fit.
 _REPEATED = 0.02 * np.array([0.217, 0.347, 0.594, 1.0])
 # CIE XYZ (rows) of the four wavelengths' radiances.
-SPECTRAL_TO_XYZ = np.array(
+_SPECTRAL_TO_XYZ = np.array(
     [
         [53.38691773856467, 43.904844466369358, 1.6137278251608962, 20.762668673810577],
         [22.981337506691025, 71.347795700053394, 18.422960591455485, 2.3614213523314369],
@@ -51,45 +62,28 @@ SPECTRAL_TO_XYZ = np.array(
 )
 
 
-@dataclass(frozen=True)
-class Atmosphere:
-    """Amounts relative to those of a clear day.
+def _coefficients(atmosphere, height):
+    """Return what happens to light in a km.
 
     Parameters
     ----------
-    air, aerosols, ozone : float
+    atmosphere : Atmosphere
+    height : ndarray of shape (...)
+        Above the ground, km.
+
+    Returns
+    -------
+    by_air, by_aerosols, extinction : ndarray of shape (..., 4)
+        Light scattered by air, by aerosols, and all that is lost, 1 / km.
     """
-
-    air: float = 1.0
-    aerosols: float = 1.0
-    ozone: float = 1.0
-
-    def coefficients(self, height):
-        """Return what happens to light in a km.
-
-        Parameters
-        ----------
-        height : ndarray of shape (...)
-            Above the ground, km.
-
-        Returns
-        -------
-        by_air, by_aerosols, extinction : ndarray of shape (..., 4)
-            Light scattered by air, by aerosols, and all that is lost, 1 / km.
-        """
-        h = np.maximum(height, 0.0)[..., None]
-        by_air = self.air * _AIR * np.exp(-0.07771971 * h**1.16364243)
-        log = np.log(h + 1e-4) - 3.22261
-        layer = 3.78547397e20 / (h + 1e-4) * np.exp(-log * log * 5.55555555)
-        ozone = self.ozone * _OZONE * _DOBSON * layer
-        density = self.aerosols * _DENSITY * (np.exp(-h / _HEIGHT) + _BACKGROUND / _DENSITY)
-        by_aerosols = _SCATTERED * density
-        return by_air, by_aerosols, by_air + ozone + by_aerosols + _ABSORBED * density
-
-
-def _to_sphere(radius, cosine, sphere):
-    """Return the way from inside a sphere to it."""
-    return -radius * cosine + np.sqrt(np.maximum(sphere**2 - radius**2 * (1.0 - cosine**2), 0.0))
+    h = np.maximum(height, 0.0)[..., None]
+    by_air = atmosphere.air * _AIR * np.exp(-0.07771971 * h**1.16364243)
+    log = np.log(h + 1e-4) - 3.22261
+    layer = 3.78547397e20 / (h + 1e-4) * np.exp(-log * log * 5.55555555)
+    ozone = atmosphere.ozone * _OZONE * _DOBSON * layer
+    density = atmosphere.aerosols * _DENSITY * (np.exp(-h / _HEIGHT) + _BACKGROUND / _DENSITY)
+    by_aerosols = _SCATTERED * density
+    return by_air, by_aerosols, by_air + ozone + by_aerosols + _ABSORBED * density
 
 
 # Memo of its arguments alone.
@@ -97,18 +91,17 @@ def _to_sphere(radius, cosine, sphere):
 def _transmittances(atmosphere):
     """Return shares of light that pass to the end of the atmosphere, by height and cosine."""
     cosine = np.linspace(-1.0, 1.0, _TABLE_COLUMNS)
-    height = np.linspace(0.0, THICKNESS, _TABLE_ROWS)
+    height = np.linspace(0.0, _THICKNESS, _TABLE_ROWS)
     return np.exp(-_depth(atmosphere, height[:, None], cosine[None])).astype(np.float32)
 
 
 def _depth(atmosphere, height, cosine):
-    radius = EARTH_RADIUS + height
-    step = _to_sphere(radius, cosine, EARTH_RADIUS + THICKNESS) / _STEPS
+    radius = _EARTH_RADIUS + height
+    step = to_sphere(radius, cosine, _EARTH_RADIUS + _THICKNESS) / _STEPS
     total = 0.0
     for i in range(_STEPS):
-        way = (i + 0.5) * step
-        r = np.sqrt(radius**2 + way**2 + 2.0 * radius * way * cosine)
-        total = total + atmosphere.coefficients(r - EARTH_RADIUS)[2] * step[..., None]
+        r = distance_after(radius, (i + 0.5) * step, cosine)
+        total = total + _coefficients(atmosphere, r - _EARTH_RADIUS)[2] * step[..., None]
     return total
 
 
@@ -116,7 +109,7 @@ def _look_up(table, cosine, height):
     """Return the table's values between its texels, shape (..., 4)."""
     rows, columns = table.shape[:2]
     x = np.clip(cosine * 0.5 + 0.5, 0.0, 1.0) * (columns - 1)
-    y = np.clip(height / THICKNESS, 0.0, 1.0) * (rows - 1)
+    y = np.clip(height / _THICKNESS, 0.0, 1.0) * (rows - 1)
     i, j = (np.minimum(v.astype(np.int32), n - 2) for v, n in ((x, columns), (y, rows)))
     s, t = (x - i)[..., None], (y - j)[..., None]
     flat = table.reshape(-1, 4)
@@ -133,7 +126,7 @@ def radiance(atmosphere, altitude, sun_elevation, elevation, azimuth):
     ----------
     atmosphere : Atmosphere
     altitude : float
-        Of the eye, km.
+        Of the eye, m.
     sun_elevation : float
         Radians.
     elevation : ndarray of shape (H,)
@@ -142,70 +135,64 @@ def radiance(atmosphere, altitude, sun_elevation, elevation, azimuth):
 
     Returns
     -------
-    ndarray of shape (H, W, 4)
+    ndarray of shape (H, W, 3)
+        CIE XYZ.
     """
-    table = _transmittances(atmosphere)
-    coarse = np.linspace(0.0, np.pi, _AZIMUTHS)
-    sums = _sums(atmosphere, table, altitude, sun_elevation, elevation, coarse)
-    sums = [part.astype(np.float32) for part in sums]
-    place = np.abs((azimuth + np.pi) % (2.0 * np.pi) - np.pi) / np.pi * (_AZIMUTHS - 1)
-    low = np.minimum(place.astype(int), _AZIMUTHS - 2)
-    share = (place - low)[:, None].astype(np.float32)
+    radius = _EARTH_RADIUS + _height(altitude)
+    sums = _sums(atmosphere, radius, sun_elevation, elevation, coarse_azimuths(_AZIMUTHS))
     by_air, by_aerosols, repeated = (
-        s[:, low] * (1.0 - share) + s[:, low + 1] * share for s in sums
+        between_azimuths(part.astype(np.float32), azimuth) for part in sums
     )
-    up, sun_up = np.sin(elevation)[:, None], np.sin(sun_elevation)
-    across = np.cos(elevation)[:, None] * np.cos(sun_elevation)
-    cosine = (across * np.cos(azimuth) + up * sun_up)[..., None]
-    air_phase = 3.0 / (16.0 * np.pi) * (1.0 + cosine * cosine)
+    cosine = cosines_to_sun(sun_elevation, elevation, azimuth)[..., None]
     g2 = _ASYMMETRY**2
     spread = 1.0 + g2 - 2.0 * _ASYMMETRY * cosine
-    aerosol_phase = (1.0 - g2) / (4.0 * np.pi * spread * np.sqrt(spread))
-    return _SUN * (air_phase * by_air + aerosol_phase * by_aerosols + repeated)
+    phase_of_aerosols = (1.0 - g2) / (4.0 * np.pi * spread * np.sqrt(spread))
+    light = phase_of_air(cosine) * by_air + phase_of_aerosols * by_aerosols + repeated
+    return (_SUN * light) @ _SPECTRAL_TO_XYZ.T
 
 
-def passed_to_eye(atmosphere, altitude, cosine):
-    """Return what is left of the sun's light, W / (m2 nm).
+def sunlight(atmosphere, altitude, elevation):
+    """Return what is left of the sun's light.
 
     Parameters
     ----------
     atmosphere : Atmosphere
     altitude : float
-        Of the eye, km.
-    cosine : ndarray of shape (N,)
-        Of the angle between the sun and the zenith.
+        Of the eye, m.
+    elevation : float
+        Of the sun, radians.
 
     Returns
     -------
-    ndarray of shape (N, 4)
+    ndarray of shape (3,)
+        CIE XYZ.
     """
-    height = np.full_like(cosine, altitude)
-    return _SUN * _look_up(_transmittances(atmosphere), cosine, height)
+    place = np.array([np.sin(elevation)]), np.array([_height(altitude)])
+    return _SPECTRAL_TO_XYZ @ (_SUN * _look_up(_transmittances(atmosphere), *place))[0]
 
 
-def _sums(atmosphere, table, altitude, sun_elevation, elevation, azimuth):
+def _height(altitude):
+    """Return an eye's altitude in km."""
+    return min(max(altitude, 1.0), _HIGHEST) / 1000.0
+
+
+def _sums(atmosphere, radius, sun_elevation, elevation, azimuth):
     """Return light scattered towards the eye along rays, phases left out: 3 of (H, W, 4)."""
-    radius = EARTH_RADIUS + altitude
+    table = _transmittances(atmosphere)
     cosine = np.sin(elevation)
-    ground = radius**2 * (1.0 - cosine**2) < EARTH_RADIUS**2
+    ground = radius**2 * (1.0 - cosine**2) < _EARTH_RADIUS**2
     ground &= cosine < 0.0
-    way = _to_sphere(radius, cosine, EARTH_RADIUS + THICKNESS)
+    way = to_sphere(radius, cosine, _EARTH_RADIUS + _THICKNESS)
     near = -radius * cosine - np.sqrt(
-        np.maximum(EARTH_RADIUS**2 - radius**2 * (1.0 - cosine**2), 0.0)
+        np.maximum(_EARTH_RADIUS**2 - radius**2 * (1.0 - cosine**2), 0.0)
     )
     step = np.where(ground, near, way) / _STEPS
     passed = np.ones((len(elevation), 4))
     sums = [np.zeros((len(elevation), len(azimuth), 4)) for _ in range(3)]
     for i in range(_STEPS):
-        t = (i + 0.5) * step
-        z, x = radius + t * cosine, t * np.cos(elevation)
-        distance = np.sqrt(z * z + x * x)
-        height = distance - EARTH_RADIUS
-        by_air, by_aerosols, lost = atmosphere.coefficients(height)
-        sun = (
-            z[:, None] * np.sin(sun_elevation)
-            + x[:, None] * np.cos(azimuth) * np.cos(sun_elevation)
-        ) / distance[:, None]
+        distance, sun = points_on_rays(radius, (i + 0.5) * step, sun_elevation, elevation, azimuth)
+        height = distance - _EARTH_RADIUS
+        by_air, by_aerosols, lost = _coefficients(atmosphere, height)
         heights = np.broadcast_to(height[:, None], sun.shape)
         lit = _look_up(table, sun, heights)
         repeated = _repeated(table, sun, heights, distance[:, None])
@@ -220,7 +207,7 @@ def _sums(atmosphere, table, altitude, sun_elevation, elevation, azimuth):
 
 def _repeated(table, sun, height, distance):
     """Return light of the ground and light scattered before, a unit of the sun's."""
-    seen = 2.0 * np.pi * (1.0 - np.sqrt(np.maximum(distance**2 - EARTH_RADIUS**2, 0.0)) / distance)
+    seen = 2.0 * np.pi * (1.0 - np.sqrt(np.maximum(distance**2 - _EARTH_RADIUS**2, 0.0)) / distance)
     at_ground = _look_up(table, sun, np.zeros_like(sun))
     upwards = np.ones_like(height[:, :1])
     rising = _look_up(table, upwards, 0.0 * upwards) / _look_up(table, upwards, height[:, :1])

@@ -10,19 +10,30 @@ scattering, SIGGRAPH 1993. Bruneton, A qualitative and quantitative evaluation o
 models, 2016: the layer of ozone.
 """
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
 from ...sampling.spectrum import color_matching
+from .scattering import (
+    between_azimuths,
+    coarse_azimuths,
+    cosines_to_sun,
+    distance_after,
+    phase_of_air,
+    points_on_rays,
+    to_sphere,
+)
 
-EARTH_RADIUS = 6360e3
-ATMOSPHERE_RADIUS = 6420e3
+_EARTH_RADIUS = 6360e3
+_ATMOSPHERE_RADIUS = 6420e3
+# Of the eye.
+_HIGHEST = 59999.0
 # Along a ray, and from its points to the sun.
 _STEPS, _POINTS_TO_SUN = 32, 12
 _AZIMUTHS = 32
 
-WAVELENGTHS = np.arange(380.0, 790.0, 20.0)
+_WAVELENGTHS = np.arange(380.0, 790.0, 20.0)
 # The sun as a black body, outside of the atmosphere, W / (m2 nm).
 _SUN = np.array(
     [
@@ -32,7 +43,7 @@ _SUN = np.array(
     ]
 )
 # 1 / m at sea level: scattered by air as the fourth power of the wavelength, by aerosols alike.
-_AIR = 1.131147e6 / WAVELENGTHS**4
+_AIR = 1.131147e6 / _WAVELENGTHS**4
 _AEROSOLS = 2e-5
 # What aerosols absorb beside it.
 _AEROSOL_LOSS = 1.11
@@ -48,33 +59,20 @@ _OZONE = 1e-9 * np.array(
 )
 
 
-@dataclass(frozen=True)
-class Atmosphere:
-    """Amounts relative to those of a clear day.
-
-    Parameters
-    ----------
-    air, aerosols, ozone : float
-    """
-
-    air: float = 1.0
-    aerosols: float = 1.0
-    ozone: float = 1.0
-
-    def densities(self, height):
-        """Return densities of air, aerosols and ozone, relative; shape (..., 3)."""
-        layer = np.where(height < 25e3, height / 15e3 - 2.0 / 3.0, 8.0 / 3.0 - height / 15e3)
-        parts = (
-            self.air * np.exp(-height / _AIR_HEIGHT),
-            self.aerosols * np.exp(-height / _AEROSOL_HEIGHT),
-            self.ozone * np.maximum(layer, 0.0),
-        )
-        return np.stack(parts, axis=-1)
+def _densities(atmosphere, height):
+    """Return densities of air, aerosols and ozone, relative; shape (..., 3)."""
+    layer = np.where(height < 25e3, height / 15e3 - 2.0 / 3.0, 8.0 / 3.0 - height / 15e3)
+    parts = (
+        atmosphere.air * np.exp(-height / _AIR_HEIGHT),
+        atmosphere.aerosols * np.exp(-height / _AEROSOL_HEIGHT),
+        atmosphere.ozone * np.maximum(layer, 0.0),
+    )
+    return np.stack(parts, axis=-1)
 
 
-def spectral_to_xyz():
+def _spectral_to_xyz():
     """Return CIE XYZ (rows) of the radiances of the wavelengths, shape (3, 21)."""
-    return 20.0 * color_matching(WAVELENGTHS).T
+    return 20.0 * color_matching(_WAVELENGTHS).T
 
 
 def _passing(depth):
@@ -83,22 +81,15 @@ def _passing(depth):
     return np.exp(-depth @ loss)
 
 
-def _end(radius, cosine):
-    return -radius * cosine + np.sqrt(
-        np.maximum(ATMOSPHERE_RADIUS**2 - radius**2 * (1.0 - cosine**2), 0.0)
-    )
-
-
-def depth_to_sun(atmosphere, radius, cosine):
+def _depth_to_sun(atmosphere, radius, cosine):
     """Return optical depths (..., 3) from a distance to the Earth's middle along a cosine."""
     # Gauss' points, closer where the air is densest: at the start.
     points, weights = np.polynomial.legendre.leggauss(_POINTS_TO_SUN)
-    end = _end(radius, cosine)
+    end = to_sphere(radius, cosine, _ATMOSPHERE_RADIUS)
     total = np.zeros((*end.shape, 3))
     for point, weight in zip(0.5 * points + 0.5, weights, strict=True):
-        way = point * point * end
-        r = np.sqrt(radius**2 + way**2 + 2.0 * radius * way * cosine)
-        total += atmosphere.densities(r - EARTH_RADIUS) * (point * weight * end)[..., None]
+        r = distance_after(radius, point * point * end, cosine)
+        total += _densities(atmosphere, r - _EARTH_RADIUS) * (point * weight * end)[..., None]
     return total
 
 
@@ -122,62 +113,56 @@ def radiance(atmosphere, altitude, sun_elevation, elevation, azimuth):
     ndarray of shape (H, W, 3)
         CIE XYZ.
     """
-    coarse = np.linspace(0.0, np.pi, _AZIMUTHS)
-    sums = _sums(atmosphere, altitude, sun_elevation, elevation, coarse)
-    place = np.abs((azimuth + np.pi) % (2.0 * np.pi) - np.pi) / np.pi * (_AZIMUTHS - 1)
-    low = np.minimum(place.astype(int), _AZIMUTHS - 2)
-    share = (place - low)[:, None]
-    by_air, by_aerosols = (s[:, low] * (1.0 - share) + s[:, low + 1] * share for s in sums)
-    up, sun_up = np.sin(elevation)[:, None], np.sin(sun_elevation)
-    across = np.cos(elevation)[:, None] * np.cos(sun_elevation)
-    cosine = (across * np.cos(azimuth) + up * sun_up)[..., None]
-    air_phase = 3.0 / (16.0 * np.pi) * (1.0 + cosine * cosine)
+    radius = _EARTH_RADIUS + _clipped(altitude)
+    sums = _sums(atmosphere, radius, sun_elevation, elevation, coarse_azimuths(_AZIMUTHS))
+    by_air, by_aerosols = (between_azimuths(part, azimuth) for part in sums)
+    cosine = cosines_to_sun(sun_elevation, elevation, azimuth)[..., None]
     g2 = _ASYMMETRY**2
     spread = (1.0 + g2 - 2.0 * _ASYMMETRY * cosine) ** 1.5
-    aerosol_phase = 3.0 * (1.0 - g2) / (8.0 * np.pi * (2.0 + g2)) * (1.0 + cosine**2) / spread
-    return air_phase * by_air + aerosol_phase * by_aerosols
+    phase_of_aerosols = 3.0 * (1.0 - g2) / (8.0 * np.pi * (2.0 + g2)) * (1.0 + cosine**2) / spread
+    return phase_of_air(cosine) * by_air + phase_of_aerosols * by_aerosols
 
 
-def sunlight(atmosphere, altitude, cosine):
-    """Return CIE XYZ of what is left of the sun's light.
+def sunlight(atmosphere, altitude, elevation):
+    """Return what is left of the sun's light.
 
     Parameters
     ----------
     atmosphere : Atmosphere
     altitude : float
         Of the eye, m.
-    cosine : ndarray of shape (N,)
-        Of the angle between the sun and the zenith.
+    elevation : float
+        Of the sun, radians.
 
     Returns
     -------
-    ndarray of shape (N, 3)
+    ndarray of shape (3,)
+        CIE XYZ.
     """
-    depth = depth_to_sun(atmosphere, EARTH_RADIUS + altitude, cosine)
-    return (_SUN * _passing(depth)) @ spectral_to_xyz().T
+    # As in Cycles, ozone takes nothing of the disc.
+    atmosphere = replace(atmosphere, ozone=0.0)
+    cosine = np.array([np.sin(elevation)])
+    depth = _depth_to_sun(atmosphere, _EARTH_RADIUS + _clipped(altitude), cosine)
+    return ((_SUN * _passing(depth)) @ _spectral_to_xyz().T)[0]
 
 
-def _sums(atmosphere, altitude, sun_elevation, elevation, azimuth):
+def _clipped(altitude):
+    return min(max(altitude, 1.0), _HIGHEST)
+
+
+def _sums(atmosphere, radius, sun_elevation, elevation, azimuth):
     """Return XYZ scattered towards the eye by air and by aerosols, phases left out."""
-    radius = EARTH_RADIUS + altitude
-    cosine = np.sin(elevation)
-    step = _end(radius, cosine) / _STEPS
+    step = to_sphere(radius, np.sin(elevation), _ATMOSPHERE_RADIUS) / _STEPS
     depth = np.zeros((len(elevation), 3))
-    to_xyz = (spectral_to_xyz() * _SUN).T
+    to_xyz = (_spectral_to_xyz() * _SUN).T
     sums = np.zeros((2, len(elevation), len(azimuth), 3))
     for i in range(_STEPS):
-        t = (i + 0.5) * step
-        z, x = radius + t * cosine, t * np.cos(elevation)
-        distance = np.sqrt(z * z + x * x)
-        here = atmosphere.densities(distance - EARTH_RADIUS)
+        distance, sun = points_on_rays(radius, (i + 0.5) * step, sun_elevation, elevation, azimuth)
+        here = _densities(atmosphere, distance - _EARTH_RADIUS)
         depth = depth + here * step[:, None]
-        sun = (
-            z[:, None] * np.sin(sun_elevation)
-            + x[:, None] * np.cos(azimuth) * np.cos(sun_elevation)
-        ) / distance[:, None]
         far = np.broadcast_to(distance[:, None], sun.shape)
-        lit = (sun >= 0.0) | (far**2 * (1.0 - sun**2) > EARTH_RADIUS**2)
-        passed = _passing(depth[:, None] + depth_to_sun(atmosphere, far, sun))
+        lit = (sun >= 0.0) | (far**2 * (1.0 - sun**2) > _EARTH_RADIUS**2)
+        passed = _passing(depth[:, None] + _depth_to_sun(atmosphere, far, sun))
         passed *= (lit * step[:, None])[..., None]
         air, aerosols = here[:, None, None, 0], here[:, None, None, 1]
         sums[0] += (passed * _AIR * air) @ to_xyz

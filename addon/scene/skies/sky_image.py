@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import fitted_skies, multiple_scattering, single_scattering
+from .scattering import Atmosphere
 
 # As Blender keeps a scattering sky: azimuths, and elevations that lie closer at the horizon.
 _COLUMNS, _ROWS = 512, 256
@@ -18,6 +19,7 @@ _LIMB = 0.6
 # measured of Cycles.
 _FADE, _FADE_POWER = 0.409, 3.153
 _HALF = 0.5 * np.pi
+_MODELS = {"SINGLE_SCATTERING": single_scattering, "MULTIPLE_SCATTERING": multiple_scattering}
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,11 @@ class Sky:
     intensity: float = 1.0
     turbidity: float = 2.2
     albedo: float = 0.3
+
+    @property
+    def atmosphere(self):
+        """Its amounts, `Atmosphere`."""
+        return Atmosphere(self.air, self.aerosols, self.ozone)
 
 
 def sky_xyz(sky):
@@ -105,10 +112,6 @@ def _scattering(sky, elevation, azimuth):
         around = (column + 0.5) / _COLUMNS * 2.0 * np.pi
         line = (np.arange(_ROWS) + 0.5) / _ROWS * 2.0 - 1.0
         rising = np.sign(line) * line * line * _HALF
-        amounts = multiple_scattering.Atmosphere(sky.air, sky.aerosols, sky.ozone)
-        altitude = min(max(sky.altitude, 1.0), 99999.0) / 1000.0
-        light = multiple_scattering.radiance(amounts, altitude, sun_elevation, rising, around)
-        table = light @ multiple_scattering.SPECTRAL_TO_XYZ.T
         root = np.sign(elevation) * np.sqrt(np.abs(elevation) / _HALF)
         rows = (0.5 * root + 0.5) * _ROWS - 0.5
     else:
@@ -117,10 +120,8 @@ def _scattering(sky, elevation, azimuth):
         rising = (np.arange(count) / count) ** 2 * _HALF
         around = np.where(column < _COLUMNS // 2, column + 1, _COLUMNS - column)
         around = around / _COLUMNS * 2.0 * np.pi
-        amounts = single_scattering.Atmosphere(sky.air, sky.aerosols, sky.ozone)
-        altitude = min(max(sky.altitude, 1.0), 59999.0)
-        table = single_scattering.radiance(amounts, altitude, sun_elevation, rising, around)
         rows = np.sqrt(np.maximum(elevation, 0.0) / _HALF) * count - 0.5
+    table = _MODELS[sky.kind].radiance(sky.atmosphere, sky.altitude, sun_elevation, rising, around)
     columns = ((azimuth - sun_azimuth) / (2.0 * np.pi) % 1.0) * _COLUMNS - 0.5
     image = _between(_between(table.astype(np.float32), rows, 0, False), columns, 1, True)
     if not whole:
@@ -151,12 +152,14 @@ def _disc(sky, elevation, azimuth):
     if sun_elevation + half <= 0.0 or not len(rows):
         return image
     lower, upper = (
-        _sunlight(sky, max(e, 0.0)) for e in (sun_elevation - half, sun_elevation + half)
+        _MODELS[sky.kind].sunlight(sky.atmosphere, sky.altitude, max(edge, 0.0))
+        for edge in (sun_elevation - half, sun_elevation + half)
     )
     # A texel has the mean of its parts: the disc is few texels wide, each with much of its light.
     parts = (np.arange(_PARTS) + 0.5) / _PARTS - 0.5
     fine_rows = (elevation[rows, None] + parts * np.pi / len(elevation)).ravel()
-    fine_columns = (azimuth[:, None] + parts * 2.0 * np.pi / len(azimuth)).ravel()
+    columns = np.flatnonzero(_columns_reached(azimuth, sky.sun, sun_elevation, half))
+    fine_columns = (azimuth[columns, None] + parts * 2.0 * np.pi / len(azimuth)).ravel()
     angle = _angles(fine_rows, fine_columns, sky.sun) / half
     limb = 1.0 - _LIMB * (1.0 - np.sqrt(np.clip(1.0 - angle * angle, 0.0, 1.0)))
     limb[angle > 1.0] = 0.0
@@ -164,25 +167,21 @@ def _disc(sky, elevation, azimuth):
     solid = 2.0 * np.pi * (1.0 - np.cos(half))
     light = (lower + (upper - lower) * np.clip(height, 0.0, 1.0)) / solid
     fine = (sky.intensity * limb)[..., None] * light
-    image[rows] = fine.reshape(len(rows), _PARTS, len(azimuth), _PARTS, 3).mean(axis=(1, 3))
+    fine = fine.reshape(len(rows), _PARTS, len(columns), _PARTS, 3)
+    image[np.ix_(rows, columns)] = fine.mean(axis=(1, 3))
     return image
+
+
+def _columns_reached(azimuth, sun, sun_elevation, half):
+    """Whether a disc, of half an angle, comes into columns of texels: at the zenith into all."""
+    away = np.abs((azimuth - np.arctan2(-sun[1], sun[0]) + np.pi) % (2.0 * np.pi) - np.pi)
+    if sun_elevation + half >= _HALF:
+        return away >= 0.0
+    texel = 2.0 * np.pi / len(azimuth)
+    return away <= np.arcsin(np.sin(half) / np.cos(sun_elevation)) + texel
 
 
 def _angles(elevation, azimuth, towards):
     """Return the angles of directions from a unit vector, shape (H, W); exact for small ones."""
     chord = directions(elevation, azimuth) - np.array(towards)
     return 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(chord, axis=-1), 1.0))
-
-
-def _sunlight(sky, elevation):
-    """Return CIE XYZ of the sun's irradiance at an elevation, in radians."""
-    cosine = np.array([np.sin(elevation)])
-    if sky.kind == "MULTIPLE_SCATTERING":
-        amounts = multiple_scattering.Atmosphere(sky.air, sky.aerosols, sky.ozone)
-        altitude = min(max(sky.altitude, 1.0), 99999.0) / 1000.0
-        passed = multiple_scattering.passed_to_eye(amounts, altitude, cosine)[0]
-        return multiple_scattering.SPECTRAL_TO_XYZ @ passed
-    # As in Cycles, ozone takes nothing of the disc.
-    amounts = single_scattering.Atmosphere(sky.air, sky.aerosols, 0.0)
-    altitude = min(max(sky.altitude, 1.0), 59999.0)
-    return single_scattering.sunlight(amounts, altitude, cosine)[0]
