@@ -123,39 +123,6 @@ def subpixel_weights(offsets, kind, size_px, subpixels):
     return np.where(density > 0.0, density / np.maximum(mixture, 1e-12), 0.0)
 
 
-def texel_offsets(uniform, kind, size_px):
-    """Importance-sample a pixel filter for a picture that is looked up by the nearest texel.
-
-    A texel has one colour all over its square, whose place in the pixel differs from sample to
-    sample: that is a box of a pixel on top of where the picture is looked up. Places drawn here
-    are so much nearer to the pixel's centre that both together have the filter's variance. A box
-    as wide as a whole number of pixels is met exactly. The share of an edge's light on either side
-    is met to 0.005 for Blackman-Harris of size 1.5 and to 0.001 from 2 on. A filter that is
-    narrower than a texel leaves the centre alone.
-
-    Parameters
-    ----------
-    uniform : ndarray of shape (..., 2)
-        In [0, 1); 0.5 becomes the pixel's centre.
-    kind : {'BLACKMAN_HARRIS', 'BOX'}
-    size_px : float
-        Blender's filter size, in pixels.
-
-    Returns
-    -------
-    ndarray of shape (..., 2)
-        Offsets from the pixel's centre, in pixels.
-    """
-    if kind == "BOX":
-        # Boxes of a pixel side by side, or overlapping.
-        boxes = max(int(np.ceil(size_px - 1e-9)), 1)
-        step = np.sqrt(max(size_px**2 - 1.0, 0.0) / max(boxes**2 - 1.0, 1.0))
-        place = np.minimum(np.floor(np.asarray(uniform) * boxes), boxes - 1)
-        return step * (place - 0.5 * (boxes - 1))
-    left = size_px**2 - 1.0 / (48.0 * _VARIANCE)
-    return filter_offsets(uniform, kind, np.sqrt(max(left, 0.0)))
-
-
 def filter_offsets(uniform, kind, size_px):
     """Importance-sample a pixel filter: map uniform numbers to offsets from the pixel's centre.
 
@@ -179,3 +146,25 @@ def filter_offsets(uniform, kind, size_px):
     density = blackman_harris(0.5 * (edges[1:] + edges[:-1]))
     cumulative = np.concatenate([[0.0], np.cumsum(density)])
     return np.interp(uniform, cumulative / cumulative[-1], edges) * 2.0 * size_px
+
+
+def texel_offsets(uniform, kind, size_px):
+    """Importance-sample a pixel filter for a picture that is looked up by the nearest texel.
+
+    A texel has one colour all over its square, whose place in the pixel differs from sample to
+    sample: that is a box of a pixel on top of where the picture is looked up. Places drawn here
+    are so much nearer to the pixel's centre that both together have the filter's variance. A box
+    as wide as a whole number of pixels is met exactly. The share of an edge's light on either side
+    is met to 0.005 for Blackman-Harris of size 1.5 and to 0.001 from 2 on. A filter that is
+    narrower than a texel leaves the centre alone.
+
+    Parameters and result are those of `filter_offsets`.
+    """
+    if kind == "BOX":
+        # Boxes of a pixel side by side, or overlapping.
+        boxes = max(int(np.ceil(size_px - 1e-9)), 1)
+        step = np.sqrt(max(size_px**2 - 1.0, 0.0) / max(boxes**2 - 1.0, 1.0))
+        place = np.minimum(np.floor(np.asarray(uniform) * boxes), boxes - 1)
+        return step * (place - 0.5 * (boxes - 1))
+    left = size_px**2 - 1.0 / (48.0 * _VARIANCE)
+    return filter_offsets(uniform, kind, np.sqrt(max(left, 0.0)))

@@ -24,8 +24,26 @@ def load_file(path):
         Bottom row first: uint8, or float32 with colour as the file has it, multiplied by alpha or
         not. None where the file cannot be read.
     """
+    import imbuf
+
     pixels = _load_float_file(path)
-    return _load_with_blender(path) if pixels is None else pixels
+    return _load_with_blender(imbuf.load, path) if pixels is None else pixels
+
+
+def load_packed(data):
+    """Read the pixels of an image file's bytes, as `load_file` does.
+
+    Parameters
+    ----------
+    data : bytes
+
+    Returns
+    -------
+    ndarray of shape (height, width, 4) or None
+    """
+    import imbuf
+
+    return _load_with_blender(imbuf.load_from_buffer, data)
 
 
 def _load_float_file(path):
@@ -57,11 +75,9 @@ def _load_float_file(path):
     return with_four_channels(pixels[..., :4])
 
 
-def _load_with_blender(path):
-    import imbuf
-
+def _load_with_blender(load, source):
     try:
-        buffer = imbuf.load(path)
+        buffer = load(source)
         with buffer.with_buffer() as view:
             pixels = np.array(view)
         buffer.free()

@@ -5,7 +5,7 @@ import math
 import bpy
 import numpy as np
 
-from .image_pixels import load_file, with_four_channels
+from .image_pixels import load_file, load_packed
 
 
 def tile_place(number):
@@ -71,18 +71,5 @@ def _as_float(pixels):
 def _load(image, number):
     for packed in image.packed_files:
         if str(number) in packed.filepath.rpartition("/")[2]:
-            return _load_packed(packed.data)
+            return load_packed(packed.data)
     return load_file(tile_path(image, number))
-
-
-def _load_packed(data):
-    import imbuf
-
-    try:
-        buffer = imbuf.load_from_buffer(data)
-        with buffer.with_buffer() as view:
-            pixels = np.array(view)
-        buffer.free()
-    except (OSError, ValueError, RuntimeError):
-        return None
-    return with_four_channels(pixels)
