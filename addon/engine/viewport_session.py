@@ -38,7 +38,9 @@ class ViewportSession(RenderSession):
 
     def content(self, depsgraph):
         """Return the current `SceneContent`, after its upload."""
-        content = self._extractor.extract_content(depsgraph)
+        # As the viewport's sampling: of the original scene, which has what was just set.
+        shadows = depsgraph.scene.aplanat.use_shadows
+        content = self._extractor.extract_content(depsgraph, shadows=shadows)
         self.scene_buffers.update(content)
         return content
 

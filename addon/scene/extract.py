@@ -60,7 +60,7 @@ class SceneExtractor:
         # Meshes read before whose source may have changed: compared with what is read next.
         self._doubtful = []
         self._content = None
-        self._passes = None
+        self._asked = None
         self._stale = True
         self._sources = None
 
@@ -107,12 +107,12 @@ class SceneExtractor:
         """
         scene, view_layer = depsgraph.scene, depsgraph.view_layer
         film = read_film(scene)
-        passes = read_passes(view_layer)
+        passes, sampling = read_passes(view_layer), read_sampling(depsgraph.scene_eval)
         snapshot = SceneSnapshot(
             camera=read_camera(depsgraph, scene.camera, film, view, self._camera_sources),
-            content=self.extract_content(depsgraph, passes),
+            content=self.extract_content(depsgraph, passes, sampling.shadows),
             film=film,
-            sampling=read_sampling(depsgraph.scene_eval),
+            sampling=sampling,
             passes=passes,
             layer_name=view_layer.name,
             alpha_threshold=view_layer.pass_alpha_threshold,
@@ -123,7 +123,7 @@ class SceneExtractor:
             self._known, self._doubtful, self._content, self._stale = {}, [], None, True
         return snapshot
 
-    def extract_content(self, depsgraph, passes=("Combined",)):
+    def extract_content(self, depsgraph, passes=("Combined",), shadows=False):
         """Return the content of the scene; the identical object if nothing changed.
 
         Parameters
@@ -131,23 +131,26 @@ class SceneExtractor:
         depsgraph : bpy.types.Depsgraph
         passes : tuple of str
             Decides which mesh attributes and names are needed beside those of the surfaces.
+        shadows : bool
+            Of the sampling; with them, what only throws shadows is read, too.
 
         Returns
         -------
         SceneContent
         """
-        if self._content is not None and not self._stale and passes == self._passes:
+        asked = passes, shadows
+        if self._content is not None and not self._stale and asked == self._asked:
             return self._content
-        content = self._read_content(depsgraph, passes)
+        content = self._read_content(depsgraph, *asked)
         if compare_content(self._content, content) is not Change.NONE:
             self._content = content
-        self._passes = passes
+        self._asked = asked
         self._stale = False
         return self._content
 
-    def _read_content(self, depsgraph, passes):
+    def _read_content(self, depsgraph, passes, shadows):
         for_motion = "Vector" in passes
-        found = read_instances(depsgraph, self._space, with_places=for_motion)
+        found = read_instances(depsgraph, self._space, shadows, with_places=for_motion)
         materials = self._materials
         materials.begin()
         slots_of = {}

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..shading.lights import MAX_LIGHTS, read_light
+from .random_numbers import object_number, share_of_range
 
 # Object types with a surface or substance of their own that the engine cannot draw: in words,
 # the view layer's switch for them, and how to tell an empty one.
@@ -124,7 +125,7 @@ class InstanceList:
     report: tuple = ()
 
 
-def read_instances(depsgraph, space=None, with_places=False):
+def read_instances(depsgraph, space=None, shadows=False, with_places=False):
     """List the copies of meshes that the camera may see.
 
     Parameters
@@ -132,6 +133,8 @@ def read_instances(depsgraph, space=None, with_places=False):
     depsgraph : bpy.types.Depsgraph
     space : bpy.types.SpaceView3D or None
         The 3D view whose local view and collections apply.
+    shadows : bool
+        Whether copies are listed that the camera does not see, and that throw shadows.
     with_places : bool
         Fill `InstanceList.places`.
 
@@ -143,7 +146,7 @@ def read_instances(depsgraph, space=None, with_places=False):
     -----
     Instances whose transform is not finite are left out, as in Cycles.
     """
-    reader = _Reader(depsgraph, space)
+    reader = _Reader(depsgraph, space, shadows)
     out = reader.out
     matrices, values = [], []
     for instance in depsgraph.object_instances:
@@ -155,7 +158,7 @@ def read_instances(depsgraph, space=None, with_places=False):
         out.names.append(name)
         # Blender shows these 32 bits as a signed number.
         number = instance.random_id % 2**32 if instance.is_instance else number
-        values.append((*color, _share(number), pass_index))
+        values.append((*color, share_of_range(number), pass_index))
         # Blender fills the same matrix again for the next instance.
         matrices.append(instance.matrix_world.copy())
         if with_places:
@@ -192,44 +195,15 @@ def place(instance):
     return (number, instance.parent.original.session_uid, *instance.persistent_id)
 
 
-def _share(number):
-    return number / 0xFFFFFFFF
-
-
-def object_number(name):
-    """Return the number, of 32 bits, from which nodes draw the random number of an object.
-
-    As Cycles does: the characters of the name as a number to the base 37, hashed by Jenkins'
-    *lookup3* (public domain, 2006) together with 0.
-    """
-    key = 0
-    for character in name.encode():
-        # Signed characters.
-        key = (key * 37 + (character - 256 if character > 127 else character)) & 0xFFFFFFFF
-    mask = 0xFFFFFFFF
-    a = b = c = (0xDEADBEEF + (2 << 2) + 13) & mask
-    a = (a + key) & mask
-
-    def turned(x, k):
-        return ((x << k) | (x >> (32 - k))) & mask
-
-    c = ((c ^ b) - turned(b, 14)) & mask
-    a = ((a ^ c) - turned(c, 11)) & mask
-    b = ((b ^ a) - turned(a, 25)) & mask
-    c = ((c ^ b) - turned(b, 16)) & mask
-    a = ((a ^ c) - turned(c, 4)) & mask
-    b = ((b ^ a) - turned(a, 14)) & mask
-    return ((c ^ b) - turned(b, 24)) & mask
-
-
 class _Reader:
-    def __init__(self, depsgraph, space):
+    def __init__(self, depsgraph, space, shadows):
         self.out = InstanceList()
         self._depsgraph = depsgraph
         self._in_viewport = depsgraph.mode == "VIEWPORT"
         # Evaluated, as the objects are: animated switches are not written back while rendering.
         self._view_layer = depsgraph.view_layer_eval
         self._override = self._view_layer.material_override
+        self._shadows = shadows
         self._space = space
         self._kinds = {}
         self._place_flags = {}
@@ -264,7 +238,7 @@ class _Reader:
         holdout, indirect_only, parent_visible = self._flags_of_place(parent)
         camera = obj.visible_camera and parent_visible and (holdout or not indirect_only)
         shadow = obj.visible_shadow and parent.visible_shadow
-        if not (camera or shadow) or not self._is_in_view(obj):
+        if not (camera or (shadow and self._shadows)) or not self._is_in_view(obj):
             return None, ()
         name = obj.name
         switches = self._view_layer

@@ -13,8 +13,8 @@ def bpy(aplanat_bpy, empty_scene):
     return aplanat_bpy
 
 
-def extract(bpy, passes=("Combined",)):
-    return SceneExtractor().extract_content(bpy.context.evaluated_depsgraph_get(), passes)
+def extract(bpy, passes=("Combined",), shadows=False):
+    return SceneExtractor().extract_content(bpy.context.evaluated_depsgraph_get(), passes, shadows)
 
 
 def test_objects_and_instances_of_one_mesh_share_its_snapshot(bpy):
@@ -121,6 +121,19 @@ def test_what_cannot_be_drawn_is_listed_once_by_name_and_kind(bpy):
     assert any("'fog'" in line and "3 copies" in line for line in report)
     assert any("'hairy'" in line and "hair" in line for line in report)
     assert any("'catcher'" in line and "shadow catcher" in line for line in report)
+
+
+def test_what_only_throws_shadows_is_read_where_there_are_shadows(bpy):
+    """Without them it would cost its mesh and its buffers for nothing."""
+    scenes.add(bpy, "seen", scenes.cube(bpy))
+    hidden = scenes.add(bpy, "hidden", scenes.cube(bpy, "other"))
+    hidden.visible_camera = False
+    content = extract(bpy)
+    assert content.unseen is None and len(content.meshes) == 1
+    content = extract(bpy, shadows=True)
+    assert len(content.unseen.meshes) == len(content.meshes) == 1
+    hidden.visible_shadow = False
+    assert extract(bpy, shadows=True).unseen is None
 
 
 def test_hidden_things_that_cannot_be_drawn_are_not_listed(bpy):
