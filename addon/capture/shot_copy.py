@@ -246,7 +246,10 @@ class ShotCopy:
 
     def _leave_out_fog(self):
         """Give the copy a world without a volume: it has no end, and would fill every slice."""
-        world = self.scene.world
+        layer = self.scene.view_layers[self.layer]
+        # A view layer may have a world of its own.
+        owner, name = (layer, "world_override") if layer.world_override else (self.scene, "world")
+        world = getattr(owner, name)
         tree = world and world.node_tree
         if tree is None or not any(_fog_of(tree)):
             return
@@ -254,7 +257,7 @@ class ShotCopy:
         self._blocks.append((bpy.data.worlds, clear))
         for fog in list(_fog_of(clear.node_tree)):
             clear.node_tree.links.remove(fog)
-        self.scene.world = clear
+        setattr(owner, name, clear)
         self._warn(
             f"the volume of world '{world.name}' is left out, since it would hide what is behind"
             " the first layer; add fog by depth afterwards"

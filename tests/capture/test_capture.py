@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from addon.capture.frame_capture import FrameCapture
+from addon.capture.settings import CaptureSettings
 from addon.errors import CameraError, InputError
 from addon.layers.layer_stack import is_world
 from addon.layers.stack_checks import check_stack
@@ -72,7 +74,6 @@ def test_overscan_is_more_of_the_same_picture(blocks, capture, picture):
     [("PERSP", (64, 36), 1.0), ("PERSP", (36, 64), 2.0), ("ORTHO", (64, 36), 0.5)],
 )
 def test_the_picture_with_overscan_is_framed_as_the_picture(blocks, kind, size, aspect, fit):
-    from addon.capture.settings import CaptureSettings
     from addon.capture.shot_copy import ShotCopy
 
     data, render = blocks.camera.data, blocks.render
@@ -196,16 +197,23 @@ def test_smoke_and_glass_are_told(blocks, capture, aplanat_bpy):
     assert "'Glass'" in report and "'Near'" in report
 
 
-def test_fog_of_the_world_hides_no_layer(blocks, capture, aplanat_bpy):
+@pytest.mark.parametrize("owner", ["scene", "view layer"])
+def test_fog_of_the_world_hides_no_layer_and_is_told(blocks, capture, aplanat_bpy, tmp_path, owner):
+    worlds = [blocks.world]
+    if owner == "view layer":
+        worlds.append(blocks.world.copy())
+        blocks.view_layers[0].world_override = worlds[1]
     clear = capture(blocks, layers=2)
-    tree = blocks.world.node_tree
+    tree = worlds[-1].node_tree
     fog = tree.nodes.new("ShaderNodeVolumeScatter")
     tree.links.new(fog.outputs[0], tree.nodes["World Output"].inputs["Volume"])
     foggy = capture(blocks, layers=2)
     for own, wanted in zip(foggy.layers, clear.layers, strict=True):
         assert (own.color == wanted.color).all()
+    with FrameCapture(blocks, 1, CaptureSettings(layers=2), tmp_path) as captured:
+        assert any(f"volume of world '{worlds[-1].name}'" in line for line in captured.warnings)
     assert tree.nodes["World Output"].inputs["Volume"].is_linked
-    assert list(aplanat_bpy.data.worlds) == [blocks.world]
+    assert list(aplanat_bpy.data.worlds) == worlds
 
 
 def test_scenes_that_cannot_be_captured_are_refused(blocks, capture, aplanat_bpy):
