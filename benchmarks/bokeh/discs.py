@@ -5,11 +5,10 @@ seen through real lenses. The adaptive method draws a disc for each of their pix
 method draws them as everything else, by very many rays through the same lens. Light is not brought
 to the same: an even exposure promises that discs and samples have the same.
 
-Of each lamp a square is compared as `benchmarks.bokeh.lens` does. The truth is the mean of two
-renders with seeds of their own, whose difference tells how much noise it has.
+Of each lamp a square is compared as `benchmarks.bokeh.lamp_pictures` does. The truth is the mean of
+two renders with seeds of their own, whose difference tells how much noise it has.
 """
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +17,8 @@ from addon.cli.render.scene_setup import use_engine
 from addon.optics.lens_facts import squeeze
 
 from .frames import BokehScene
-from .lens import FIELDS, compare_discs, sheet
+from .lamp_pictures import compare_lamp, save_sheets
+from .lens import FIELDS
 from .lens_chart import CROP, chart_scene, lens_chart
 
 DEPTHS = (0.5, 10.0)
@@ -39,8 +39,7 @@ def discs(study):
     found = []
     for name in LENSES:
         lamps, pictures = compare_discs_of(name, samples=samples, progress=study.console.progress)
-        for which, number in (("discs", 0), ("samples", 1)):
-            study.save(f"discs_{name}_{which}", sheet(pictures, number))
+        save_sheets(study, f"discs_{name}", pictures, ("discs", "samples"))
         found.append(
             {
                 "lens": name,
@@ -102,18 +101,9 @@ def compare_discs_of(
                     for seed in (0, 1)
                 ]
                 # Rows of the bench's pictures run as the renderer's.
-                pair = [np.asarray(each)[::-1] for each in pair]
-                theirs = sum(pair) / 2.0
-                noise = compare_discs(*pair)["psnr_raw_db"] + 20.0 * math.log10(2.0)
-                found.append(
-                    {
-                        "depth": depth,
-                        "field": field[0],
-                        **compare_discs(ours, theirs),
-                        "noise_db": noise,
-                    }
-                )
-                pictures.append((ours, theirs))
+                likeness, compared = compare_lamp(ours, [np.asarray(each)[::-1] for each in pair])
+                found.append({"depth": depth, "field": field[0], **likeness})
+                pictures.append(compared)
         finally:
             bench.close()
     return found, pictures

@@ -11,11 +11,8 @@ lens' sensor has the size that gives the same field of view, and it is moved asi
 what the lens distorts: the ray through the middle of the stop of a point in focus, in the lamp's
 direction, then lands where a pinhole camera has it.
 
-Of each lamp a square is compared, just large enough for all that is brighter than a hundredth of
-the reference's maximum in either picture, and two pixels more on each side. The peak of the PSNR is
-the reference's maximum. Aplanat does not take from a disc the light that vignetting takes, so both
-squares are brought to the same light first; ``psnr_raw_db`` leaves that out, and ``energy`` tells
-Aplanat's light over that of the traced lens.
+Of each lamp a square is compared as `benchmarks.bokeh.lamp_pictures` does. Aplanat does not take
+from a disc the light that vignetting takes, so the comparison is that of the same light.
 """
 
 import math
@@ -34,6 +31,7 @@ from ..referees.osl_lens import osl_lens, pinhole_offset, shader_source
 from ..referees.picture_metrics import read_picture
 from ..scenes.pictures import use_cycles, write_floats
 from .frames import BokehScene
+from .lamp_pictures import compare_lamp, save_sheets
 from .lens_chart import CROP, RESOLUTION, chart_scene, lens_chart
 
 # Over the focus distance; circles of confusion are -1, -0.6, 0.2, 0.6 and 0.9 of that of infinity.
@@ -47,7 +45,6 @@ LENSES = (
 )  # fmt: skip
 # Of Cycles, twice with different seeds.
 SAMPLES = 2048
-_LEAST, _BORDER = 0.01, 2
 
 
 def has_osl():
@@ -83,8 +80,7 @@ def lenses(study):
         chart = lens_chart(name)
         samples = study.arguments.samples or SAMPLES
         lamps, pictures = compare_lens(chart, samples=samples, progress=study.console.progress)
-        for which, number in (("ours", 0), ("cycles", 1)):
-            study.save(f"lens_{name}_{which}", sheet(pictures, number))
+        save_sheets(study, f"lens_{name}", pictures, ("ours", "cycles"))
         found.append(
             {
                 "lens": name,
@@ -99,28 +95,6 @@ def lenses(study):
             }
         )
     return {"measure": "lens", "lamps": len(DEPTHS) * len(FIELDS), "lenses": found}
-
-
-def sheet(pictures, number, columns=3):
-    """Lay out the pictures of `compare_lens`, each with the light of the traced one.
-
-    Parameters
-    ----------
-    pictures : list of tuple of 2 ndarray
-    number : int
-        0: ours, 1: those of Cycles.
-    columns : int
-
-    Returns
-    -------
-    ndarray of float32, shape (rows * CROP, columns * CROP, 3)
-        The brightest pixel of each traced picture is 1; top row first.
-    """
-    shown = [
-        pair[number] * (pair[1].sum() / pair[number].sum() / pair[1].max()) for pair in pictures
-    ]
-    rows = [np.hstack(shown[i : i + columns]) for i in range(0, len(shown), columns)]
-    return np.repeat(np.vstack(rows)[..., None], 3, axis=-1).astype(np.float32)
 
 
 def compare_lens(chart, depths=DEPTHS, fields=FIELDS, samples=SAMPLES, iris=None, progress=None):
@@ -166,49 +140,10 @@ def compare_lens(chart, depths=DEPTHS, fields=FIELDS, samples=SAMPLES, iris=None
             for other in lamps:
                 other.hide_render = other is not lamp
             traced = _traced(scene, chart, lens, depth, field, samples)
-            theirs = sum(traced) / len(traced)
-            found.append(
-                {
-                    "depth": depth,
-                    "field": field[0],
-                    **compare_discs(ours, theirs),
-                    # Of the mean of the two; their difference has twice its noise.
-                    "noise_db": compare_discs(*traced)["psnr_raw_db"] + 20.0 * math.log10(2.0),
-                }
-            )
-            pictures.append((ours, theirs))
+            likeness, pair = compare_lamp(ours, traced)
+            found.append({"depth": depth, "field": field[0], **likeness})
+            pictures.append(pair)
     return found, pictures
-
-
-def compare_discs(ours, theirs):
-    """Compare two pictures of a disc; see the module.
-
-    Parameters
-    ----------
-    ours, theirs : ndarray of shape (n, n)
-
-    Returns
-    -------
-    dict of str to float
-    """
-    peak = theirs.max()
-    seen = np.maximum(ours, theirs) > _LEAST * peak
-    rows, columns = (np.flatnonzero(seen.any(axis=axis)) for axis in (1, 0))
-    window = tuple(
-        slice(max(part[0] - _BORDER, 0), part[-1] + _BORDER + 1) for part in (rows, columns)
-    )
-    ours, theirs = ours[window].astype(float), theirs[window].astype(float)
-    energy = ours.sum() / theirs.sum()
-
-    def psnr(test):
-        return float(-10.0 * np.log10(np.mean(((test - theirs) / peak) ** 2) + 1e-30))
-
-    return {
-        "psnr_db": psnr(ours / energy),
-        "psnr_raw_db": psnr(ours),
-        "energy": float(energy),
-        "window": [theirs.shape[1], theirs.shape[0]],
-    }
 
 
 def _drawn(scene):
