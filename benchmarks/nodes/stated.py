@@ -12,7 +12,7 @@ STATED = {
     "Emission": (EXACT, ""),
     "Background": (EXACT, "of a world; see below"),
     "Holdout": (EXACT, ""),
-    "OutputMaterial": (EXACT, "Surface; Displacement as bump; no Volume"),
+    "OutputMaterial": (EXACT, "Surface; Displacement as bump; Volume where there is no Surface"),
     "OutputWorld": (EXACT, "Surface; no Volume"),
     "OutputLight": (APPROXIMATE, "one Emission of constant inputs"),
     "BsdfTransparent": (APPROXIMATE, "light that passes keeps its colour, dimmed by the mean"),

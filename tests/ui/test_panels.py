@@ -29,7 +29,8 @@ def engines(bpy, name):
     [
         *("DATA_PT_lens", "DATA_PT_camera", "DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture"),
         *("DATA_PT_EEVEE_light", "DATA_PT_spot", "EEVEE_MATERIAL_PT_surface"),
-        *("EEVEE_MATERIAL_PT_context_material", "EEVEE_WORLD_PT_surface"),
+        *("EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_volume"),
+        "EEVEE_WORLD_PT_surface",
         *("WORLD_PT_context_world", "VIEWLAYER_PT_layer", "VIEWLAYER_PT_layer_passes"),
         *("RENDER_PT_format", "RENDER_PT_output", "RENDER_PT_color_management"),
         *("APLANAT_RENDER_PT_simplify", "RENDER_PT_post_processing", "OBJECT_PT_visibility"),

@@ -19,6 +19,7 @@ _ADDED = frozenset(
         "NODE_DATA_PT_EEVEE_light",
         "EEVEE_MATERIAL_PT_context_material",
         "EEVEE_MATERIAL_PT_surface",
+        "EEVEE_MATERIAL_PT_volume",
         "EEVEE_WORLD_PT_surface",
         "VIEWLAYER_PT_layer_passes",
     }
