@@ -90,12 +90,6 @@ def lathe(profile, steps=64):
     return mesh
 
 
-def smooth_by_angle(made, degrees):
-    """Keep the edges sharper than an angle, as Blender's Shade Smooth by Angle does."""
-    made.data.set_sharp_from_angle(angle=math.radians(degrees))
-    return made
-
-
 def paint(made, colors):
     """Give each vertex a colour, computed from its place in the object."""
     mesh = made.data

@@ -52,7 +52,7 @@ def wire_render(scene, view_layer):
         given = {"Defocus": picture, "Bokeh": None}
     for name, socket in given.items():
         changed |= _feed(tree, mix.inputs[name], socket, source)
-    return changed | _end_in(tree, mix.outputs["Image"], source), _untold(tree, mix)
+    return changed | _end_in(tree, mix.outputs["Image"], source), _untold(mix)
 
 
 def wire_picture(scene, path, is_sequence=False):
@@ -97,7 +97,7 @@ def wire_picture(scene, path, is_sequence=False):
             if getattr(node, name) != value:
                 setattr(node, name, value)
                 changed = True
-    return changed | _end_in(tree, node.outputs["Image"], None), _untold(tree, node)
+    return changed | _end_in(tree, node.outputs["Image"], None), _untold(node)
 
 
 def _switch_on(scene):
@@ -187,7 +187,7 @@ def _end_in(tree, socket, source):
     return True
 
 
-def _untold(tree, node):
+def _untold(node):
     """Return a warning if a node is not connected to the Group Output."""
     waiting, seen = [node], set()
     while waiting:

@@ -13,9 +13,9 @@ _REFLECTANCE = 1.1
 # Blend modes whose result is never above both colours and their product.
 _BOUNDED_BLENDS = frozenset({"MIX", "DARKEN", "LIGHTEN", "MULTIPLY", "HUE", "COLOR", "VALUE"})
 _SORTING_KINDS = frozenset({"luminance", "separate", "combine"})
-# Closures that mirror.
 # How much more than Lambert's a rough diffuse surface may reflect at an angle.
 _ROUGH = 2.0
+# Closures that mirror.
 _MIRRORS = frozenset({"glossy", "metallic", "glass"})
 # All surfaces that reflect.
 _REFLECTORS = _MIRRORS | {"diffuse", "translucent", "principled", "sheen", "toon", "hair"}

@@ -147,9 +147,4 @@ TILING = [
         for name in ("Segment Coordinates", "Segment Width")
     ),
 ]
-# Between sharp and round corners the two differ.
-ROUND_TILING = [
-    Case("RadialTiling", "Segment Coordinates", {**_PLACE, "Roundness": 0.5}, {"normalize": n})
-    for n in (False, True)
-]
 CASES = NOISE + VORONOI + OTHERS + GABOR + TILING

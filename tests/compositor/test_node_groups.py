@@ -9,9 +9,6 @@ from addon.compositor.sprite_image import sprite_group, store_sprite
 from addon.compositor.wiring import wire_render
 from benchmarks.bokeh.charts import many_highlights
 
-# Colours of single precision through Blender's nodes, which sample between texels.
-CLOSE = {"rtol": 2e-5, "atol": 2e-5}
-
 
 def places(shape):
     """Where pixels are: 0 in the middle, length 1 in a corner; and half the diagonal, px."""

@@ -72,13 +72,13 @@ def nearest_in_view(snapshot, near):
     nearest = np.maximum(-corners[..., 2].max(axis=1, initial=-np.inf), near)
     if not _sees_straight(snapshot.camera):
         return float(nearest.min(initial=np.inf))
-    planes, found = list(_sides(snapshot)), np.inf
+    lens, planes, found = snapshot.camera.lens, list(_sides(snapshot)), np.inf
     order = np.argsort(nearest)
     for first in range(0, len(order), _AT_ONCE):
         rows = order[first : first + _AT_ONCE]
         if nearest[rows[0]] >= found:
             break
-        inside = [_nearest_inside(corners[rows], near, plane, snapshot) for plane in planes]
+        inside = [_nearest_inside(corners[rows], near, plane, lens) for plane in planes]
         found = min(found, float(np.max(inside, axis=0).min()))
     return max(found, near)
 
@@ -98,7 +98,7 @@ def _sides(snapshot):
         yield reach * rows[3] - rows[axis]
 
 
-def _nearest_inside(corners, near, plane, snapshot):
+def _nearest_inside(corners, near, plane, lens):
     """Return the least depth of boxes on the inner side of a plane, shape (I,); inf where none is.
 
     Parameters
@@ -108,8 +108,9 @@ def _nearest_inside(corners, near, plane, snapshot):
     near : float
         Depth of the near plane, m.
     plane : ndarray of shape (4,)
+    lens : ThinLens or None
     """
-    lens, depth = snapshot.camera.lens, -corners[..., 2]
+    depth = -corners[..., 2]
     inside = corners @ plane[:3] + plane[3]
     if lens is not None and lens.aperture_radius:
         extent = lens.aperture_radius * np.array([1.0 / lens.iris.ratio, 1.0])

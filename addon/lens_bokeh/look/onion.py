@@ -18,14 +18,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import InputError
-from ...optics.glass import REFERENCE_WAVELENGTH_NM
-from ...optics.media import indices
-from ...optics.paraxial import entrance_pupil, ray_matrix
-
-# Rings of this amplitude and width on a moulded asphere give the contrast of a few per cent that
-# onion rings in photographs have (C = 0.1 for a 10 mm beam, dn = 0.6, N = 100).
-DEFAULT_AMPLITUDE_NM = 1.0
-DEFAULT_PITCH_MM = 0.45
 
 
 @dataclass(frozen=True)
@@ -35,7 +27,7 @@ class OnionRings:
     Parameters
     ----------
     contrast : float
-        Largest relative change of the density, 0 to 1; see `ring_contrast`.
+        Largest relative change of the density, 0 to 1: the C of the module.
     pitch : float
         Distance of rings in units of the opening's radius.
     irregularity : float
@@ -65,109 +57,6 @@ class OnionRings:
                 raise InputError(
                     f"onion rings: {name} is {value:g}; it must be from {low:g} to {high:g}"
                 )
-
-
-def ring_contrast(
-    index_step,
-    beam_radius,
-    fresnel_number,
-    amplitude_nm=DEFAULT_AMPLITUDE_NM,
-    pitch_mm=DEFAULT_PITCH_MM,
-    wavelength_nm=REFERENCE_WAVELENGTH_NM,
-):
-    """Contrast of the rings that a ripple makes.
-
-    Parameters
-    ----------
-    index_step : float
-        Difference of the index across the surface.
-    beam_radius : float
-        Of the beam on the surface, mm.
-    fresnel_number : float
-        Of the defocus, > 0; see `addon.lens_bokeh.look.diffraction.fresnel_number`.
-    amplitude_nm, pitch_mm : float
-        Of the ripple.
-    wavelength_nm : float
-
-    Returns
-    -------
-    float
-        At most 1: nearer to focus the rings are caustics and the first order ends.
-    """
-    distance = beam_radius**2 / (wavelength_nm * 1e-6 * max(fresnel_number, 1e-12))
-    ripple = amplitude_nm * 1e-6 * (2.0 * np.pi / pitch_mm) ** 2
-    return float(min(abs(index_step) * ripple * distance, 1.0))
-
-
-def aspheric_surfaces(configuration):
-    """Numbers of the surfaces that are turned: those with an asphere or a conic.
-
-    Parameters
-    ----------
-    configuration : Configuration
-
-    Returns
-    -------
-    tuple of int
-        From 1.
-    """
-    return tuple(
-        number
-        for number, surface in enumerate(configuration.surfaces, 1)
-        if surface.conic != 0.0 or any(value != 0.0 for _, value in surface.asphere)
-    )
-
-
-def rings_of_lens(
-    configuration,
-    fresnel_number,
-    amplitude_nm=DEFAULT_AMPLITUDE_NM,
-    pitch_mm=DEFAULT_PITCH_MM,
-    irregularity=0.5,
-    seed=0,
-):
-    """Return the rings of the aspheric surface of a lens with the strongest contrast.
-
-    Parameters
-    ----------
-    configuration : Configuration
-        At the opening wanted.
-    fresnel_number : float
-        Of the defocus, > 0.
-    amplitude_nm, pitch_mm : float
-        Of the ripple.
-    irregularity, seed
-        As in `OnionRings`.
-
-    Returns
-    -------
-    OnionRings or None
-        None if no surface is aspheric.
-
-    Raises
-    ------
-    PrescriptionError
-        If the stop has no finite image in object space.
-    """
-    numbers = aspheric_surfaces(configuration)
-    if not numbers:
-        return None
-    pupil_z, diameter = entrance_pupil(configuration)
-    media = indices(configuration, REFERENCE_WAVELENGTH_NM)
-    found = []
-    for number in numbers:
-        # Paraxial heights of the marginal ray and of a chief ray of slope 1, both from infinity.
-        matrix = ray_matrix(configuration, REFERENCE_WAVELENGTH_NM, last=number)
-        marginal = abs(matrix[0, 0]) * 0.5 * diameter
-        chief = matrix[0, 1] - matrix[0, 0] * pupil_z
-        step = media[number] - media[number - 1]
-        contrast = ring_contrast(step, marginal, fresnel_number, amplitude_nm, pitch_mm)
-        found.append((contrast, marginal, chief / (matrix[0, 0] * 0.5 * diameter)))
-    contrast, marginal, chief = max(found)
-    pitch = float(np.clip(pitch_mm / marginal, 1e-3, 10.0))
-    # The rings' centre is the axis of the surface. A point that the camera sees at +x sends its
-    # chief ray towards -x, so that the axis lies on the +x side of the beam where chief > 0.
-    return OnionRings(contrast, pitch, irregularity, float(np.clip(chief, -1e3, 1e3)), seed)
 
 
 def transmission(rings, points, field=(0.0, 0.0), width=0.0):

@@ -269,7 +269,7 @@ def _list_draws(content, buffers, target, glow, wanted=None):
                 group=number,
                 level=level,
                 slot=slot,
-                slack=_slack(content, buffers, mesh, level),
+                slack=_slack(buffers, mesh, level),
             )
             place = (order, materials[material.uid], meshes[group.mesh], slot, level)
             draws.append((place, draw))
@@ -277,7 +277,7 @@ def _list_draws(content, buffers, target, glow, wanted=None):
     return [draw for _, draw in draws]
 
 
-def _slack(content, buffers, mesh, level):
+def _slack(buffers, mesh, level):
     """Return how far a level of detail may be from the true surface: about an edge's length."""
     if not level:
         return 0.0
