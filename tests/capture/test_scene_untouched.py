@@ -30,7 +30,7 @@ def assert_same(found, expected):
     assert not {k: (expected.get(k), found.get(k)) for k in sorted(changed)[:8]}
 
 
-def test_after_a_capture(lively, capture, aplanat_bpy):
+def test_a_capture_leaves_all_data_as_it_was(lively, capture, aplanat_bpy):
     before = all_data(aplanat_bpy)
     assert any(path.endswith(".location") for path in before)
     capture(lively, 7, layers=2, overscan=0.1)
@@ -41,7 +41,7 @@ def test_after_a_capture(lively, capture, aplanat_bpy):
 
 
 @pytest.mark.parametrize("renders", [0, 1, 2])
-def test_when_it_is_stopped(renders, lively, aplanat_bpy, tmp_path):
+def test_a_stopped_capture_leaves_all_data_and_no_files(renders, lively, aplanat_bpy, tmp_path):
     before = all_data(aplanat_bpy)
     with FrameCapture(lively, 5, CaptureSettings(layers=2), tmp_path) as captured:
         steps = captured.steps()
@@ -51,7 +51,7 @@ def test_when_it_is_stopped(renders, lively, aplanat_bpy, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_after_an_error(lively, aplanat_bpy, tmp_path):
+def test_a_failed_capture_leaves_all_data_as_it_was(lively, aplanat_bpy, tmp_path):
     before = all_data(aplanat_bpy)
     with (
         pytest.raises(UnfinishedFileError, match="left no picture of measuring depths"),

@@ -56,7 +56,7 @@ def test_options_say_size_layers_and_precision(aplanat, shot, tmp_path):
     assert np.array_equal(color, color.astype(np.float16).astype(np.float32))
 
 
-def test_our_own_engine(aplanat, shot, tmp_path):
+def test_our_own_engine_is_written_into_the_layers(aplanat, shot, tmp_path):
     done = aplanat("capture", shot, "-o", tmp_path / "a.exr", *FEW, "--engine", "APLANAT")
     assert done.code == 0, done.err
     assert load_layers(tmp_path / "a.exr").engine == "APLANAT"
@@ -83,7 +83,7 @@ def test_what_is_there_stays_and_what_is_broken_or_other_is_made_anew(aplanat, s
     assert kept("--half") == [True, False]
 
 
-def test_refused(refused, shot, make_blend, tmp_path):
+def test_what_cannot_be_captured_is_refused_in_one_line(refused, shot, make_blend, tmp_path):
     out = ("-o", tmp_path / "a.exr")
     assert "does not exist" in refused("capture", tmp_path / "none.blend", *out)
     assert "does not exist" in refused("capture", shot, "-o", tmp_path / "no" / "a.exr")

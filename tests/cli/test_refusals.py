@@ -6,29 +6,29 @@ import os
 import pytest
 
 
-def test_missing_scene(refused, tmp_path):
+def test_a_scene_that_is_not_there_is_refused(refused, tmp_path):
     line = refused("render", tmp_path / "none.blend", "-o", tmp_path / "a.png")
     assert "none.blend" in line and "does not exist" in line
 
 
 @pytest.mark.parametrize("content", [b"", b"not a blend file", b"BLENDER-v502" + bytes(100)])
-def test_broken_scene(refused, tmp_path, content):
+def test_a_file_that_is_no_scene_is_refused(refused, tmp_path, content):
     path = tmp_path / "broken.blend"
     path.write_bytes(content)
     assert "broken.blend" in refused("render", path, "-o", tmp_path / "a.png")
 
 
-def test_truncated_scene(refused, small_blend, tmp_path):
+def test_half_a_scene_is_refused(refused, small_blend, tmp_path):
     path = tmp_path / "half.blend"
     path.write_bytes(small_blend.read_bytes()[: small_blend.stat().st_size // 2])
     assert "half.blend" in refused("render", path, "-o", tmp_path / "a.png")
 
 
-def test_folder_as_scene(refused, tmp_path):
+def test_a_folder_in_place_of_a_scene_is_refused(refused, tmp_path):
     assert "does not exist" in refused("render", tmp_path, "-o", tmp_path / "a.png")
 
 
-def test_no_camera(refused, make_blend, tmp_path):
+def test_a_scene_without_a_camera_is_refused(refused, make_blend, tmp_path):
     def remove(_bpy, scene):
         scene.camera = None
 
@@ -41,7 +41,7 @@ def test_unknown_camera_lists_those_there_are(refused, small_blend, tmp_path, na
     assert name in line and "'Camera', 'Second'" in line
 
 
-def test_panoramic_camera(refused, make_blend, tmp_path):
+def test_a_panoramic_camera_is_refused(refused, make_blend, tmp_path):
     def panorama(_bpy, scene):
         scene.camera.data.type = "PANO"
 
@@ -49,23 +49,23 @@ def test_panoramic_camera(refused, make_blend, tmp_path):
     assert "pano" in line.lower()
 
 
-def test_unknown_focus_object(refused, small_blend, tmp_path):
+def test_an_unknown_focus_object_is_named(refused, small_blend, tmp_path):
     line = refused("render", small_blend, "-o", tmp_path / "a.png", "--focus", "Nothing")
     assert "Nothing" in line
 
 
-def test_more_pixels_than_memory(refused, small_blend, tmp_path):
+def test_more_pixels_than_memory_are_refused(refused, small_blend, tmp_path):
     words = ("render", small_blend, "-o", tmp_path / "a.png", "--resolution", "65536x65536")
     line = refused(*words)
     assert "65536" in line and ("memory" in line or "pixels a side" in line)
 
 
-def test_unwritable_output(refused, small_blend, tmp_path):
+def test_a_picture_that_cannot_be_written_is_refused(refused, small_blend, tmp_path):
     assert "does not exist" in refused("render", small_blend, "-o", tmp_path / "no" / "a.png")
     assert "cannot write" in refused("render", small_blend, "-o", "/proc/a.png")
 
 
-def test_unwritable_statistics(refused, small_blend, tmp_path):
+def test_statistics_that_cannot_be_written_are_refused(refused, small_blend, tmp_path):
     words = ("render", small_blend, "-o", tmp_path / "a.png", "--stats", tmp_path / "no" / "s.json")
     assert "does not exist" in refused(*words)
 
@@ -104,18 +104,18 @@ def test_a_disk_that_fills_up_is_one_line_and_exit_code_1(
     assert sorted(tmp_path.iterdir()) == []
 
 
-def test_a_scene_whose_path_no_system_can_have(refused, tmp_path):
+def test_a_path_that_no_system_can_have_is_refused(refused, tmp_path):
     assert "does not exist" in refused("render", tmp_path / f"{'a' * 300}.blend")
 
 
-def test_movie_output_of_the_scene(refused, make_blend):
+def test_a_scene_that_writes_a_movie_is_refused(refused, make_blend):
     def movie(_bpy, scene):
         scene.render.image_settings.media_type = "VIDEO"
 
     assert "movie" in refused("render", make_blend(movie))
 
 
-def test_view_layers_all_off(refused, make_blend, tmp_path):
+def test_a_scene_with_all_view_layers_off_is_refused(refused, make_blend, tmp_path):
     def off(_bpy, scene):
         scene.view_layers[0].use = False
 
@@ -131,7 +131,7 @@ def test_refusal_with_json_is_one_object(aplanat, tmp_path):
     assert done.code == 2 and done.answer["errors"][0]["code"] == "input"
 
 
-def test_lens_that_is_not_there_or_broken(refused, small_blend, make_blend, tmp_path):
+def test_a_missing_or_unfitting_lens_is_refused(refused, small_blend, make_blend, tmp_path):
     words = ("render", small_blend, "-o", tmp_path / "a.png", "--lens")
     assert "tessar-50mm-f2.8" in refused(*words, "tesar-50mm")
     assert "none.toml" in refused(*words, tmp_path / "none.toml")

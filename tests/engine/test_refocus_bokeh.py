@@ -51,7 +51,7 @@ def test_discs_are_what_many_samples_show(stack, values):
     assert ssim(few, truth) < ssim(picture, truth)
 
 
-def test_a_parallel_camera(stack):
+def test_bokeh_of_a_parallel_camera_is_that_of_many_samples(stack):
     # Every pixel of it shows the same point at infinity: no highlight.
     stack.layers[2].color[..., :3] = 0.2
     camera = replace(stack.camera, orthographic=True, aperture_radius=0.5)

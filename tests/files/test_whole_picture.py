@@ -24,13 +24,15 @@ def exr(path, compression, parts):
 
 @pytest.mark.parametrize("parts", [1, 3])
 @pytest.mark.parametrize("codec", ["NO", "RLE", "ZIPS", "ZIP", "PIZ", "DWAB"])
-def test_exr(codec, parts, tmp_path):
+def test_an_exr_file_is_whole_only_with_its_last_byte(codec, parts, tmp_path):
     exr(tmp_path / "a.exr", getattr(OpenEXR, f"{codec}_COMPRESSION"), parts)
     check(tmp_path / "a.exr")
 
 
 @pytest.mark.parametrize("kind", ["PNG", "JPEG", "OPEN_EXR"])
-def test_blenders_own_files(kind, aplanat_bpy, empty_scene, tmp_path):
+def test_blenders_own_file_is_whole_only_with_its_last_byte(
+    kind, aplanat_bpy, empty_scene, tmp_path
+):
     bpy, scene = aplanat_bpy, empty_scene
     scene.render.image_settings.file_format = kind
     image = bpy.data.images.new("noise", 40, 24, float_buffer=True)
@@ -51,7 +53,7 @@ def check(path):
             assert not is_whole_picture(cut), place
 
 
-def test_no_file_and_other_formats(tmp_path):
+def test_no_file_is_not_whole_and_other_formats_are_not_judged(tmp_path):
     assert not is_whole_picture(tmp_path / "none")
     (tmp_path / "empty").touch()
     assert not is_whole_picture(tmp_path / "empty")

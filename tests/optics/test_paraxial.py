@@ -16,7 +16,7 @@ NM = REFERENCE_WAVELENGTH_NM
 N = 1.5168
 
 
-def test_thick_lens_formula():
+def test_a_thick_lens_follows_the_lensmakers_formula():
     # 1 / f = (n - 1) (1 / R1 - 1 / R2 + (n - 1) t / (n R1 R2)); H = f (n - 1) t / (n R2) and so on.
     r1, r2, t = 50.0, -80.0, 6.0
     values = first_order(lens(surface(r1, t, CROWN, is_stop=True), surface(r2, 90.0)))
@@ -28,7 +28,7 @@ def test_thick_lens_formula():
     assert values.h_prime == pytest.approx(-f * (N - 1.0) * t / (N * r1), rel=1e-13)
 
 
-def test_ball_lens():
+def test_a_ball_lens_has_both_principal_planes_in_its_centre():
     # f = n R / (2 (n - 1)), both principal planes at the centre.
     ball = lens(surface(10.0, 20.0, CROWN, 9.0, is_stop=True), surface(-10.0, 5.0))
     values = first_order(ball)
@@ -128,7 +128,7 @@ def test_efl_is_the_scale_of_the_image():
 
 
 @pytest.mark.parametrize("distance", [80.0, 200.0, 1000.0, 1.0e5])
-def test_newtons_equation(distance):
+def test_conjugate_distances_follow_newtons_equation(distance):
     configuration = triplet()
     values = first_order(configuration)
     x = distance + values.ffl

@@ -59,14 +59,14 @@ def test_every_lens_of_the_referee_is_asked(referee):
     assert set(referee["lenses"]) == set(LENSES)
 
 
-def test_indices(cases, referee):
+def test_indices_are_those_of_the_referee(cases, referee):
     for configuration, case in cases:
         for nm, wanted in wavelengths(case, referee):
             found = indices(configuration, nm)[1:]
             np.testing.assert_allclose(found, wanted["index"], rtol=0.0, atol=INDEX)
 
 
-def test_first_order_values(cases, referee):
+def test_first_order_values_are_those_of_the_referee(cases, referee):
     for configuration, case in cases:
         distance = case["object_to_first_vertex_mm"]
         for nm, wanted in wavelengths(case, referee):
@@ -81,7 +81,7 @@ def test_first_order_values(cases, referee):
                 assert abs(found[name] - value) <= FIRST_ORDER_MM, (case["label"], nm, name)
 
 
-def test_axial_fans(cases, referee):
+def test_rays_of_an_axial_fan_are_those_of_the_referee(cases, referee):
     for configuration, case in cases:
         aspheric = any(s.asphere or s.conic for s in configuration.surfaces)
         tolerance = ASPHERIC_MM if aspheric else SPHERICAL_MM
@@ -118,7 +118,7 @@ def fan_of(configuration, distance):
     return Rays(np.tile([0.0, 0.0, -distance], (21, 1)), way)
 
 
-def test_vignetting(cases):
+def test_vignetting_is_that_of_the_referee(cases):
     for configuration, case in cases:
         for place in ("axis", "field_0.7", "field_1"):
             wanted = case["vignetting"][place]

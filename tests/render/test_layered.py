@@ -75,20 +75,20 @@ def test_a_frame_has_the_same_bits_twice(scene):
 
 
 @pytest.mark.parametrize("focus", [0.4, 30.0])
-def test_everything_before_or_behind_the_focus(scene, tmp_path, focus):
+def test_everything_before_or_behind_the_focus_is_the_reference(scene, tmp_path, focus):
     scene.camera.data.dof.focus_distance = focus
     scene.camera.data.dof.aperture_fstop = 0.5
     check(scene, tmp_path, 0.96)
 
 
-def test_a_parallel_camera(scene, tmp_path):
+def test_a_parallel_camera_is_the_reference(scene, tmp_path):
     scene.camera.data.type = "ORTHO"
     scene.camera.data.ortho_scale = 6.0
     scene.camera.data.dof.aperture_fstop = 0.3
     check(scene, tmp_path, 0.97)
 
 
-def test_transparent_and_glowing_surfaces_before_and_behind(scene, tmp_path):
+def test_transparent_and_glowing_surfaces_are_the_reference(scene, tmp_path):
     tree = surface_of(scene.objects["Near"])
     clear = tree.node("BsdfTransparent").outputs[0]
     shine = tree.node("Emission", {"Color": (1.0, 0.5, 0.1), "Strength": 2.0}).outputs[0]
@@ -97,7 +97,7 @@ def test_transparent_and_glowing_surfaces_before_and_behind(scene, tmp_path):
     check(scene, tmp_path, 0.96, energy=0.02)
 
 
-def test_a_hole_and_nothing_round_the_scene(scene, tmp_path):
+def test_a_hole_and_nothing_round_the_scene_are_the_reference(scene, tmp_path):
     scene.render.film_transparent = True
     scene.objects["Near"].is_holdout = True
     check(scene, tmp_path, 0.96)

@@ -35,7 +35,7 @@ def test_flat_spectrum_is_white():
         np.testing.assert_allclose(weights.sum(axis=0), 1.0, atol=1e-12)
 
 
-def test_light_only_adds():
+def test_no_wavelength_takes_light_away():
     assert np.all(rgb_weights(np.linspace(400.0, 700.0, 61)) >= 0.0)
 
 
@@ -47,7 +47,7 @@ def test_each_channel_is_brightest_where_the_eye_says():
     assert 440.0 <= blue < 465.0
 
 
-def test_other_primaries():
+def test_weights_follow_the_primaries_asked_for():
     wide = rgb_weights(spectrum_wavelengths(), "ITU-R BT.2020")
     narrow = rgb_weights(spectrum_wavelengths())
     assert np.abs(wide - narrow).max() > 0.01

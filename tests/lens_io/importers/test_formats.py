@@ -83,7 +83,7 @@ def test_table_without_stop_asks_for_it():
     assert read(table, "a.dat", stop=2).prescription.surfaces[1].is_stop
 
 
-def test_two_stops_ask_which():
+def test_a_table_with_two_stops_asks_which():
     table = PBRT.replace("50.0 4.0", "0 5 0 30\n50.0 4.0", 1)
     assert_refused(table, "a.dat", "I06", "more than one stop", "--stop N")
     assert read(table, "a.dat", stop=4).prescription.surfaces[3].is_stop
@@ -126,7 +126,7 @@ def test_plane_of_glass_is_no_stop():
         ("\t20\t", "\ttwenty\t", "I07", "diameter"),
     ],
 )
-def test_bench_refusals(old, new, code, said):
+def test_a_fault_of_a_bench_table_is_refused_with_its_reason(old, new, code, said):
     assert_refused(edited(BENCH, old, new), "a.txt", code, said)
 
 
@@ -164,7 +164,7 @@ def test_options_refuse_what_means_nothing():
             ImportOptions(**bad)
 
 
-def test_glass_option():
+def test_the_glass_option_takes_an_index_with_or_without_abbe_number():
     assert glass_option("BK7=1.5168,64.17") == ("BK7", AbbeGlass(1.5168, 64.17))
     assert glass_option("X=1.5") == ("X", ConstantGlass(1.5))
     for bad in ("BK7", "=1.5", "BK7=", "BK7=0.9", "BK7=1.5,2", "BK7=1.5,60,1", "BK7=nan"):

@@ -135,7 +135,7 @@ def test_catalogue_has_the_published_index_and_abbe_number():
         ("{ nd = 0.5, vd = 121 }", [("E19", ".nd"), ("E19", ".vd")], "121"),
     ],
 )
-def test_faults_of_materials(material, expected, words):
+def test_each_fault_of_a_material_has_its_code_and_says_why(material, expected, words):
     found, message = faults(material)
     assert found == expected
     assert words in message

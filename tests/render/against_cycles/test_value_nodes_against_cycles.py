@@ -66,7 +66,7 @@ _STEPS = {"SNAP", "WRAP", "MODULO", "FLOORED_MODULO", "PINGPONG"}
 
 @pytest.mark.parametrize("clamp", [False, True])
 @pytest.mark.parametrize("operation", MATH)
-def test_math(bpy, tmp_path, operation, clamp):
+def test_each_operation_of_numbers_is_that_of_cycles(bpy, tmp_path, operation, clamp):
     if clamp and operation not in {"ADD", "TANGENT"}:
         pytest.skip("clamping is the same for all")
     scene, _, tree = card_scene(bpy, TEXELS)
@@ -81,7 +81,7 @@ def test_math(bpy, tmp_path, operation, clamp):
 
 
 @pytest.mark.parametrize("operation", [*VECTOR_MATH, *VECTOR_NUMBERS])
-def test_vector_math(bpy, tmp_path, operation):
+def test_each_operation_of_vectors_is_that_of_cycles(bpy, tmp_path, operation):
     scene, _, tree = card_scene(bpy, TEXELS)
     inputs = {
         "Vector": texture(bpy, tree, 1, -2.0, 2.0),
@@ -95,7 +95,7 @@ def test_vector_math(bpy, tmp_path, operation):
 
 
 @pytest.mark.parametrize("blend", BLENDS)
-def test_blend_modes(bpy, tmp_path, blend):
+def test_each_blend_mode_is_that_of_cycles(bpy, tmp_path, blend):
     scene, _, tree = card_scene(bpy, TEXELS)
     inputs = {
         "Factor_Float": texture(bpy, tree, 4, 0.0, 1.3),
@@ -141,7 +141,7 @@ def test_numbers_and_vectors_are_mixed(bpy, tmp_path, kind):
 
 
 @pytest.mark.parametrize("kind", ["MINMAX", "RANGE"])
-def test_clamp(bpy, tmp_path, kind):
+def test_both_kinds_of_clamp_are_those_of_cycles(bpy, tmp_path, kind):
     scene, _, tree = card_scene(bpy, TEXELS)
     inputs = {"Value": texture(bpy, tree, 7, -1.0, 2.0), "Min": 0.8, "Max": 0.3}
     show(tree, tree.node("Clamp", inputs, clamp_type=kind).outputs[0])
@@ -151,7 +151,7 @@ def test_clamp(bpy, tmp_path, kind):
 @pytest.mark.parametrize("clamp", [False, True])
 @pytest.mark.parametrize("kind", ["FLOAT", "FLOAT_VECTOR"])
 @pytest.mark.parametrize("interpolation", ["LINEAR", "STEPPED", "SMOOTHSTEP", "SMOOTHERSTEP"])
-def test_map_range(bpy, tmp_path, interpolation, kind, clamp):
+def test_map_range_is_that_of_cycles(bpy, tmp_path, interpolation, kind, clamp):
     scene, _, tree = card_scene(bpy, TEXELS)
     value = texture(bpy, tree, 8, -1.0, 2.0)
     if kind == "FLOAT":
@@ -185,7 +185,7 @@ def test_map_range(bpy, tmp_path, interpolation, kind, clamp):
         ("RGBToBW", {}),
     ],
 )
-def test_nodes_of_one_color(bpy, tmp_path, kind, inputs):
+def test_each_node_of_one_color_is_that_of_cycles(bpy, tmp_path, kind, inputs):
     scene, _, tree = card_scene(bpy, TEXELS)
     inputs = {**inputs, "Color": texture(bpy, tree, 9, -0.2, 1.4)}
     show(tree, tree.node(kind, inputs).outputs[0])
@@ -220,7 +220,7 @@ def test_vectors_are_parted_and_put_together(bpy, tmp_path):
     [("RGB", "LINEAR"), ("RGB", "CONSTANT"), ("RGB", "EASE"), ("RGB", "B_SPLINE"), ("HSV", "NEAR")],
 )
 @pytest.mark.parametrize("output", ["Color", "Alpha"])
-def test_color_ramps(bpy, tmp_path, mode, interpolation, output):
+def test_color_ramps_are_those_of_cycles(bpy, tmp_path, mode, interpolation, output):
     scene, _, tree = card_scene(bpy, TEXELS)
     node = tree.node("ValToRGB", {"Fac": texture(bpy, tree, 11, -0.2, 1.2)})
     ramp = node.color_ramp
@@ -234,7 +234,7 @@ def test_color_ramps(bpy, tmp_path, mode, interpolation, output):
 
 @pytest.mark.parametrize("extend", ["HORIZONTAL", "EXTRAPOLATED"])
 @pytest.mark.parametrize("kind", ["RGBCurve", "VectorCurve", "FloatCurve"])
-def test_curves(bpy, tmp_path, kind, extend):
+def test_curves_are_those_of_cycles(bpy, tmp_path, kind, extend):
     scene, _, tree = card_scene(bpy, TEXELS)
     value = texture(bpy, tree, 12, -0.4, 1.4)
     factor = "Factor" if kind == "FloatCurve" else "Fac"

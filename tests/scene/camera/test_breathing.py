@@ -44,7 +44,7 @@ def test_a_thin_lens_moves_away_from_its_sensor(own, camera, aplanat_bpy):
     assert shifted == read(aplanat_bpy).projection[0, 2]
 
 
-def test_motion_has_it_too(own, aplanat_bpy):
+def test_a_pose_of_a_neighbouring_frame_breathes_too(own, aplanat_bpy):
     own.use_breathing = True
     found = read(aplanat_bpy)
     depsgraph = aplanat_bpy.context.evaluated_depsgraph_get()
