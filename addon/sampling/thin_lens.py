@@ -80,27 +80,6 @@ def aperture_radius(focal_length, f_number):
     return focal_length / (2.0 * f_number)
 
 
-def displacement_radius(depth, lens):
-    """Signed object-space circle of confusion `R(d)`.
-
-    Parameters
-    ----------
-    depth : ndarray of shape (...)
-        Along the optical axis, in m.
-    lens : ThinLens
-
-    Returns
-    -------
-    ndarray of shape (...)
-        In m; positive in front of the focus plane.
-
-    References
-    ----------
-    Jeong, Kim and Lee, CGF 2013, section 3.
-    """
-    return lens.aperture_radius * (lens.focus_distance - depth) / lens.focus_distance
-
-
 def coc_radius_px(depth, lens, focal_length_px):
     """Signed circle-of-confusion radius in the picture, the field of view kept.
 
