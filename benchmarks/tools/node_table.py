@@ -53,9 +53,7 @@ def measured(bpy):
         cases = module.CASES
         scene = sheet.build_sheet(bpy, cases)
         ours, cycles = aplanat_picture(scene), cycles_picture(scene, sheet.TINY_FILTER)
-        for case, difference in zip(cases, sheet.compare(cases, ours, cycles), strict=True):
-            worst, count = found.get(case.node, (0.0, 0))
-            found[case.node] = max(worst, difference), count + 1
+        _add(found, cases, sheet.compare(cases, ours, cycles))
     return found
 
 
@@ -80,11 +78,15 @@ def lit(bpy):
         scene = spheres.build_spheres(bpy, spheres.CASES, sun)
         ours = aplanat_picture(scene)
         cycles = cycles_picture(scene, 0.01, samples=64, bounces=2)
-        means = spheres.compare(spheres.CASES, ours, cycles)
-        for case, difference in zip(spheres.CASES, means, strict=True):
-            worst, count = found.get(case.node, (0.0, 0))
-            found[case.node] = max(worst, difference), count + 1
+        _add(found, spheres.CASES, spheres.compare(spheres.CASES, ours, cycles))
     return found
+
+
+def _add(found, cases, differences):
+    """Add cases to the worst difference and the number of each node's."""
+    for case, difference in zip(cases, differences, strict=True):
+        worst, count = found.get(case.node, (0.0, 0))
+        found[case.node] = max(worst, difference), count + 1
 
 
 def table(bpy):
