@@ -27,7 +27,7 @@ def arguments(words=None):
     """Return the options of the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("layers", type=Path)
-    parser.add_argument("--reference", type=Path, required=True)
+    parser.add_argument("--reference", type=Path, required=True, nargs=2, metavar="EXR")
     parser.add_argument("--samples", type=int, default=128)
     parser.add_argument("--pictures", type=Path, help="folder for PNG files of all")
     return parser.parse_args(words)
