@@ -231,7 +231,7 @@ def plan_bokeh(snapshot, plan):
     largest = _largest_coc(snapshot.content, plan, seen, colors)
     if largest <= least:
         return None
-    margin = _margin(plan, settings, largest, colors)
+    margin = _margin(plan, snapshot.film, settings, largest, colors)
     width, height = plan.width + 2 * margin[0], plan.height + 2 * margin[1]
     # With a parallel projection, all pixels show the same point at infinity: no highlight.
     world = settings.world and bool(snapshot.content.world.image)
@@ -376,11 +376,13 @@ def _largest_coc(content, plan, seen, colors):
     return largest
 
 
-def _margin(plan, settings, largest, colors):
+def _margin(plan, film, settings, largest, colors):
     narrowing = plan.lens_extent / plan.lens_extent[1]
-    limit = settings.overscan * max(plan.width, plan.height)
+    # Of the whole picture: a part of it is no place where less is searched.
+    side = max(film.width, film.height)
+    limit = settings.overscan * side
     # A lateral scale below 1 moves discs inwards: search farther out.
-    moved = colors.growth * max(plan.width, plan.height) if colors else 0.0
+    moved = colors.growth * side if colors else 0.0
     return tuple(int(np.ceil(min(largest * n + moved, limit))) + _RIM for n in narrowing)
 
 

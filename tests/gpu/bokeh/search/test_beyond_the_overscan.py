@@ -63,3 +63,23 @@ def test_the_world_outside_of_the_search_keeps_its_light():
     expected = energy(render_snapshot(many)["Combined"])
     picture = energy(render_snapshot(with_bokeh(snapshot, overscan=0.0))["Combined"])
     assert picture == pytest.approx(expected, rel=0.01)
+
+
+def test_a_part_of_the_picture_has_the_discs_of_the_whole():
+    # One lamp shines into the part from a third of its width beyond its edge, one lies in it.
+    corners = [lamp(0.55, 0.0, 8.0, 0.2), lamp(-0.3, 0.2, 8.0, 0.2)]
+    lens = replace(LENS, aperture_radius=1.0)
+    x, y, width, height = region = (20, 20, 24, 24)
+    options = {"lens": lens, "samples": 16}
+    colors = [(40.0, 20.0, 10.0), (10.0, 20.0, 40.0)]
+    whole, part = (
+        render_snapshot(
+            with_bokeh(triangles_snapshot(corners, colors, WIDTH, HEIGHT, region=r, **options))
+        )
+        for r in (None, region)
+    )
+    expected = whole["Bokeh"][y : y + height, x : x + width]
+    # The one outside is red, the one inside blue.
+    assert min(expected[..., channel].max() for channel in (0, 2)) > 0.1
+    # Both lie at the same places of the pixels; only sums are done in another order.
+    assert part["Bokeh"] == pytest.approx(expected, rel=0.01, abs=1e-4)
