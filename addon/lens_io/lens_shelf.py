@@ -45,6 +45,25 @@ class ShelvedLens:
         """Name of the lens, or its id if the file cannot be used."""
         return self.lens.prescription.name if self.lens else self.id
 
+    @property
+    def title(self):
+        """The name with focal length and f-number, where the name does not say them."""
+        if self.lens is None or ("mm" in self.name and "f/" in self.name):
+            return self.name
+        made = self.lens.prescription
+        return f"{self.name} {made.focal_length:.3g} mm f/{made.f_number:.3g}"
+
+    @property
+    def search_text(self):
+        """What a lens is looked for by, in small letters: name, figures, kind, designer, year."""
+        words = [self.id, self.title]
+        if self.lens is not None:
+            made = self.lens.prescription
+            words += [f"{made.focal_length:.3g}mm", f"f/{made.f_number:.3g}", made.projection]
+            words += [str(word) for word in (made.designer, made.year) if word]
+            words += ["zoom"] * bool(made.zoom) + ["prime"] * (not made.zoom)
+        return " ".join(words).casefold()
+
 
 @dataclass(frozen=True)
 class Reloaded:

@@ -25,10 +25,11 @@ SAMPLING = Section("Sampling", "Render Properties > Sampling", (
 ))
 
 RENDER = Section("Samples of the final render", "Render Properties > Sampling > Render", (
-    Setting("render_error", 0.01, "Render Noise Threshold", "How much the final render may differ"
-            " from a perfect one, as 1 - SSIM: 0.02 is a draft, 0.01 looks clean, 0.002 is for"
-            " large prints. It changes the noise, never the amount of blur", limits=(0.0005, 0.5),
-            soft=(None, 0.05), step=0.1, precision=4, told="target_error", kept=True),
+    Setting("render_error", 0.01, "Render Noise Threshold", "Noise at which the final render stops"
+            " drawing samples. Lower values reduce noise and take longer: 0.03 is a draft, 0.01"
+            " looks clean, 0.002 is for large prints. The amount of blur stays the same",
+            limits=(0.0005, 0.5), soft=(None, 0.05), step=0.1, precision=4, told="target_error",
+            kept=True),
     Setting("render_max_samples", 4096, "Render Max Samples", "Lens samples at which the final"
             " render stops even if it is above its noise threshold", limits=(1, MAX_SAMPLES),
             field="most_samples", told="max_samples", kept=True),
@@ -47,9 +48,9 @@ RENDER = Section("Samples of the final render", "Render Properties > Sampling > 
 ))
 
 PREVIEW = Section("Samples of the viewport", "Render Properties > Sampling > Viewport", (
-    Setting("preview_error", 0.03, "Viewport Noise Threshold", "How much the picture may differ"
-            " from a perfect one when the viewport rests, as 1 - SSIM", limits=(0.0005, 0.5),
-            soft=(None, 0.1), step=0.1, precision=4, kept=True),
+    Setting("preview_error", 0.03, "Viewport Noise Threshold", "Noise at which the viewport"
+            " stops drawing samples. Lower values reduce noise and take longer",
+            limits=(0.0005, 0.5), soft=(None, 0.1), step=0.1, precision=4, kept=True),
     Setting("preview_max_samples", 1024, "Viewport Max Samples", "Lens samples at which the"
             " viewport rests even if it is above its noise threshold", limits=(1, MAX_SAMPLES),
             field="most_samples", kept=True),

@@ -1,5 +1,7 @@
 """Fixtures of the tests of what a user meets."""
 
+from types import SimpleNamespace
+
 import pytest
 
 
@@ -18,3 +20,30 @@ def preset_folder(aplanat_bpy, tmp_path, monkeypatch):
     monkeypatch.setattr(aplanat_bpy.utils, "user_resource", user_resource)
     monkeypatch.setattr(aplanat_bpy.utils, "preset_paths", preset_paths)
     return tmp_path / "presets"
+
+
+@pytest.fixture
+def context(aplanat_bpy, empty_scene):
+    """What panels read of Blender's context, with a camera, a material, a light and a world."""
+    bpy = aplanat_bpy
+    empty_scene.render.engine = "APLANAT"
+    camera = bpy.data.cameras.new("Camera")
+    obj = bpy.data.objects.new("Camera", camera)
+    empty_scene.collection.objects.link(obj)
+    empty_scene.camera = obj
+    camera.dof.use_dof = True
+    world = bpy.data.worlds.new("World")
+    empty_scene.world = world
+    return SimpleNamespace(
+        engine="APLANAT",
+        scene=empty_scene,
+        view_layer=empty_scene.view_layers[0],
+        camera=camera,
+        object=obj,
+        material=bpy.data.materials.new("Material"),
+        light=bpy.data.lights.new("Light", "POINT"),
+        world=world,
+        space_data=SimpleNamespace(image=None, overlay=SimpleNamespace(show_overlays=True)),
+        region=SimpleNamespace(width=400),
+        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
+    )

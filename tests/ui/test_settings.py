@@ -4,7 +4,6 @@ import dataclasses
 import importlib.util
 import re
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
@@ -23,7 +22,7 @@ from addon.settings.setting import settings_of
 from addon.snapshot.camera import BokehSettings
 from addon.snapshot.film import Sampling
 
-from .panel_drawing import draw
+from .panel_drawing import draw, panels_of, states
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 # By the name of the property group.
@@ -121,64 +120,16 @@ def test_numbers_of_choices_are_told_once():
         assert len({item.number for item in setting.items}) == len(setting.items), setting.name
 
 
-@pytest.fixture
-def context(aplanat_bpy, empty_scene):
-    bpy = aplanat_bpy
-    empty_scene.render.engine = "APLANAT"
-    camera = bpy.data.cameras.new("Camera")
-    obj = bpy.data.objects.new("Camera", camera)
-    empty_scene.collection.objects.link(obj)
-    empty_scene.camera = obj
-    camera.dof.use_dof = True
-    world = bpy.data.worlds.new("World")
-    empty_scene.world = world
-    return SimpleNamespace(
-        engine="APLANAT",
-        scene=empty_scene,
-        view_layer=empty_scene.view_layers[0],
-        camera=camera,
-        object=obj,
-        material=bpy.data.materials.new("Material"),
-        light=bpy.data.lights.new("Light", "POINT"),
-        world=world,
-        space_data=SimpleNamespace(image=None, overlay=SimpleNamespace(show_overlays=True)),
-        region=SimpleNamespace(width=400),
-        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
-    )
-
-
 def panel_sources():
     return resources().panels.sources
 
 
-def states(context):
-    """Go through the choices on which it depends what a panel shows."""
-    own, settings = context.camera.aplanat, context.scene.aplanat
-    yield
-    settings.use_target_error = False
-    own.bokeh.model, own.bokeh.vignetting = "CLUSTERED", "ANALYTIC"
-    own.distortion, own.chromatic.dispersion = "DIVISION", "GLASS"
-    yield
-    own.lens = "zoom-36-69mm-f3.5"
-    settings.method = "REFERENCE"
-    yield
-    settings.method = "LAYERED"
-    own_refocus = settings.refocus
-    own_refocus.path, own_refocus.depth_values = "layers.exr", "SCALED"
-    yield
-    own_refocus.depth_values = "NORMALISED"
-    yield
-
-
 def test_panels_show_every_setting(context):
-    panels = [cls for module in _MODULES for cls in getattr(module, "CLASSES", ())]
-    editors = {"PROPERTIES", "IMAGE_EDITOR", "VIEW_3D"}
-    panels = [cls for cls in panels if "_PT_" in cls.__name__ and cls.bl_space_type in editors]
+    panels = panels_of(_MODULES, {"PROPERTIES", "IMAGE_EDITOR", "VIEW_3D"})
     shown = set()
     for _ in states(context):
         for panel in panels:
-            if "presets" not in panel.__name__:
-                shown |= set(draw(panel, context, header=True).drawn)
+            shown |= set(draw(panel, context, header=True).drawn)
     wanted = {(group, SHOWN_AS.get(setting.name, setting.name)) for group, setting in ALL}
     wanted -= {("AplanatSceneSettings", name) for name in settings_of(MEASURING)}
     # The editor itself shows it.

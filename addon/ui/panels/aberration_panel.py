@@ -27,7 +27,10 @@ class APLANAT_CAMERA_PT_aberrations(CameraPanel, PresetsHeader, bpy.types.Panel)
         column.active = used and camera.dof.use_dof
         for name in ABERRATIONS:
             row = column.row()
-            row.prop(settings, name, slider=name == "swirl")
+            # Beside two pictures a name has room in the field alone.
+            row.use_property_split = False
+            text = "Curvature" if name == "field_curvature" else None
+            row.prop(settings, name, text=text, slider=name == "swirl")
             middle, corner = aberration_icons(camera, name)
             row.template_icon(icon_value=middle, scale=_SPOT_SCALE)
             row.template_icon(icon_value=corner, scale=_SPOT_SCALE)

@@ -135,6 +135,7 @@ class APLANAT_CAMERA_PT_bokeh_appearance(_BokehPanel, PresetsHeader, bpy.types.P
 
     bl_label = "Appearance"
     bl_parent_id = "APLANAT_CAMERA_PT_bokeh"
+    bl_options = {"DEFAULT_CLOSED"}
     presets = "bokeh"
 
     def draw(self, context):
@@ -170,9 +171,8 @@ class APLANAT_CAMERA_PT_bokeh_appearance(_BokehPanel, PresetsHeader, bpy.types.P
             caption.alignment = "CENTER"
             caption.label(text=text)
         if lens is not None:
-            caption = column.row()
-            caption.alignment = "CENTER"
-            caption.label(text="Without the lens itself: see Real Lens > Bokeh")
+            text = "Without the lens itself: see Real Lens > Bokeh."
+            draw_sentences(column, text, letters_across(context))
 
 
 class _AppearancePanel(_BokehPanel):

@@ -41,8 +41,9 @@ class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, SwitchHeader, PresetsHeader, 
             column.prop(settings, "focus_light")
         if settings.mode == "SPECTRAL":
             wavelengths = column.column(align=True)
-            wavelengths.prop(settings, "wavelength_min", text="Wavelengths (nm)")
-            wavelengths.prop(settings, "wavelength_max", text="To")
+            wavelengths.label(text="Wavelengths")
+            wavelengths.prop(settings, "wavelength_min", text="From (nm)")
+            wavelengths.prop(settings, "wavelength_max", text="To (nm)")
         self._draw_notes(context, column.column(align=True))
 
     def _draw_notes(self, context, column):
@@ -62,7 +63,7 @@ class APLANAT_CAMERA_PT_chromatic(_ChromaticPanel, SwitchHeader, PresetsHeader, 
 class _FieldMapPanel(_ChromaticPanel):
     bl_parent_id = "APLANAT_CAMERA_PT_chromatic"
     bl_options = {"DEFAULT_CLOSED"}
-    which = meaning = None
+    which = None
 
     def draw(self, context):
         """Draw the two atoms, the curves that are drawn, and the map."""
@@ -79,24 +80,25 @@ class _FieldMapPanel(_ChromaticPanel):
             column.prop(settings, name)
             if getattr(settings, name) == "CURVE":
                 _draw_curve(column, settings, MAP_CURVES[self.which, step])
-        field_map = read_field_map(settings, self.which)
+        share = chromatic_previews.share_of_strength(
+            self.which, read_field_map(settings, self.which)
+        )
         render = context.scene.render
         width = render.resolution_x * render.pixel_aspect_x
         height = render.resolution_y * render.pixel_aspect_y
         curve, disc = chromatic_previews.map_icons(
-            context.camera, self.which, field_map, width / height
+            context.camera, self.which, share, width / height
         )
         pictures = column.row()
         pictures.alignment = "CENTER"
         pictures.template_icon(icon_value=curve, scale=_MAP_SCALE)
         pictures.template_icon(icon_value=disc, scale=_MAP_SCALE)
-        captions = column.column(align=True)
-        low, high = chromatic_previews.shown_range(field_map)
-        shown = f"{field_map.text}, drawn from {low:.3g} to {high:.3g}"
-        for text in (f"{shown}, clamped" if field_map.clamped else shown, self.meaning):
-            line = captions.row()
-            line.alignment = "CENTER"
-            line.label(text=text)
+        low, high = chromatic_previews.shown_range(share)
+        text = (
+            f"How much of the {self.which} strength is left, from the middle of the picture to its"
+            f" corners: {share.text}, drawn from {low:.3g} to {high:.3g}."
+        )
+        draw_sentences(column.column(align=True), text, letters_across(context))
 
 
 class APLANAT_CAMERA_PT_chromatic_axial(_FieldMapPanel, bpy.types.Panel):
@@ -104,7 +106,6 @@ class APLANAT_CAMERA_PT_chromatic_axial(_FieldMapPanel, bpy.types.Panel):
 
     bl_label = "Axial Field Map"
     which = "axial"
-    meaning = "0: all of the axial strength, 1: none"
 
 
 class APLANAT_CAMERA_PT_chromatic_lateral(_FieldMapPanel, bpy.types.Panel):
@@ -112,7 +113,6 @@ class APLANAT_CAMERA_PT_chromatic_lateral(_FieldMapPanel, bpy.types.Panel):
 
     bl_label = "Lateral Field Map"
     which = "lateral"
-    meaning = "0: none of the lateral strength, 1: all"
 
 
 class APLANAT_CAMERA_PT_chromatic_equalizer(_ChromaticPanel, SwitchHeader, bpy.types.Panel):

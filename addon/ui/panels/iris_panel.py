@@ -24,7 +24,7 @@ class APLANAT_CAMERA_PT_iris(CameraPanel, bpy.types.Panel):
         lens, letters = real_lens_of(camera), letters_across(context)
         blades = column.column()
         blades.active = settings.iris_image is None and camera.dof.aperture_blades > 2
-        blades.prop(settings, "blade_curvature", slider=True)
+        blades.prop(settings, "blade_curvature", text="Curvature", slider=True)
         stop = blades.column()
         stop.active = blades.active and lens is not None
         stop.prop(settings, "use_round_stop")

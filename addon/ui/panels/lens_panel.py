@@ -28,9 +28,12 @@ from .sentences import draw_alert, draw_sentences, letters_across
 
 # In units of Blender's buttons.
 _CHOSEN_SCALE, _POPUP_SCALE, _BOKEH_SCALE = 9.0, 6.0, 10.0
-# What is said about focal lengths is rounded to this, mm; less than it is no difference.
-_SAME_LENGTH = 0.05
+# A smaller difference of focal lengths, as a share, is that of engraved and computed ones: nobody
+# sees it in the framing.
+_SAME_LENGTH = 0.02
 _MOST_FINDINGS = 8
+# Share of the width that the names of facts take.
+_FACT_NAMES = 0.38
 
 
 class APLANAT_MT_lens(bpy.types.Menu):
@@ -83,6 +86,9 @@ class APLANAT_CAMERA_PT_lens(CameraPanel, bpy.types.Panel):
         letters = letters_across(context)
         if settings.lens:
             _draw_state(column, camera, letters)
+        else:
+            text = "Thin Lens: ideal, of any focal length and f-number, without a prescription."
+            draw_sentences(column, text, letters, icon="INFO")
         exposure = column.column()
         exposure.active = camera.dof.use_dof and bool(settings.lens)
         exposure.prop(settings, "exposure")
@@ -147,14 +153,11 @@ def _draw_use(column, camera, letters):
             )
     asked = camera.dof.aperture_fstop
     if camera.dof.use_dof and lens.limits(asked):
-        column.label(
-            text=f"f/{asked:.3g} asked, the lens opens to f/{lens.f_number:.3g}", icon="INFO"
-        )
-    if abs(facts.focal_length - camera.lens) >= _SAME_LENGTH:
-        column.label(
-            text=f"The camera has {camera.lens:.4g} mm, the lens {facts.focal_length:.4g} mm",
-            icon="INFO",
-        )
+        text = f"f/{asked:.3g} asked, the lens opens to f/{lens.f_number:.3g}."
+        draw_sentences(column, text, letters, icon="INFO")
+    if abs(facts.focal_length / camera.lens - 1.0) >= _SAME_LENGTH:
+        text = f"The camera has {camera.lens:.4g} mm, the lens {facts.focal_length:.4g} mm."
+        draw_sentences(column, text, letters, icon="INFO")
         column.operator(APLANAT_OT_use_focal_length.bl_idname)
 
 
@@ -222,6 +225,7 @@ class APLANAT_CAMERA_PT_lens_facts(_KnownLensPanel, bpy.types.Panel):
     """Facts of the lens: design, source, figures."""
 
     bl_label = "Facts"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         """Draw facts and warnings."""
@@ -297,12 +301,12 @@ def _differs_from_iris(camera, iris, ratio):
 
 
 def _draw_fact(column, name, value, letters):
-    split = column.split(factor=0.3)
+    split = column.split(factor=_FACT_NAMES)
     left = split.row()
     left.alignment = "RIGHT"
     left.active = False
     left.label(text=name)
-    draw_sentences(split.column(align=True), value, int(0.7 * letters))
+    draw_sentences(split.column(align=True), value, int((1.0 - _FACT_NAMES) * letters) - 1)
 
 
 def _draw_clamp(panel, context):
@@ -312,7 +316,8 @@ def _draw_clamp(panel, context):
     camera = context.camera
     lens = real_lens_of(camera)
     if lens and lens.limits(camera.dof.aperture_fstop):
-        panel.layout.label(text=f"The lens opens to f/{lens.f_number:.3g}", icon="INFO")
+        text = f"The lens opens to f/{lens.f_number:.3g}."
+        draw_sentences(panel.layout.column(), text, letters_across(context), icon="INFO")
 
 
 CLASSES = (

@@ -28,7 +28,7 @@ class APLANAT_RENDER_PT_level_of_detail(SwitchHeader, EnginePanel, bpy.types.Pan
         column = self.column()
         column.active = settings.use_levels
         column.prop(settings, "level_bias")
-        column.prop(settings, "least_triangles")
+        column.prop(settings, "least_triangles", text="Triangles")
         store = resources().levels
         done, total = store.progress
         if done < total:
@@ -72,9 +72,9 @@ class APLANAT_RENDER_PT_performance(EnginePanel, bpy.types.Panel):
     def draw(self, context):
         """Draw the settings of the scene."""
         column = self.column()
-        column.prop(context.scene.aplanat, "chunk_milliseconds")
+        column.prop(context.scene.aplanat, "chunk_milliseconds", text="Chunk (ms)")
         render = context.scene.render
-        column.prop(render, "preview_pixel_size", text="Viewport Pixel Size")
+        column.prop(render, "preview_pixel_size", text="Pixel Size")
         compositor = column.column()
         compositor.prop(render, "compositor_device", text="Compositor")
         compositor.prop(render, "compositor_precision", text="Precision")
@@ -98,10 +98,12 @@ class APLANAT_RENDER_PT_simplify(SwitchHeader, EnginePanel, bpy.types.Panel):
         column = self.column()
         column.active = render.use_simplify
         subdivision = column.column(align=True)
-        subdivision.prop(render, "simplify_subdivision", text="Max Subdivision Viewport")
+        subdivision.label(text="Max Subdivision")
+        subdivision.prop(render, "simplify_subdivision", text="Viewport")
         subdivision.prop(render, "simplify_subdivision_render", text="Render")
         particles = column.column(align=True)
-        particles.prop(render, "simplify_child_particles", text="Max Child Particles Viewport")
+        particles.label(text="Max Child Particles")
+        particles.prop(render, "simplify_child_particles", text="Viewport")
         particles.prop(render, "simplify_child_particles_render", text="Render")
         column.prop(render, "use_simplify_normals", text="Viewport Normals")
 
@@ -178,8 +180,8 @@ class APLANAT_VIEWLAYER_PT_override(EnginePanel, bpy.types.Panel):
     def draw(self, context):
         """Draw those of Blender's settings that are followed."""
         column = self.column()
-        column.prop(context.view_layer, "material_override")
-        column.prop(context.view_layer, "world_override")
+        column.prop(context.view_layer, "material_override", text="Material")
+        column.prop(context.view_layer, "world_override", text="World")
 
 
 class APLANAT_LIGHT_PT_shadow(EnginePanel, bpy.types.Panel):
@@ -278,7 +280,7 @@ class APLANAT_WORLD_PT_whites(EnginePanel, bpy.types.Panel):
 
     def draw(self, context):
         """Draw the setting."""
-        self.column().prop(context.world.aplanat, "amplification")
+        self.column().prop(context.world.aplanat, "amplification", text="Amplify")
 
 
 CLASSES = (

@@ -84,7 +84,7 @@ class APLANAT_RENDER_PT_sampling_advanced(EnginePanel, bpy.types.Panel):
         elif settings.method == "LAYERED":
             column.prop(settings, "layers")
             column.prop(settings, "layer_source")
-            column.prop(settings, "use_view_dependence")
+            column.prop(settings, "use_view_dependence", text="View-Dependent")
         column.prop(settings, "seed")
         pixel = column.column()
         pixel.prop(settings, "pixel_filter")

@@ -1,5 +1,6 @@
 """Pictures of field maps as icons: made when a panel is drawn with new values."""
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 from ...plots import chromatic_pictures
@@ -9,6 +10,37 @@ _SIZE = 160
 
 icons = PictureIcons()
 register, unregister = icons.register, icons.unregister
+
+
+@dataclass(frozen=True)
+class Share:
+    """How much of a strength is left over the field; called as a `FieldMap`.
+
+    Parameters
+    ----------
+    field_map : FieldMap
+    falls : bool
+        The map is what is taken away (of axial aberration), not what is left (of lateral).
+    """
+
+    field_map: object
+    falls: bool
+
+    def __call__(self, t, theta):
+        """Return the share at ``t`` and ``theta``, as `FieldMap`."""
+        values = self.field_map(t, theta)
+        return 1.0 - values if self.falls else values
+
+    @property
+    def text(self):
+        """The share as a formula."""
+        told = f"1 - ({self.field_map.text})" if self.falls else self.field_map.text
+        return f"{told}, clamped" if self.field_map.clamped else told
+
+
+def share_of_strength(which, field_map):
+    """Return what the map of ``"axial"`` or ``"lateral"`` aberration leaves, as `Share`."""
+    return Share(field_map, falls=which == "axial")
 
 
 # Memo of the map alone, which is drawn anew at every redraw of the panel.
@@ -27,8 +59,7 @@ def map_icons(camera, which, field_map, aspect):
         Each has icons of its own.
     which : str
         Names the map.
-    field_map : FieldMap
-        The same object as long as it is the same map.
+    field_map : Share
     aspect : float
         Width over height of the picture.
 

@@ -14,6 +14,10 @@ from .overrides import OVERRIDABLE, SHARED, setting_changed
 
 _THIN = "thin"
 _LENS = "lens:"
+_THIN_LENS = (
+    "An ideal lens of any focal length and f-number, without a prescription: sharp at one distance,"
+    " without aberrations of its own"
+)
 
 # Blender keeps no reference to the texts of a dynamic enum: they must live somewhere. Numbers stay
 # the same while the library changes, so that a menu that is open means what it shows.
@@ -36,14 +40,21 @@ def _item(identifier, name, description, icon=0):
 
 def _lens_items(camera, _context):
     library = shelf()
-    items = [_item(_THIN, "Thin Lens", "An ideal lens without a prescription", "CAMERA_DATA")]
+    items = [
+        _item(
+            _THIN,
+            "Thin Lens",
+            _THIN_LENS,
+            "CAMERA_DATA",
+        )
+    ]
     ids = library.ids()
     for lens_id in ids:
         found = library.find(lens_id)
         if found is None:
             continue
         icon = lens_thumbnails.icon_id(found) if found.lens else "ERROR"
-        items.append(_item(_LENS + lens_id, found.name, _describe(found), icon))
+        items.append(_item(_LENS + lens_id, found.title, _describe(found), icon))
     if camera.lens and camera.lens not in ids:
         items.append(_item(_LENS + camera.lens, camera.lens, "Not in the library", "ERROR"))
     return items
@@ -72,8 +83,8 @@ def _found_lenses(camera, _context, typed):
     typed = "" if typed == camera.lens else typed.casefold()
     for lens_id in library.ids():
         found = library.find(lens_id)
-        if found and (typed in lens_id.casefold() or typed in found.name.casefold()):
-            yield lens_id, found.name
+        if found and all(word in found.search_text for word in typed.split()):
+            yield lens_id, found.title
 
 
 def _labels(camera):
@@ -142,7 +153,8 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
         ),
         "lens_choice": EnumProperty(
             name="Lens",
-            description="Choose a lens by its cross-section and its bokeh",
+            description="Choose a lens by its cross-section and its bokeh; the field below finds it"
+            " by name, focal length, f-number, kind and year",
             items=_lens_items,
             get=_chosen_lens,
             set=_choose_lens,

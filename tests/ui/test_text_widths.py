@@ -1,0 +1,63 @@
+"""Texts of panels fit into the properties editor; panels of the camera stand where they belong."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from addon.registration import _MODULES
+from addon.ui.panels import panel_order
+
+from .panel_drawing import draw, panels_of, states
+
+# In pixels at a scale of 1: the tabs, both margins of a panel with its scroll bar, an icon, the box
+# of a switch.
+TABS, MARGINS, ICON, BOX = 38, 24, 20, 18
+# Blender's size of text in panels, and the gap that it keeps on both sides.
+POINTS, GAP = 12, 4
+
+
+@pytest.mark.parametrize("width", [280, 400])
+def test_no_text_is_cut(context, width):
+    import blf
+
+    blf.size(0, POINTS)
+    context.region = SimpleNamespace(width=width - TABS)
+    room = width - TABS - MARGINS
+    cut = set()
+    for _ in states(context):
+        for panel in panels_of(_MODULES, {"PROPERTIES"}):
+            layout = draw(panel, context)
+            shown = [(text, ICON * (icon != "NONE"), share) for text, icon, share in layout.texts]
+            shown += [(text, BOX * (kind == "BOOLEAN"), s) for text, kind, s in layout.names]
+            for text, beside, share in shown:
+                needed = blf.dimensions(0, text)[0] + beside
+                if needed > share * room - GAP:
+                    cut.add((panel.__name__, text, round(needed), round(share * room)))
+    assert cut == set()
+
+
+def test_only_the_real_lens_opens_by_itself(aplanat_bpy):
+    panels = [p for p in panels_of(_MODULES, {"PROPERTIES"}) if p.bl_context == "data"]
+    cameras = [p for p in panels if "_CAMERA_" in p.__name__]
+    opened = [p.__name__ for p in cameras if "DEFAULT_CLOSED" not in getattr(p, "bl_options", ())]
+    assert len(cameras) > 15 and opened == ["APLANAT_CAMERA_PT_lens"]
+
+
+def test_panels_of_the_camera_follow_depth_of_field(aplanat_bpy, monkeypatch):
+    bpy = aplanat_bpy
+    registered = []
+
+    def register(cls):
+        registered.append(cls.__name__)
+        original(cls)
+
+    original = bpy.utils.register_class
+    monkeypatch.setattr(bpy.utils, "register_class", register)
+    panel_order.register()
+    families = [name for name in registered if name in panel_order.BEHIND]
+    assert families == list(panel_order.BEHIND)
+    # With what hangs on them.
+    assert "DATA_PT_camera_safe_areas_center_cut" in registered
+    for name in registered:
+        cls = getattr(bpy.types, name)
+        assert cls.is_registered and "APLANAT" in cls.COMPAT_ENGINES
