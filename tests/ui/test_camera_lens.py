@@ -250,3 +250,22 @@ def test_nothing_is_made_in_the_background_of_a_blender_without_windows(camera):
 
     camera.aplanat.lens_choice = f"lens:{TESSAR}"
     assert background.progress() is None
+
+
+@pytest.mark.parametrize(
+    ("typed", "found"),
+    [
+        ("50mm f/1.4", "planar-50mm-f1.4"),
+        ("1975 gauss", "planar-50mm-f1.4"),
+        ("fisheye", "fisheye-16mm-f2.8"),
+        ("ZOOM 24-105", "zoom-24-105mm-f4"),
+        ("glatzel", "planar-50mm-f1.4"),
+    ],
+)
+def test_a_lens_is_found_by_its_figures_kind_and_year(camera, typed, found):
+    from addon.ui.properties.camera_properties import _found_lenses
+
+    listed = dict(_found_lenses(camera.aplanat, None, typed))
+    assert found in listed and len(listed) < 12
+    assert "mm" in listed[found] and "f/" in listed[found]
+    assert not dict(_found_lenses(camera.aplanat, None, f"{typed} nonsense"))
