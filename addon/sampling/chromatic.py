@@ -166,7 +166,7 @@ class ChromaticAberration:
     equalizer : SpectralEqualizer
         Of the spectral mode.
     primaries : str
-        Working space of the picture: a name of colour-science; see `spectrum.primaries_of`.
+        Working space of the picture; see `spectrum.primaries_of`.
     focus_nm : float or None
         The reference wavelength; None: the longest in use.
     of_lens : bool

@@ -5,8 +5,8 @@ that light only ever adds; a spectrum that is flat over the wavelengths becomes 
 """
 
 import functools
-import sys
-import warnings
+import json
+from pathlib import Path
 
 import numpy as np
 
@@ -16,7 +16,15 @@ LINEAR_REC709 = "ITU-R BT.709"
 # Range of the wavelengths of a chromatic lens table, nm: the eye is nearly blind beyond.
 SPECTRUM_RANGE_NM = (440.0, 680.0)
 SPECTRUM_COUNT = 25
-# Names of scene-linear spaces in Blender's configuration, and what colour-science calls them.
+# Chromaticities of red, green, blue and white (x, y), as the standards have them: ITU-R BT.709-6,
+# ITU-R BT.2020-2, and SMPTE ST 2065-1 with the primaries AP1 of ACES S-2014-004.
+_D65 = (0.3127, 0.3290)
+_SPACES = {
+    LINEAR_REC709: ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), _D65),
+    "ITU-R BT.2020": ((0.708, 0.292), (0.170, 0.797), (0.131, 0.046), _D65),
+    "ACEScg": ((0.713, 0.293), (0.165, 0.830), (0.128, 0.044), (0.32168, 0.33767)),
+}
+# Names of scene-linear spaces in Blender's configuration.
 _WORKING_SPACES = {
     "Linear Rec.709": LINEAR_REC709,
     "Linear Rec.2020": "ITU-R BT.2020",
@@ -65,7 +73,7 @@ def rgb_weights(wavelengths_nm, primaries=LINEAR_REC709):
     ----------
     wavelengths_nm : array_like of shape (N,)
     primaries : str or array_like of shape (3, 3)
-        Name of a colour space in colour-science, or a matrix from XYZ to linear RGB.
+        "ITU-R BT.709", "ITU-R BT.2020" or "ACEScg", or a matrix from XYZ to linear RGB.
 
     Returns
     -------
@@ -98,7 +106,7 @@ def xyz_to_rgb(primaries):
     Parameters
     ----------
     primaries : str or array_like of shape (3, 3)
-        Name of a colour space in colour-science, or the matrix itself.
+        As of `rgb_weights`.
 
     Returns
     -------
@@ -113,7 +121,7 @@ def xyz_to_rgb(primaries):
 
 
 def primaries_of(working_space):
-    """Return the colour space of colour-science that is a working space of Blender's.
+    """Return the primaries of a working space of Blender's.
 
     Parameters
     ----------
@@ -128,37 +136,27 @@ def primaries_of(working_space):
     return _WORKING_SPACES.get(working_space)
 
 
-# Memo of nothing: the import of a module.
-@functools.cache
-def _colour():
-    # Where scipy is not installed, colour-science says so in a warning and leaves a stand-in among
-    # the modules, which others would take for scipy. Nothing that is used here needs it.
-    before = {name for name in sys.modules if name.partition(".")[0] == "scipy"}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        import colour
-    if not getattr(sys.modules.get("scipy"), "__file__", None):
-        for name in [name for name in sys.modules if name.partition(".")[0] == "scipy"]:
-            if name not in before:
-                del sys.modules[name]
-    return colour
-
-
-# Memo of nothing but a table of the module.
+# Memo of nothing but a file of the extension.
 @functools.cache
 def _observer():
-    functions = _colour().MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
-    wavelengths = np.array(functions.wavelengths, dtype=np.float64)
-    return wavelengths, np.array(functions.values, dtype=np.float64)
+    text = Path(__file__).with_name("standard_observer.json").read_text(encoding="utf-8")
+    table = json.loads(text)
+    values = np.array(table["xyz"])
+    return table["first_nm"] + table["step_nm"] * np.arange(len(values)), values
 
 
-# Memo of the name alone, and of tables of the module.
+# Memo of the name alone.
 @functools.cache
 def _matrix(name):
-    spaces = _colour().RGB_COLOURSPACES
-    if name not in spaces:
+    if name not in _SPACES:
         raise InputError(
-            f"colour space '{name}' is not known; "
-            f"use '{LINEAR_REC709}', 'ITU-R BT.2020' or 'ACEScg'"
+            f"colour space '{name}' is not known; use {', '.join(map(repr, _SPACES))} or a matrix"
         )
-    return np.array(spaces[name].matrix_XYZ_to_RGB, dtype=np.float64)
+    red, green, blue, white = (_xyz(*place) for place in _SPACES[name])
+    primaries = np.column_stack([red, green, blue])
+    # Red, green and blue of 1 are white.
+    return np.linalg.inv(primaries * np.linalg.solve(primaries, white))
+
+
+def _xyz(x, y):
+    return np.array([x / y, 1.0, (1.0 - x - y) / y])
