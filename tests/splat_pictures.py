@@ -93,8 +93,11 @@ def splatted(plan, depth, chief=(0.0, 0.0), light=(1.0, 1.0, 1.0), window=None, 
     with Targets(size, size, [TargetSpec("bokeh", "RGBA32F")]) as targets:
         targets.clear("bokeh", (0.0, 0.0, 0.0, 0.0))
         with targets.framebuffer("bokeh").bind():
-            splat.splat(geometry.square_batch(), 1, textures, make_look(plan, plan.textures), view)
-        return readback.read_color(targets.framebuffer("bokeh"), size, size)
+            look = make_look(plan, plan.textures)
+            densities = splat.splat(geometry.square_batch(), 1, textures, look, view)
+        picture = readback.read_color(targets.framebuffer("bokeh"), size, size)
+        densities.release()
+        return picture
 
 
 def library_lens(lens_id, f_number=None):

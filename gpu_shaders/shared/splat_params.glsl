@@ -7,7 +7,7 @@ struct SplatParams {
                         // z: c0, px; w: strength
   vec4 field;           // x: 1 / largest tangent of the tables over the field; y: number of rims, of a
                         // lens with cylinders as x, along y;
-                        // z: rows of the light that rims leave; w: 1 if tiles are masked by the opening
+                        // z: rows of the light that rims leave; w unused
   vec4 rims[4];         // x: radius; y: shift for a tangent of 1; z: members; w unused
   vec4 wavelength;      // rgb: its weights; w: 1 / focus distance, 1/m
   vec4 dispersion;      // of a band of wavelengths: x: change of the focal length; y: lateral strength;

@@ -17,7 +17,7 @@ from addon.lens_bokeh.look.splat_pupil import (
     SOFT,
     reach,
 )
-from addon.lens_bokeh.look.tile_drawing import draw_tile
+from addon.lens_bokeh.look.tile_drawing import blur_matrix, blurred, draw_tile
 from addon.lens_bokeh.openings.blades import BladedIris
 from addon.lens_bokeh.tables.pupil_beam import beam_from_point
 from tests.splat_pictures import library_lens, plan_of
@@ -32,7 +32,7 @@ def arrays():
         vignetting="LENS",
     )  # fmt: skip
     variants, arrays, _ = describe_look(plan)
-    assert variants == ("TILES",)
+    assert variants == ("TILES", "OPENED")
     return arrays
 
 
@@ -54,6 +54,28 @@ def test_a_six_sided_opening_leaves_the_same_of_an_axial_beam_every_sixth_turn(a
     turned = np.roll(left, AZIMUTHS // 6, axis=0)
     # Texels of tile and opening are squares.
     assert np.abs(left - turned).max() < 0.01 * left.max()
+
+
+def test_an_even_opening_is_not_laid_over_the_tiles():
+    plan = plan_of(
+        Appearance(), size=500, focal_px=6000.0, lens=library_lens(LENS), vignetting="LENS"
+    )
+    variants, arrays, _ = describe_look(plan)
+    assert variants == ("TILES",)
+    assert set(arrays) == {"sharp_tx", "soft_tx", "places_tx"}
+
+
+def test_blurs_of_a_mirrored_tile_are_those_of_all_of_it():
+    half = np.random.default_rng(3).random((3, SHARP, SHARP), dtype=np.float32)
+    half[1:] *= half[0]
+    mirrored = half[..., ::-1].copy()
+    mirrored[1] = mirrored[0] - mirrored[1]
+    tile = half + mirrored
+    matrix = blur_matrix(BLURS[2], SHARP, reach(BLURS[0]), SOFT, reach(BLURS[2]))
+    (found,) = blurred(tile, [matrix])
+    expected = matrix @ tile.astype(float) @ matrix.T
+    # Single precision.
+    assert np.abs(found - expected).max() < 1e-5 * expected.max()
 
 
 def smoothed(picture):

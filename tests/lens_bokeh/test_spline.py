@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from addon.lens_bokeh.tables.spline import cubic_taps, spline_matrix
+from addon.lens_bokeh.tables.spline import cubic_taps, spline_matrix, spline_values
 
 
 def cubic(x):
@@ -41,3 +41,11 @@ def test_local_cubics_go_straight_on_outside():
     values = np.array([0.0, 1.0, 4.0, 9.0])
     taps, weights = cubic_taps(np.array([-2.0, 5.0]), 4)
     assert np.allclose((weights * values[taps]).sum(axis=0), [-2.0, 9.0 + 2 * 5.0])
+
+
+def test_values_of_a_spline_are_those_of_its_matrix():
+    rng = np.random.default_rng(5)
+    nodes = np.cumsum(rng.uniform(0.2, 1.0, 11))
+    values, at = rng.normal(size=11), rng.uniform(nodes[0] - 0.5, nodes[-1] + 0.5, 200)
+    expected = spline_matrix(nodes, at) @ values
+    assert np.allclose(spline_values(nodes, values, at), expected, atol=1e-12)

@@ -64,29 +64,26 @@ class HighlightSearch:
     buffers : SceneBuffers
     split : GPUUniformBuf
         `HighlightParams`.
-    sources : tuple of 2 GPUTexture
-        Get the list (see `passes.bokeh.highlights`), up to their size.
+    found : passes.bokeh.highlight_list.HighlightList
+        Gets the highlights.
     field : tuple of (str, GPUUniformBuf or GPUTexture) or None
         `passes.surface.chromatic.resources`, with chromatic aberration.
 
     Attributes
     ----------
-    count : int
-        Highlights found.
     sharp : int
         Pixels with light above the threshold whose circle of confusion is too small to be splatted.
     bytes : int
         Peak memory on the device.
     """
 
-    def __init__(self, plan, drawing, buffers, split, sources, field=None):
+    def __init__(self, plan, drawing, buffers, split, found, field=None):
         self._plan = plan
         self._drawing = drawing
         self._buffers = buffers
         self._split = split
-        self._sources = sources
+        self._highlights = found
         self._field = field
-        self.count = 0
         self.sharp = 0
         self.bytes = 0
 
@@ -227,9 +224,7 @@ class HighlightSearch:
         )
         scene = None if search.world else raster["scene"]
         highlights.order(seen, lists, min(number, lists.capacity), scene, counts)
-        count, sharp = highlights.emit(seen, lists, shining, self._sources, self.count)
-        self.count += count
-        self.sharp += sharp
+        self.sharp += self._highlights.append(seen, lists, shining)
         return lists
 
     def _append(self, search, draws, params, lens, held, fullscreen, raster):

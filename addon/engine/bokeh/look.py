@@ -51,7 +51,7 @@ class BokehLook:
     Parameters
     ----------
     variants : tuple of str
-        ``"PROFILE"``, ``"RIMS"`` and ``"TILES"``; see `passes.bokeh.splat`.
+        See `passes.bokeh.splat`.
     textures : tuple of (str, GPUTexture)
         By their names in the shader.
     blocks : tuple of GPUUniformBuf
@@ -100,7 +100,8 @@ def describe_look(plan):
     # Without ringing the opening is the same at every focus.
     ringing = appearance.diffraction is not None
     fresnel = _fresnel_scale(plan) if ringing else 0.0
-    arrays = {"opening_tx": _opening(replace(appearance, rims=(), edge=0.0), fresnel)}
+    bare = replace(appearance, rims=(), edge=0.0)
+    arrays = {}
     lens = bokeh.real_lens and LensKey(bokeh.real_lens)
     tangent = _largest_tangent(plan)
     params = {
@@ -110,11 +111,12 @@ def describe_look(plan):
         "rims": np.zeros((MOST_RIMS, 4)),
     }
     if _has_lens_tiles(plan) or (bokeh.artist and not bokeh.draft):
-        _add_tiles(plan, appearance, tangent, arrays, params)
-        return ("TILES",), arrays, params
+        opened = _add_tiles(plan, bare, fresnel, tangent, arrays, params)
+        return ("TILES", *opened), arrays, params
     if bokeh.cylinders and not bokeh.draft:
-        _add_tiles(plan, appearance, _largest_tangents(plan), arrays, params)
-        return ("TILES", "CYLINDERS"), arrays, params
+        opened = _add_tiles(plan, bare, fresnel, _largest_tangents(plan), arrays, params)
+        return ("TILES", "CYLINDERS", *opened), arrays, params
+    arrays["opening_tx"] = _opening(bare, fresnel)
     variants = ()
     rows, strength = None, settings.profile_strength
     if lens is not None and strength > 0.0:
@@ -344,7 +346,8 @@ def _rims(rims, opening_and_profile, tangent):
     return splat_rims.light_left(rims, *opening_and_profile.parts, tangent)
 
 
-def _add_tiles(plan, appearance, tangent, arrays, params):
+def _add_tiles(plan, appearance, fresnel, tangent, arrays, params):
+    """Add the tiles of a lens, and an opening that is not even; return the variant for that."""
     bokeh, strength = plan.bokeh, 1.0
     if bokeh.artist:
         found = artist_tiles(bokeh.artist, tangent)
@@ -356,17 +359,18 @@ def _add_tiles(plan, appearance, tangent, arrays, params):
         strength = bokeh.settings.profile_strength
         found = tiles_work(LensKey(bokeh.real_lens), plan.focus_distance, tangent).whole()
     tiles, (first, last), soft = found
-    even = replace(appearance, rims=(), edge=0.0) == type(appearance)()
     arrays["sharp_tx"], arrays["soft_tx"] = tiles.sharp, tiles.soft
     arrays["places_tx"] = tiles.places
-    arrays["left_tx"] = _tiles_left(
-        ArraysKey(tiles, arrays["opening_tx"]), even or bool(bokeh.cylinders)
-    )
     far = tiles.largest_tangent
     inverse = (1.0 / far, 0.0) if np.ndim(far) == 0 else tuple(1.0 / each for each in far)
-    params["field"] = (*inverse, 1.0, float(not even))
+    params["field"] = (*inverse, 1.0, 0.0)
     scale = plan.coc_scale / plan.focus_distance
     params["rows"] = (first, 1.0 / (last - first), soft * scale, strength)
+    if appearance == type(appearance)():
+        return ()
+    opening = arrays["opening_tx"] = _opening(appearance, fresnel)
+    arrays["left_tx"] = _tiles_left(ArraysKey(tiles, opening), bool(bokeh.cylinders))
+    return ("OPENED",)
 
 
 # Memo: see `_opening`.

@@ -20,26 +20,26 @@ class StackHighlightSearch:
         With the picture, as `captured`.
     split : GPUUniformBuf
         `HighlightParams`.
-    sources : tuple of 2 GPUTexture
-        Get the list (see `passes.bokeh.highlights`), up to their size.
+    found : passes.bokeh.highlight_list.HighlightList
+        Gets the highlights.
     field : tuple of (str, GPUUniformBuf or GPUTexture) or None
         `passes.surface.chromatic.resources`, with chromatic aberration.
 
     Attributes
     ----------
-    count, sharp, bytes : int
+    sharp, bytes : int
         As of `HighlightSearch`.
     """
 
-    def __init__(self, plan, buffers, split, sources, field=None):
+    def __init__(self, plan, buffers, split, found, field=None):
         self._plan = plan
         self._found = buffers.captured.highlights(plan)
         self._split = split
-        self._sources = sources
+        self._highlights = found
         view = uniform_buffer(stack_view(plan))
         layers = max(plan.bokeh.layers, plan.layered.count)
         self._seen = highlights.SearchedRaster(view, split, 1, layers, field=field)
-        self.count = self.sharp = self.bytes = 0
+        self.sharp = self.bytes = 0
 
     def run(self, _fullscreen):
         """List the highlights of surfaces, and of the world."""
@@ -61,8 +61,6 @@ class StackHighlightSearch:
                 # All are hidden by what is right in front of them.
                 return
             highlights.order(self._seen, lists, listed, scene)
-            count, sharp = highlights.emit(self._seen, lists, tiles, self._sources, self.count)
+            self.sharp += self._highlights.append(self._seen, lists, tiles)
         finally:
             lists.release()
-        self.count += count
-        self.sharp += sharp

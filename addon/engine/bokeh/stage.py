@@ -12,7 +12,8 @@ import numpy as np
 from ...device import geometry, readback
 from ...device.targets import Targets, TargetSpec
 from ...device.uniforms import uniform_buffer
-from ...passes.bokeh import clusters, highlights, splat
+from ...passes.bokeh import clusters, splat
+from ...passes.bokeh.highlight_list import HighlightList
 from ...passes.surface import surface
 from ..visibility.stage import BokehVisibility
 from .clusters import similarity_of
@@ -21,8 +22,6 @@ from .look import look_in_steps, make_look
 from .marks import draw_marks, fates, with_sharp
 from .stack_listing import StackHighlightSearch
 
-# Size of the list of highlights at first.
-_FIRST_LIST = 1 << 16
 # Most sources of a draft, and how often the bounds of merging are widened to get there.
 _DRAFT_SOURCES = 1 << 11
 _DRAFT_ROUNDS = 4
@@ -187,27 +186,20 @@ class BokehStage:
 
     def _find(self, fullscreen, held):
         """Return the list of highlights, two textures, and their number."""
-        room = _FIRST_LIST
-        while True:
-            specs = [TargetSpec(name, "RGBA32F") for name in "ab"]
-            lists = Targets(highlights.COLUMNS, room // highlights.COLUMNS, specs)
-            search = self._search((lists["a"], lists["b"]))
-            search.run(fullscreen)
-            self.bytes = max(self.bytes, search.bytes)
-            if search.count <= room:
-                break
-            lists.release()
-            room = highlights.COLUMNS * -(-search.count // highlights.COLUMNS)
-        held.append(lists)
-        self.counts.found = search.count + search.sharp
+        found = HighlightList()
+        held.append(found)
+        search = self._search(found)
+        search.run(fullscreen)
+        self.bytes = max(self.bytes, search.bytes)
+        self.counts.found = found.count + search.sharp
         self.counts.culled_size = search.sharp
-        return (lists["a"], lists["b"]), search.count
+        return found.textures, found.count
 
-    def _search(self, sources):
+    def _search(self, found):
         split, field = self._highlights, self._field
         if self._plan.layered and self._plan.layered.stack:
-            return StackHighlightSearch(self._plan, self._buffers, split, sources, field)
-        return HighlightSearch(self._plan, self._drawing, self._buffers, split, sources, field)
+            return StackHighlightSearch(self._plan, self._buffers, split, found, field)
+        return HighlightSearch(self._plan, self._drawing, self._buffers, split, found, field)
 
     def _with_sharp(self):
         """Return a stage that also lists highlights that are too sharp to be splatted."""
@@ -274,7 +266,7 @@ class BokehStage:
         look = make_look(self._plan, self._buffers.look_textures, self._field, self._lens)
         self.report = (*look.report, *self._told_of_merging())
         with target.bind():
-            splat.splat(
+            densities = splat.splat(
                 geometry.square_batch(),
                 count,
                 (*sources, visibility.tiles, visibility.masks),
@@ -284,6 +276,7 @@ class BokehStage:
             )
         # Wait: the textures may be released only after the device has read them.
         readback.wait(target)
+        densities.release()
 
 
 def _bolder(similarity):

@@ -84,8 +84,11 @@ def _blurred(mask, width, reach, size):
     while width * len(mask) / 2.0 > 2 * _TENT:
         mask = 0.25 * (mask[::2, ::2] + mask[1::2, ::2] + mask[::2, 1::2] + mask[1::2, 1::2])
     places, weights = _tent(len(mask), width, reach, size)
-    rows = sum(mask[at] * w[:, None, None] for at, w in zip(places, weights, strict=True))
-    return sum(rows[:, at] * w[:, None] for at, w in zip(places, weights, strict=True))
+    # Whole rows are taken, along either axis: several times as fast as texels.
+    for _ in range(2):
+        rows = sum(mask[at] * w[:, None, None] for at, w in zip(places, weights, strict=True))
+        mask = np.ascontiguousarray(rows.swapaxes(0, 1))
+    return mask
 
 
 def _tent(count, width, reach, size):

@@ -150,13 +150,18 @@ class PupilBeams:
         # 32 bits are enough for what is near the origin.
         landing[..., 1] -= centers.mean()
         coarse = np.concatenate([landing.astype(np.float32), self._rest[field]], axis=-1)
+        mix = mix.astype(np.float32)
+        if len(mix) < count:
+            # Mixing and refining may change places: what is fewer is refined.
+            coarse = np.tensordot(mix, coarse, axes=1)
+            count, mix = len(mix), np.eye(len(mix), dtype=np.float32)
         rows = _refining(side)
         fine = np.tensordot(rows[RAYS // 2 :], coarse, axes=(1, 2))
         fine = np.tensordot(rows, fine, axes=(1, 2))
         # rows, columns, nodes, channels
         fine = np.ascontiguousarray(fine.transpose(2, 3, 0, 1))
         channels, shape = fine.shape[1], fine.shape[2:]
-        mixed = mix.astype(np.float32) @ fine.reshape(count, -1)
+        mixed = mix @ fine.reshape(count, -1)
         grids = []
         for part in mixed.reshape(-1, channels, *shape):
             x, y, stop_x, stop_y, weight, *rims = part

@@ -18,7 +18,7 @@ import numpy as np
 
 from .opening import LEAST_BLUR, extent
 from .pupil_beams import FIELDS
-from .tile_drawing import STOP_OFFSET, STOP_SCALE, blur_matrix, draw_tile
+from .tile_drawing import STOP_OFFSET, STOP_SCALE, blur_matrix, blurred, draw_tile
 
 DEPTHS = 25
 # Blur of the tiles in units of half their width, as the side of a box of the same variance; the
@@ -104,8 +104,8 @@ def tiles_in_steps(beams, shift, blur, soft, w_range):
             tile, (middle, half_x, half_y) = draw_tile(grid, SHARP, spans[0])
             places[i, j, :3] = np.array([middle - centers[j], half_x, half_y]) / sizes[j]
             store(sharp_tiles[i, j], tile, 0)
-            for layer, matrix in enumerate(matrices, 1):
-                store(soft_tiles[layer - 1, i, j], matrix @ tile @ matrix.T, layer)
+            for layer, soft_tile in enumerate(blurred(tile, matrices), 1):
+                store(soft_tiles[layer - 1, i, j], soft_tile, layer)
         yield
     return PupilTiles(
         sharp_tiles.reshape(-1, SHARP, SHARP, 4),
@@ -175,8 +175,8 @@ def _light_in_stop(tiles):
     sharp = tiles.sharp.reshape(-1, SHARP // _STEP, _STEP, SHARP // _STEP, _STEP, 4)
     every = [sharp.sum(axis=(2, 4)), *tiles.soft.reshape(len(BLURS) - 1, -1, SOFT, SOFT, 4)]
     result = np.zeros((len(BLURS), FIELDS * DEPTHS, _PLACES**2), np.float32)
-    for blurred, rows in zip(every, result, strict=True):
-        for tile, row in zip(blurred.reshape(FIELDS * DEPTHS, -1, 4), rows, strict=True):
+    for lit_tiles, rows in zip(every, result, strict=True):
+        for tile, row in zip(lit_tiles.reshape(FIELDS * DEPTHS, -1, 4), rows, strict=True):
             lit = tile[:, 0] > 1e-6 * tile[:, 0].max()
             light = tile[lit, 0]
             stop = tile[lit, 1:3] / light[:, None] * STOP_SCALE - STOP_OFFSET

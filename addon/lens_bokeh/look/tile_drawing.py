@@ -178,6 +178,40 @@ def blur_matrix(width, size, span, to_size, to_span):
     return blur.astype(np.float32)
 
 
+def blurred(tile, matrices):
+    """Blur a tile that is its own mirror image, as `draw_tile` returns it.
+
+    Half of it is blurred, as is half of what its places in the stop are off the mirror line; that
+    is a third of the work of ``matrix @ tile @ matrix.T``.
+
+    Parameters
+    ----------
+    tile : ndarray of float32, shape (3, size, size)
+    matrices : sequence of ndarray
+        Of `blur_matrix`.
+
+    Yields
+    ------
+    ndarray of float32, shape (3, to_size, to_size)
+        With each of the matrices.
+    """
+    middle = tile.shape[-1] // 2
+    half = tile[..., :middle].copy()
+    half[1] -= 0.5 * half[0]
+    for matrix in matrices:
+        across = len(matrix) // 2
+        left, right = matrix[:across, :middle], matrix[:across, : -middle - 1 : -1]
+        even, odd = (left + right).T, (left - right).T
+        part = np.stack([half[0] @ even, half[1] @ odd, half[2] @ even])
+        part = matrix @ part
+        whole = np.empty((3, len(matrix), 2 * across), np.float32)
+        whole[..., :across] = part
+        whole[..., across:] = part[..., ::-1]
+        whole[1, :, across:] *= -1.0
+        whole[1] += 0.5 * whole[0]
+        yield whole
+
+
 def _deposited(x, y, wide_x, wide_y, layers, size):
     """Spread energies over texels, each over a square as wide as its neighbours are apart."""
     wide = np.maximum(wide_x, wide_y)

@@ -19,6 +19,39 @@ def spline_matrix(nodes, at):
         ``matrix @ values`` are the interpolated values.
     """
     nodes, at = np.asarray(nodes, dtype=float), np.asarray(at, dtype=float)
+    second = np.linalg.solve(*_bending(nodes))
+    cell, below, above, lower, upper = _cubics(nodes, at)
+    rows = np.arange(len(at))
+    matrix = np.zeros((len(at), len(nodes)))
+    matrix[rows, cell] += below
+    matrix[rows, cell + 1] += above
+    matrix += lower[:, None] * second[cell]
+    matrix += upper[:, None] * second[cell + 1]
+    return matrix
+
+
+def spline_values(nodes, values, at):
+    """Interpolate values at nodes; as ``spline_matrix(nodes, at) @ values``, for many places.
+
+    Parameters
+    ----------
+    nodes, values : ndarray of shape (N,)
+    at : ndarray of shape (M,)
+
+    Returns
+    -------
+    ndarray of shape (M,)
+    """
+    left, right = _bending(nodes)
+    second = np.linalg.solve(left, right @ values)
+    cell, below, above, lower, upper = _cubics(nodes, at)
+    result = below * values[cell] + above * values[cell + 1]
+    result += lower * second[cell] + upper * second[cell + 1]
+    return result
+
+
+def _bending(nodes):
+    """Return two matrices: that of the second derivatives, and that of the values they follow."""
     count = len(nodes)
     h = np.diff(nodes)
     # Second derivatives: continuity of the first derivative inside, of the third next to the ends.
@@ -28,19 +61,18 @@ def spline_matrix(nodes, at):
         right[i, i - 1 : i + 2] = 6.0 / h[i - 1], -6.0 / h[i - 1] - 6.0 / h[i], 6.0 / h[i]
     left[0, :3] = h[1], -h[0] - h[1], h[0]
     left[-1, -3:] = h[-1], -h[-1] - h[-2], h[-2]
-    second = np.linalg.solve(left, right)
-    cell = np.clip(np.searchsorted(nodes, at, side="right") - 1, 0, count - 2)
+    return left, right
+
+
+def _cubics(nodes, at):
+    """Return each place's cell, and what its ends' values and second derivatives count."""
+    h = np.diff(nodes)
+    cell = np.clip(np.searchsorted(nodes, at, side="right") - 1, 0, len(nodes) - 2)
     width = h[cell]
     b = (at - nodes[cell]) / width
     a = 1.0 - b
-    rows = np.arange(len(at))
-    matrix = np.zeros((len(at), count))
-    matrix[rows, cell] += a
-    matrix[rows, cell + 1] += b
     square = width**2 / 6.0
-    matrix += ((a**3 - a) * square)[:, None] * second[cell]
-    matrix += ((b**3 - b) * square)[:, None] * second[cell + 1]
-    return matrix
+    return cell, a, b, (a**3 - a) * square, (b**3 - b) * square
 
 
 def cubic_taps(position, count):

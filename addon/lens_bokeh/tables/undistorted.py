@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .spline import spline_matrix
+from .spline import spline_values
 
 
 def undistorted(distorted, places):
@@ -22,7 +22,7 @@ def undistorted(distorted, places):
     fields, landing = distorted.T
     nodes, values = (np.concatenate([-each[:0:-1], each]) for each in (landing, fields))
     last = landing[-1]
-    inner = spline_matrix(nodes, np.minimum(places, last)) @ values
-    end = spline_matrix(nodes, np.array([last * (1.0 - 1e-4)])) @ values
-    slope = (fields[-1] - end[0]) / (1e-4 * last)
+    inner = spline_values(nodes, values, np.minimum(places, last))
+    (end,) = spline_values(nodes, values, np.array([last * (1.0 - 1e-4)]))
+    slope = (fields[-1] - end) / (1e-4 * last)
     return inner + slope * np.maximum(places - last, 0.0)

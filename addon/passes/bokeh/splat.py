@@ -2,12 +2,16 @@
 
 Shader variants add to the shape of the opening: PROFILE (radial bokeh profile of a traced lens),
 RIMS (analytic optical vignetting), TILES (patterns of a real lens over the field), with CYLINDERS
-of one that is not of revolution.
+of one that is not of revolution, and OPENED where an opening that is not even masks them.
+
+The light of each disc is found before its square is drawn, by a pass of its own: of small discs it
+takes a sum over the pixels.
 """
 
 from ...device import shader_source, state
 from ...device.shader_variants import variants
-from ...device.shaders import ShaderInfo, compile_shader
+from ...device.shaders import ShaderInfo, compile_shader, dispatch
+from ...device.targets import Targets, TargetSpec
 from ...device.uniform_block import UniformStruct
 from ...device.uniforms import bind_resource
 from ..surface import chromatic, real_lens
@@ -17,7 +21,9 @@ from .highlights import COLUMNS
 
 SPLAT_PARAMS = UniformStruct("shared/splat_params.glsl", "SplatParams")
 
-_TEXTURES = ("sources_a_tx", "sources_b_tx", "tiles_tx", "masks_tx")
+_SOURCES = ("sources_a_tx", "sources_b_tx", "tiles_tx")
+# Of a group that finds the light of discs.
+_THREADS = 64
 _RAYS = ("layers_tx", "opacity_tx", "states_tx")
 MOST_RIMS = 4
 # Textures and varyings of the variants.
@@ -29,8 +35,8 @@ _LOOK_TEXTURES = {
         ("FLOAT_2D_ARRAY", "sharp_tx"),
         ("FLOAT_2D_ARRAY", "soft_tx"),
         ("FLOAT_2D", "places_tx"),
-        ("FLOAT_2D_ARRAY", "left_tx"),
     ),
+    "OPENED": (("FLOAT_2D_ARRAY", "opening_tx"), ("FLOAT_2D_ARRAY", "left_tx")),
 }
 _LOOK_VARYINGS = {
     "CYLINDERS": (("FLAT FLOAT", "v_tile_up"),),
@@ -40,25 +46,48 @@ _LOOK_VARYINGS = {
         ("FLAT FLOAT", "v_row"),
         ("FLAT VEC2", "v_tile_at"),
         ("FLAT FLOAT", "v_upright"),
-        ("FLAT VEC3", "v_left_lower"),
-        ("FLAT VEC3", "v_left_upper"),
     ),
+    "OPENED": (("FLAT VEC3", "v_left_lower"), ("FLAT VEC3", "v_left_upper")),
 }
+
+
+_VARIANTS = (
+    *((), ("PROFILE",), ("RIMS",), ("PROFILE", "RIMS")),
+    *(("TILES",), ("TILES", "OPENED"), ("TILES", "CYLINDERS"), ("TILES", "CYLINDERS", "OPENED")),
+)
+
+
+def _look_samplers(variants):
+    samplers = () if "TILES" in variants else (("FLOAT_2D_ARRAY", "opening_tx"),)
+    return samplers + tuple(texture for name in variants for texture in _LOOK_TEXTURES[name])
+
+
+@variants(variants=_VARIANTS, in_wavelengths=(False, True), through_lens=(False, True))
+def _density_info(variants, in_wavelengths=False, through_lens=False):
+    info = ShaderInfo(
+        name="aplanat_splat_density",
+        compute=shader_source.load("passes/bokeh/splat_density_comp.glsl"),
+        typedefs=VIEW_PARAMS.source + SPLAT_PARAMS.source,
+        samplers=tuple(("FLOAT_2D", name) for name in _SOURCES) + _look_samplers(variants),
+        images=(("RGBA32F", "FLOAT_2D", "density_img", ("WRITE",)),),
+        uniforms=(("ViewParams", "view_buf"), ("SplatParams", "splat_buf")),
+        push_constants=(("INT", "count"),),
+        defines=(("SOURCE_COLUMNS", str(COLUMNS)), *((variant, "1") for variant in variants)),
+        local_size=(_THREADS, 1, 1),
+    )
+    info = chromatic.over_field(info) if in_wavelengths else info
+    samplers = real_lens.LIGHT_SAMPLERS + real_lens.AREA_SAMPLERS
+    return real_lens.declared(info, samplers) if through_lens else info
 
 
 @variants(
     casts=(False, True),
-    variants=(
-        *((), ("PROFILE",), ("RIMS",), ("PROFILE", "RIMS")),
-        *(("TILES",), ("TILES", "CYLINDERS")),
-    ),
+    variants=_VARIANTS,
     in_wavelengths=(False, True),
     through_lens=(False, True),
 )
 def _info(casts, variants, in_wavelengths=False, through_lens=False):
-    names = _TEXTURES + _RAYS * casts
-    samplers = tuple(("FLOAT_2D", name) for name in names) + (("FLOAT_2D_ARRAY", "opening_tx"),)
-    samplers += tuple(texture for variant in variants for texture in _LOOK_TEXTURES[variant])
+    names = (*_SOURCES, "masks_tx", "density_tx", *_RAYS * casts)
     uniforms = (("ViewParams", "view_buf"), ("SplatParams", "splat_buf"))
     uniforms += (("VisibilityParams", "visibility_buf"),) * casts
     structs = VIEW_PARAMS.source + SPLAT_PARAMS.source
@@ -80,7 +109,7 @@ def _info(casts, variants, in_wavelengths=False, through_lens=False):
             *(varying for variant in variants for varying in _LOOK_VARYINGS[variant]),
         ),
         outputs=(("VEC4", "out_color"),),
-        samplers=samplers,
+        samplers=tuple(("FLOAT_2D", name) for name in names) + _look_samplers(variants),
         uniforms=uniforms,
         defines=(
             ("SOURCE_COLUMNS", str(COLUMNS)),
@@ -89,8 +118,7 @@ def _info(casts, variants, in_wavelengths=False, through_lens=False):
         ),
     )
     info = chromatic.over_field(info) if in_wavelengths else info
-    samplers = real_lens.LIGHT_SAMPLERS + real_lens.AREA_SAMPLERS
-    return real_lens.declared(info, samplers) if through_lens else info
+    return real_lens.declared(info) if through_lens else info
 
 
 def splat(square, count, textures, look, view_buffer, rays=None):
@@ -114,30 +142,48 @@ def splat(square, count, textures, look, view_buffer, rays=None):
     rays : tuple or None
         For visibility that is tested by rays while splatting: peeled layers, opacity and states
         (GPUTexture), and `VisibilityParams` (GPUUniformBuf).
+
+    Returns
+    -------
+    Targets or None
+        To be released when the device has drawn the discs.
     """
     if count == 0:
-        return
-    state.additive()
-    shader = compile_shader(
-        _info(rays is not None, look.variants, bool(look.field), look.lens is not None)
-    )
+        return None
+    variant = look.variants, bool(look.field), look.lens is not None
+    sources, masks = textures[:3], textures[3]
+    tables = Targets(COLUMNS, -(-count // COLUMNS), [TargetSpec("density", "RGBA32F")])
+    weighing = compile_shader(_density_info(*variant))
+    drawing = compile_shader(_info(rays is not None, *variant))
+    for number in range(len(look.blocks)):
+        _bind(weighing, sources, look, view_buffer, number)
+        weighing.image("density_img", tables["density"])
+        weighing.uniform_int("count", count)
+        if look.lens is not None:
+            weighing.uniform_sampler("light_tx", look.lens.light.texture)
+        dispatch(weighing, -(-COLUMNS // _THREADS), -(-count // COLUMNS))
+        state.additive()
+        _bind(drawing, sources, look, view_buffer, number)
+        drawing.uniform_sampler("masks_tx", masks)
+        drawing.uniform_sampler("density_tx", tables["density"])
+        if rays is not None:
+            for name, texture in zip(_RAYS, rays[:3], strict=True):
+                drawing.uniform_sampler(name, texture)
+            drawing.uniform_block("visibility_buf", rays[3])
+        drawing.draw_instanced(square, count)
+    return tables
+
+
+def _bind(shader, sources, look, view_buffer, band):
+    """Bind a shader with what tells the place and the shape of discs in a band of wavelengths."""
     shader.bind()
     for name, resource in look.field:
         bind_resource(shader, name, resource)
     if look.lens is not None:
         look.lens.bind(shader)
-        shader.uniform_sampler("light_tx", look.lens.light.texture)
-    for name, texture in zip(_TEXTURES, textures, strict=True):
-        shader.uniform_sampler(name, texture)
-    if rays is not None:
-        for name, texture in zip(_RAYS, rays[:3], strict=True):
-            shader.uniform_sampler(name, texture)
-        shader.uniform_block("visibility_buf", rays[3])
-    for name, texture in look.textures:
+        if look.lens.tables > 1:
+            shader.uniform_int("lens_slot", band)
+    for name, texture in (*zip(_SOURCES, sources, strict=True), *look.textures):
         shader.uniform_sampler(name, texture)
     shader.uniform_block("view_buf", view_buffer)
-    for number, block in enumerate(look.blocks):
-        shader.uniform_block("splat_buf", block)
-        if look.lens is not None and look.lens.tables > 1:
-            shader.uniform_int("lens_slot", number)
-        shader.draw_instanced(square, count)
+    shader.uniform_block("splat_buf", look.blocks[band])

@@ -1,5 +1,5 @@
-// Light density of a highlight's disc, for the pass that splats it: its vertex and its fragment shader.
-// Reads the varyings and textures of splat_vert and splat_frag (PROFILE, RIMS, TILES, CHROMATIC).
+// Light density of a highlight's disc, for the pass that splats it and the one that weighs it before.
+// Reads the varyings and textures of splat_vert and splat_frag (PROFILE, RIMS, TILES, OPENED, CHROMATIC).
 // Source: methods 13.
 #ifndef DISC_LIB_GLSL
 #define DISC_LIB_GLSL
@@ -45,12 +45,12 @@ vec3 disc_density(vec2 place, out vec2 lens)
   lens = tile_axes(v_chief) * light.yz;
   lens /= max(length(lens), 1.0);
   vec3 density = vec3(light.x);
-  if (splat_buf.field.w > 0.5) {
-    vec2 layers = opening_layers(float(textureSize(opening_tx, 0).z), v_blur);
-    density *= mix(opening_layer(opening_tx, lens, layers.x) / v_left_lower,
-                   opening_layer(opening_tx, lens, layers.x + 1.0) / v_left_upper,
-                   layers.y);
-  }
+#ifdef OPENED
+  vec2 layers = opening_layers(float(textureSize(opening_tx, 0).z), v_blur);
+  density *= mix(opening_layer(opening_tx, lens, layers.x) / v_left_lower,
+                 opening_layer(opening_tx, lens, layers.x + 1.0) / v_left_upper,
+                 layers.y);
+#endif
   return density;
 #elif defined(PROFILE) || defined(RIMS)
   vec2 layers = opening_layers(float(textureSize(opening_tx, 0).z), v_blur);

@@ -1,148 +1,12 @@
 // A square for each highlight, as large as its disc in the picture.
 // Inputs: pos (corner, 0 or 1); sources_a_tx, sources_b_tx (see highlights_comp); tiles_tx (masks of
-// the sources, see visibility_lib); view_buf (of the frame), splat_buf. CHROMATIC: chromatic_buf,
-// field_tx (field table). REAL_LENS: real_lens_buf, moves_tx and lens_slot (tables of the lens' middle),
-// light_tx (light of the picture over that of an even one), area_tx (how much larger surfaces are seen).
+// the sources, see visibility_lib); density_tx (see splat_density_comp); view_buf (of the frame),
+// splat_buf. CHROMATIC: chromatic_buf, field_tx (field table). REAL_LENS: real_lens_buf, moves_tx and
+// lens_slot (tables of the lens' middle).
 // Outputs: place on the opening in units of its radius before the anamorphic ratio (v_place), energy
 // density (v_density), blur of the disc in the same units (v_blur); see bokeh_look_lib for the rest; tile, number and region of the source.
 // Source: methods 1, 8, 13.
-#include "lib/lens_lib.glsl"
-#include "lib/bokeh/visibility_lib.glsl"
-#include "lib/bokeh/disc_lib.glsl"
-#ifdef CHROMATIC
-#include "lib/chromatic_lib.glsl"
-#endif
-#ifdef REAL_LENS
-#include "lib/light_table_lib.glsl"
-#include "lib/real_lens_lib.glsl"
-#endif
-#ifdef CHROMATIC
-
-// Pixels on either side of a dot's centre over which its light is summed.
-#define TENT_PIXELS 6
-
-// Whether the colours of a highlight spread as far as the band's level is made for (see BandLevel).
-bool is_of_level(vec2 place)
-{
-  vec2 strengths = abs(field_strengths(field_tx, place, chromatic_buf) - vec2(1.0, 0.0));
-  float spread = dot(strengths * vec2(1.0, length(place)), splat_buf.spread.zw);
-  return spread >= splat_buf.spread.x && spread < splat_buf.spread.y;
-}
-
-// Sums over the pixels along each axis of tents of these half widths, px: nearly the half widths, but
-// the difference is the same for all pixels of a bright surface in focus and would show.
-vec2 tent_sum(vec2 center, vec2 tent)
-{
-  if (max(tent.x, tent.y) > float(TENT_PIXELS - 1)) {
-    return tent;
-  }
-  vec2 phase = fract(center - 0.5);
-  vec2 sum = vec2(0.0);
-  for (int i = -TENT_PIXELS; i <= TENT_PIXELS; i++) {
-    sum += max(1.0 - abs(float(i) - phase) / tent, vec2(0.0));
-  }
-  return sum;
-}
-
-// Step of finite differences, as a share of the field's width.
-#define FIELD_STEP (1.0 / 256.0)
-
-// 1 / focus distance (1/m) and lateral scale of the band's mean wavelength at a place of the field.
-vec2 band_at(vec2 place)
-{
-  vec2 strengths = field_strengths(field_tx, place, chromatic_buf);
-  return vec2(chromatic_focus(splat_buf.dispersion.x, strengths.x, chromatic_buf),
-              lateral_scale(splat_buf.dispersion.y, strengths.y, chromatic_buf));
-}
-
-// Magnification of a lamp's area at a place of the field, seen from the lens' centre (x), and its
-// change for other places on the lens (yz, times the place in units of half the opening).
-// With focus f and scale m, the place p appears at m p + v (f - 1 / depth) from v, so that areas
-// grow by det(m + p grad(m) + v grad(f)), which is linear in v.
-vec3 appearing_area(vec2 place, vec2 band, float depth)
-{
-  float step_aside = FIELD_STEP / chromatic_buf.field.x;
-  vec2 right = band_at(place + vec2(step_aside, 0.0)) - band_at(place - vec2(step_aside, 0.0));
-  vec2 above = band_at(place + vec2(0.0, step_aside)) - band_at(place - vec2(0.0, step_aside));
-  vec2 focus = vec2(right.x, above.x) / (2.0 * step_aside);
-  vec2 scale = vec2(right.y, above.y) / (2.0 * step_aside);
-  float cross_product = scale.x * focus.y - scale.y * focus.x;
-  vec2 slope = band.y * focus + cross_product * vec2(-place.y, place.x);
-  float aperture = view_buf.lens.z / (0.5 * view_buf.film.y * view_buf.projection[1][1]);
-  slope *= aperture * ((view_buf.lens.y > 0.5) ? depth : 1.0);
-  return vec3(band.y * (band.y + dot(place, scale)), slope / vec2(splat_buf.opening.x, 1.0));
-}
-
-// How far the rims of the band's wavelengths lie apart, px.
-float band_width(vec2 xy, float depth, vec2 place)
-{
-  vec2 strengths = field_strengths(field_tx, place, chromatic_buf);
-  vec4 band = splat_buf.dispersion;
-  float lower = chromatic_focus(band.x - 0.5 * band.z, strengths.x, chromatic_buf);
-  float upper = chromatic_focus(band.x + 0.5 * band.z, strengths.x, chromatic_buf);
-  float axial = coc_radius_at(depth, upper, view_buf.lens) - coc_radius_at(depth, lower, view_buf.lens);
-  // Lateral shift is radial; averaged around the rim, half of its square is across the rim.
-  vec2 lateral = xy * (band.w * strengths.y) * 0.5 * view_buf.film.xy *
-                 vec2(view_buf.projection[0][0], view_buf.projection[1][1]);
-  lateral /= (view_buf.lens.y > 0.5) ? 1.0 : depth;
-  return sqrt(axial * axial + 0.5 * dot(lateral, lateral));
-}
-#endif
-
-// Discs up to this radius, px, are brought to their energy on the grid of pixels.
-#define GRID_RADIUS 5.0
-// The same for a source that stands for a region of the lens, px for each region along the opening's
-// width: sources of one view all have the same place among the pixels, and their errors add up.
-#define GRID_RADIUS_REGION 3.5
-// Places along the width of a disc from which the share of a region is found.
-#define REGION_PLACES 16
-// Least part of a disc's energy that a grid may show: a disc that is thinner than a pixel may lie
-// between its pixels.
-#define GRID_LEAST 0.25
-
-// Radius of the disc that has the variance of one with this radius and blur, where a disc can have a
-// blur of `most` times its radius at most: along an axis the variance of a disc is radius^2 / 4, that
-// of a box of side `blur` blur^2 / 12.
-float widened(float radius, float blur, float most)
-{
-  if (blur <= most * radius) {
-    return radius;
-  }
-  return sqrt((3.0 * radius * radius + blur * blur) / (3.0 + most * most));
-}
-
-// Sum of the light of the source's region over pixel centres, whose places on the opening are
-// `origin + axes * offset`, with the offset from the disc's centre, px; `reach` in px.
-vec3 grid_sum(vec2 center, vec2 origin, mat2 axes, float reach)
-{
-  vec3 sum = vec3(0.0);
-  vec2 lens;
-  vec2 low = ceil(center - reach - 0.5) + 0.5;
-  int count = int(2.0 * reach) + 1;
-  for (int i = 0; i < count * count; i++) {
-    vec2 offset = low + vec2(i % count, i / count) - center;
-    vec3 density = disc_density(origin + axes * offset, lens);
-    sum += density * region_weight(lens);
-  }
-  return sum;
-}
-
-// Share of the disc's light that belongs to the source's region; as grid_sum.
-vec3 region_share(vec2 origin, mat2 axes, float reach)
-{
-  if (v_region < 0.5) {
-    return vec3(1.0);
-  }
-  vec3 all = vec3(0.0), own = vec3(0.0);
-  vec2 lens;
-  for (int i = 0; i < REGION_PLACES * REGION_PLACES; i++) {
-    vec2 place = (vec2(i % REGION_PLACES, i / REGION_PLACES) + 0.5) / float(REGION_PLACES);
-    vec3 density = disc_density(origin + axes * ((place * 2.0 - 1.0) * reach), lens);
-    all += density;
-    own += density * region_weight(lens);
-  }
-  return own / max(all, vec3(1e-30));
-}
+#include "lib/bokeh/splat_disc_lib.glsl"
 
 void main()
 {
@@ -151,140 +15,24 @@ void main()
   vec4 b = texelFetch(sources_b_tx, texel, 0);
   v_tile = texelFetch(tiles_tx, texel, 0);
   v_source = gl_InstanceID;
-  v_region = b.w;
-  // Where the lens' middle sees the highlight beside a pinhole, m.
-  vec2 aside = vec2(0.0);
-#ifdef REAL_LENS
-  aside = real_lens_shift(moves_tx, vec3(a.xy, -a.z), lens_slot, real_lens_buf);
-#endif
-#ifdef CHROMATIC
-  vec2 place = field_place(vec3(a.xy, -a.z), chromatic_buf);
-  if (!is_of_level(place)) {
-    gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
-    return;
-  }
-  vec2 band = band_at(place);
-  v_area = appearing_area(place, band, a.z);
-  float coc = coc_radius_at(a.z, band.x, view_buf.lens);
-  vec4 clip = view_buf.projection * vec4(a.xy * band.y + aside, -a.z, 1.0);
-  a.w = length(vec2(a.w, band_width(a.xy, a.z, place)));
-#else
-  float coc = coc_radius_at(a.z, splat_buf.wavelength.w, view_buf.lens);
-  vec4 clip = view_buf.projection * vec4(a.xy + aside, -a.z, 1.0);
-#endif
-  vec2 center = (clip.xy / clip.w * 0.5 + 0.5) * view_buf.film.xy;
-  float blur = sqrt(a.w * a.w + splat_buf.opening.y * splat_buf.opening.y);
-  float ratio = splat_buf.opening.x;
-  float radius = max(abs(coc), 1e-6);
-  v_chief = (view_buf.lens.y > 0.5) ? vec2(0.0) : a.xy / a.z;
-#ifdef PROFILE
-  v_row = look_row(coc, splat_buf.rows);
-  float extent = profile_texel(profile_tx, 0.5, v_row, 0.0).a;
-  radius = mix(radius, extent * (radius + splat_buf.rows.z), splat_buf.rows.w);
-#endif
+  v_density = texelFetch(density_tx, texel, 0).rgb;
+  SplatDisc disc = splat_disc(a, b);
+  vec2 corner = pos * 2.0 - 1.0;
 #ifdef TILES
-  v_row = look_row(coc, splat_buf.rows);
-#ifdef CYLINDERS
-  vec2 node = clamp(abs(v_chief) * splat_buf.field.xy, 0.0, 1.0) * float(TILE_ACROSS - 1);
-  v_tile_up = node.y;
-  v_tile_at = vec2(node.x, v_row * float(TILE_DEPTHS - 1));
-  // The middle of the pattern, and half its width.
-  vec4 pattern = tile_place_of(places_tx, v_tile_at, v_tile_up);
+  v_place = corner * disc.reach;
+  vec2 offset = tile_axes(v_chief) * (v_place * disc.pattern.zw + disc.pattern.xy) /
+                vec2(splat_buf.opening.x, 1.0);
 #else
-  v_tile_at = vec2(clamp(length(v_chief) * splat_buf.field.x, 0.0, 1.0) * float(TILE_FIELDS - 1),
-                   v_row * float(TILE_DEPTHS - 1));
-  vec4 pattern = vec4(0.0, tile_place(places_tx, v_tile_at));
+  vec2 offset = corner * disc.reach;
+  v_place = disc.axes * offset;
 #endif
-  pattern *= radius + splat_buf.rows.z;
-  pattern = mix(vec4(0.0, 0.0, radius, radius), pattern, splat_buf.rows.w);
-  radius = sqrt(pattern.z * pattern.w);
-  float wide = widened(radius, blur, TILE_BLUR_SOFT.w);
-  pattern.zw *= wide / radius;
-  v_blur = min(blur / wide, TILE_BLUR_SOFT.w);
-  v_upright = (coc < 0.0) ? -1.0 : 1.0;
-  v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (pattern.z * pattern.w));
-#ifdef CYLINDERS
-  // What an opening leaves of even light.
-  v_left_lower = v_left_upper = vec3(1.0 / 3.14159265);
-#else
-  if (splat_buf.field.w > 0.5) {
-    vec2 layers = opening_layers(float(textureSize(opening_tx, 0).z), v_blur);
-    // Three tables a layer of the opening: for the blur of the previous layer, its own and the next.
-    float table = 3.0 * layers.x + 1.0;
-    v_left_lower = mix(tile_left(left_tx, table, v_chief, v_tile_at),
-                       tile_left(left_tx, table + 1.0, v_chief, v_tile_at),
-                       layers.y);
-    v_left_upper = mix(tile_left(left_tx, table + 2.0, v_chief, v_tile_at),
-                       tile_left(left_tx, table + 3.0, v_chief, v_tile_at),
-                       layers.y);
+  if (disc.is_dot) {
+    v_place = corner;
+    offset = corner * disc.tent;
   }
-#endif
-  // Reach of the tiles at their widest blur, or of the pattern with its own.
-  vec2 reach = 1.0 + vec2(min(2.0 * v_blur + 0.07, 0.5)) + 0.5 / pattern.zw;
-  v_place = (pos * 2.0 - 1.0) * reach;
-  mat2 frame = tile_axes(v_chief);
-  vec2 offset = frame * (v_place * pattern.zw + pattern.xy) / vec2(ratio, 1.0);
-  vec2 origin = -pattern.xy / pattern.zw;
-  // The frame turns or mirrors: its inverse is its transpose.
-  mat2 axes = mat2(vec2(frame[0].x, frame[1].x) * ratio / pattern.zw,
-                   vec2(frame[0].y, frame[1].y) / pattern.zw);
-  float farthest = length(pattern.xy) + max(pattern.z, pattern.w) * max(reach.x, reach.y);
-#else
-  float most = OPENING_LEAST_BLUR * exp2(float(textureSize(opening_tx, 0).z) - 1.0);
-  float wide = widened(radius, blur, most);
-  v_blur = min(blur / wide, most);
-  // Reach: the disc, the wider layer of its blur, and half a pixel.
-  vec2 reach = wide * vec2(splat_buf.opening.z / ratio, splat_buf.opening.z) + 1.42 * blur + 0.5;
-  vec2 offset = (pos * 2.0 - 1.0) * reach;
-  vec2 origin = vec2(0.0);
-  mat2 axes = mat2(ratio, 0.0, 0.0, 1.0) / ((coc < 0.0) ? -wide : wide);
-  v_place = axes * offset;
-  v_density = b.rgb * splat_buf.wavelength.rgb * (ratio / (wide * wide));
-  float farthest = max(reach.x, reach.y);
-#endif
-#ifdef RIMS
-  float layers = float(textureSize(opening_tx, 0).z);
-  float lower = opening_layers(layers, v_blur).x;
-  float field = length(v_chief) * splat_buf.field.x;
-#ifndef PROFILE
-  float row = 0.0;
-#else
-  float row = v_row;
-#endif
-  v_left_lower = rims_left(left_tx, lower, splat_buf.field.z, row, field, v_chief);
-  v_left_upper = rims_left(
-      left_tx, min(lower + 1.0, layers - 1.0), splat_buf.field.z, row, field, v_chief);
-#endif
-  bool is_dot = false;
-#ifdef CHROMATIC
-  is_dot = radius < blur;
-  v_dot = is_dot ? 1.0 : 0.0;
-  if (v_dot > 0.5) {
-    // The layers have no blur wider than the disc: a tent with the variance of both instead.
-    vec2 radii = vec2(radius / ratio, radius);
-    vec2 tent = sqrt(0.5 * blur * blur + 1.5 * radii * radii);
-    v_place = pos * 2.0 - 1.0;
-    offset = v_place * tent;
-    vec2 sum = tent_sum(center, tent);
-    v_density = b.rgb * splat_buf.wavelength.rgb / max(sum.x * sum.y, 1e-6);
-    // No place of a dot is that of a region of the lens.
-    v_density *= region_share(vec2(0.0), mat2(1.0), 1.0);
-  }
-#endif
-  float from_grid = (v_region < 0.5) ? GRID_RADIUS : GRID_RADIUS_REGION * splat_buf.opening.w;
-  if (wide < max(from_grid, GRID_RADIUS) && !is_dot && v_tile.w != SOURCE_DROP) {
-    // What the sum is where pixels are small.
-    vec3 whole = abs(1.0 / determinant(axes)) * region_share(origin, axes, farthest);
-    v_density *= whole / max(grid_sum(center, origin, axes, farthest), GRID_LEAST * whole + 1e-30);
-  }
-#ifdef REAL_LENS
-  vec4 table = vec4(real_lens_buf.light.xy, 1.0, 0.0);
-  v_density *= light_at(light_tx, center / view_buf.film.xy, table).x *
-               real_lens_area(area_tx, vec3(a.xy, -a.z), real_lens_buf);
-#endif
-  if (v_tile.w == SOURCE_DROP) {
+  if (!disc.drawn) {
     // No disc: a triangle without area.
     offset = vec2(0.0);
   }
-  gl_Position = vec4((center + offset) / view_buf.film.xy * 2.0 - 1.0, 0.0, 1.0);
+  gl_Position = vec4((disc.center + offset) / view_buf.film.xy * 2.0 - 1.0, 0.0, 1.0);
 }

@@ -15,6 +15,7 @@ from addon.engine.bokeh.look import BokehLook
 from addon.lens_bokeh.look.opening import opening_layers
 from addon.lens_bokeh.openings.blades import BladedIris
 from addon.passes.bokeh import highlights, splat
+from addon.passes.bokeh.highlight_list import HighlightList
 from addon.passes.surface import surface
 from benchmarks.reference.highlights import Raster
 from benchmarks.reference.highlights import highlights as twin
@@ -67,8 +68,8 @@ def fragments_of(seed, parallel, width=21, height=13):
     return fragments, scene, raster
 
 
-def list_on_device(fragments, scene, raster, capacity=4096):
-    """Return the list of highlights and the number of sharp ones."""
+def list_on_device(fragments, scene, raster, capacity=4096, room=8192, times=1):
+    """Return the list of highlights, listed several times, and the number of sharp ones."""
     height, width = (side // raster.subpixels for side in scene.shape)
     view = uniform_buffer(
         surface.VIEW_PARAMS.pack(
@@ -114,13 +115,15 @@ def list_on_device(fragments, scene, raster, capacity=4096):
     number, tiles = lists.read()
     assert number == sum((color.max(axis=2) > 0.0).sum() for color, _, _ in fragments)
     seen = highlights.SearchedRaster(view, split, raster.subpixels, raster.layers)
-    with Targets(1024, 8, [TargetSpec(name, "RGBA32F") for name in "ab"]) as sources:
-        scene = texture_2d(scene[..., None], "R32F")
-        highlights.order(seen, lists, number, scene)
-        found, sharp = highlights.emit(seen, lists, tiles, (sources["a"], sources["b"]), 0)
-        columns = [readback.read_color(sources.framebuffer(name), 1024, 8) for name in "ab"]
+    found = HighlightList(room)
+    scene = texture_2d(scene[..., None], "R32F")
+    highlights.order(seen, lists, number, scene)
+    for _ in range(times):
+        sharp = found.append(seen, lists, tiles)
+    columns = [np.array(texture.read()).reshape(-1, 4) for texture in found.textures]
     lists.release()
-    return np.concatenate([c.reshape(-1, 4)[:found] for c in columns], axis=1), sharp
+    found.release()
+    return np.concatenate([c[: found.count] for c in columns], axis=1), sharp
 
 
 @pytest.mark.parametrize("parallel", [False, True])
@@ -155,6 +158,15 @@ def test_the_list_is_the_same_every_time():
     drawn = fragments_of(6, False)
     first, second = (list_on_device(*drawn)[0] for _ in range(2))
     assert first.tobytes() == second.tobytes()
+
+
+def test_a_full_list_grows_and_keeps_what_it_has():
+    # The whole search ran once more where a frame had more highlights than there was room for.
+    drawn = fragments_of(6, False)
+    once, _ = list_on_device(*drawn)
+    thrice, _ = list_on_device(*drawn, room=1024, times=3)
+    assert 1024 < len(thrice) == 3 * len(once)
+    assert (thrice == np.tile(once, (3, 1))).all()
 
 
 @functools.cache
@@ -201,8 +213,10 @@ def splatted(
     with Targets(size, size, [TargetSpec("bokeh", "RGBA32F")]) as targets:
         targets.clear("bokeh", (0.0, 0.0, 0.0, 0.0))
         with targets.framebuffer("bokeh").bind():
-            splat.splat(geometry.square_batch(), 1, textures, look, view)
-        return readback.read_color(targets.framebuffer("bokeh"), size, size)
+            densities = splat.splat(geometry.square_batch(), 1, textures, look, view)
+        picture = readback.read_color(targets.framebuffer("bokeh"), size, size)
+        densities.release()
+        return picture
 
 
 @pytest.mark.parametrize("radius", [1.0, 1.5, -2.2, 3.3, -4.1, 7.5, 20.0, -55.0, 110.0, 200.0])

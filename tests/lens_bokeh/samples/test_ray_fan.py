@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.lens_bokeh.samples import landing
+from addon.lens_bokeh.samples import landing, stop_rays
 from addon.lens_bokeh.samples.disc_terms import disc_terms
 from addon.lens_bokeh.samples.field_grid import field_grid
 from addon.lens_bokeh.samples.landing import spread_places
@@ -64,3 +64,20 @@ def test_what_lands_beside_the_axis_lands_all_round_it(name):
     light, same = places @ found[0], places @ whole[0]
     # Straight lines between nodes on both ways.
     assert np.abs(light - same).max() < 2e-3
+
+
+def test_light_of_rays_is_found_in_one_trace(monkeypatch):
+    # A trace of few rays takes as long as one of many: calls of numpy, hundreds of them.
+    numbers = []
+    aim = stop_rays.StopAim(
+        prescription("double-gauss-50mm-f2").configuration(None), 30.0, 12, LINE
+    )
+    traced = aim._traced
+    monkeypatch.setattr(
+        aim, "_traced", lambda *given, **options: numbers.append(1) or traced(*given, **options)
+    )
+    places = np.random.default_rng(2).uniform(-5.0, 5.0, (7, 2))
+    light = aim.throughput(0.1, np.full(7, 1e-3), places)
+    assert len(numbers) == 1
+    alone = [aim.throughput(0.1, np.array([1e-3]), place[None])[0] for place in places]
+    assert light == pytest.approx(alone, rel=1e-9)
