@@ -20,6 +20,10 @@ _BOX_ANGLES = 25
 _BOX_TERMS = 5
 _CURVE_STEPS = 129
 FIELDS = 25
+# Steps to the neighbours of a place: rows, columns.
+_AROUND = np.array([(v, x) for v in (-1, 0, 1) for x in (-1, 0, 1) if (v, x) != (0, 0)]).T[
+    ..., None
+]
 
 
 def build_pupil_tables(
@@ -213,29 +217,29 @@ def _continued(values, known):
         values[..., RIMS] = -1.0
         return values
     missing = ~known
-    values = np.where(known[..., None], values, 0.0)
-    reliable = known
-    for ring in range(max(values.shape)):
-        if reliable.all():
+    # A margin of two, as far as a ring looks.
+    values = np.pad(np.where(known[..., None], values, 0.0), ((2, 2), (2, 2), (0, 0)))
+    reliable = np.pad(known, 2)
+    for ring in range(max(known.shape)):
+        open_places = 2 + np.argwhere(~reliable[2:-2, 2:-2]).T
+        if not open_places.size:
             break
-        total = np.zeros_like(values)
-        count = np.zeros(reliable.shape)
-        for dv in (-1, 0, 1):
-            for dx in (-1, 0, 1):
-                if dv == dx == 0:
-                    continue
-                near, near_known = _moved(values, reliable, dv, dx)
-                far, far_known = _moved(values, reliable, 2 * dv, 2 * dx)
-                # Three rings follow the slope; farther out that would run away.
-                both = near_known & (far_known if ring < 3 else near_known)
-                guess = 2.0 * near - far if ring < 3 else near
-                total += np.where(both[..., None], guess, 0.0)
-                count += both
-        if not count.any():
+        # Row and column, neighbour, place.
+        near = open_places[:, None] + _AROUND
+        both, guess = reliable[*near], values[*near]
+        # Three rings follow the slope; farther out that would run away.
+        if ring < 3:
+            both = both & reliable[*(near + _AROUND)]
+            guess = 2.0 * guess - values[*(near + _AROUND)]
+        count = both.sum(axis=0)
+        new = count > 0
+        if ring >= 3 and not new.any():
             break
-        new = ~reliable & (count > 0)
-        values[new] = total[new] / count[new][:, None]
-        reliable = reliable | new
+        total = np.where(both[..., None], guess, 0.0).sum(axis=0)
+        filled = tuple(open_places[:, new])
+        values[filled] = total[new] / count[new][:, None]
+        reliable[filled] = True
+    values = values[2:-2, 2:-2].copy()
     # Where total reflection ends the beam inside all rims, the rim is halfway to the lost ray.
     lost = missing & (values[..., RIMS].min(axis=-1) > 0.0)
     values[lost, 9] = -np.abs(values[lost, 9])
@@ -243,13 +247,3 @@ def _continued(values, known):
     values[..., 9] = np.where(missing, np.minimum(values[..., 9], -1e-3), values[..., 9])
     values[missing, 10] = np.clip(values[missing, 10], 0.0, 1.0)
     return values
-
-
-def _moved(values, known, dv, dx):
-    rows = np.clip(np.arange(known.shape[0]) + dv, 0, known.shape[0] - 1)
-    columns = np.clip(np.arange(known.shape[1]) + dx, 0, known.shape[1] - 1)
-    inside = (rows == np.arange(known.shape[0]) + dv)[:, None] & (
-        columns == np.arange(known.shape[1]) + dx
-    )
-    at = np.ix_(rows, columns)
-    return values[at], known[at] & inside
