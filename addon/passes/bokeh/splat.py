@@ -71,7 +71,7 @@ def _density_info(variants, in_wavelengths=False, through_lens=False):
         samplers=tuple(("FLOAT_2D", name) for name in _SOURCES) + _look_samplers(variants),
         images=(("RGBA32F", "FLOAT_2D", "density_img", ("WRITE",)),),
         uniforms=(("ViewParams", "view_buf"), ("SplatParams", "splat_buf")),
-        push_constants=(("INT", "count"),),
+        push_constants=(("INT", "discs"),),
         defines=(("SOURCE_COLUMNS", str(COLUMNS)), *((variant, "1") for variant in variants)),
         local_size=(_THREADS, 1, 1),
     )
@@ -158,7 +158,7 @@ def splat(square, count, textures, look, view_buffer, rays=None):
     for number in range(len(look.blocks)):
         _bind(weighing, sources, look, view_buffer, number)
         weighing.image("density_img", tables["density"])
-        weighing.uniform_int("count", count)
+        weighing.uniform_int("discs", count)
         if look.lens is not None:
             weighing.uniform_sampler("light_tx", look.lens.light.texture)
         dispatch(weighing, -(-COLUMNS // _THREADS), -(-count // COLUMNS))

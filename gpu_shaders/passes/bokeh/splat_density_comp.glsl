@@ -1,6 +1,6 @@
 // Energy density of each highlight's disc, before its splat: a thread for each, where the corners of
 // its square would each find the same.
-// Inputs: as of splat_vert but pos and density_tx; count; besides, REAL_LENS: light_tx (light of the
+// Inputs: as of splat_vert but pos and density_tx; discs (how many); besides, REAL_LENS: light_tx (light of the
 // picture over that of an even one), area_tx (how much larger surfaces are seen).
 // Outputs: density_img: for each source what the shape of its disc is multiplied by.
 // Source: methods 13.
@@ -94,7 +94,7 @@ void main()
 {
   int index = int(gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * int(gl_WorkGroupSize.x) +
               int(gl_LocalInvocationID.x);
-  if (index >= count) {
+  if (index >= discs) {
     return;
   }
   ivec2 texel = ivec2(index % SOURCE_COLUMNS, index / SOURCE_COLUMNS);
