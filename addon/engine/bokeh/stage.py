@@ -166,7 +166,7 @@ class BokehStage:
             with target.bind():
                 target.clear(color=(0.0, 0.0, 0.0, 0.0))
             if visibility:
-                self._splat(sources, count, visibility, target, frame_view)
+                self._splat(sources, count, visibility, target, frame_view, held)
             self.fates = fates(self.counts, visibility and visibility.counts)
             if "marks" in targets:
                 marks = targets.framebuffer("marks")
@@ -259,7 +259,7 @@ class BokehStage:
             found = replace(found, masks=soft["masks"])
         return found
 
-    def _splat(self, sources, count, visibility, target, frame_view):
+    def _splat(self, sources, count, visibility, target, frame_view, held):
         rays = None
         if visibility.counts.method == "SPLAT":
             rays = (visibility.layers, visibility.opacity, visibility.states, visibility.parameters)
@@ -274,9 +274,9 @@ class BokehStage:
                 frame_view,
                 rays,
             )
+        held.append(densities)
         # Wait: the textures may be released only after the device has read them.
         readback.wait(target)
-        densities.release()
 
 
 def _bolder(similarity):
