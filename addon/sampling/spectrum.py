@@ -139,8 +139,8 @@ def primaries_of(working_space):
 # Memo of nothing but a file of the extension.
 @functools.cache
 def _observer():
-    text = Path(__file__).with_name("standard_observer.json").read_text(encoding="utf-8")
-    table = json.loads(text)
+    path = Path(__file__).with_name("tables") / "standard_observer.json"
+    table = json.loads(path.read_text(encoding="utf-8"))
     values = np.array(table["xyz"])
     return table["first_nm"] + table["step_nm"] * np.arange(len(values)), values
 

@@ -38,7 +38,7 @@ MEMOS = {
     "lens_io.recorded_lens": ("parse",),
     "optics.media": ("_index",),
     "passes.surface.environment": ("ggx_table",),
-    "sampling.spectrum": ("_colour", "_matrix", "_observer"),
+    "sampling.spectrum": ("_matrix", "_observer"),
     "scene.camera.breathing": ("_of_lens",),
     "scene.camera.bokeh": ("_ringing_spectrum",),
     "scene.camera.chromatic": ("_aberration", "_equalizer", "_field_map", "_problems"),

@@ -1,7 +1,5 @@
 """The list of a frame's highlights, which grows as they are found (methods 9)."""
 
-from ...device import shader_source
-from ...device.shader_variants import variants
 from ...device.shaders import ShaderInfo, compile_shader, dispatch
 from ...device.targets import Targets, TargetSpec
 from . import highlights
@@ -12,15 +10,20 @@ _ROOM = 1 << 16
 _THREADS = 8
 
 
-@variants()
-def _info():
-    return ShaderInfo(
-        name="aplanat_highlight_list",
-        compute=shader_source.load("passes/bokeh/highlight_list_comp.glsl"),
-        samplers=(("FLOAT_2D", "from_tx"),),
-        images=(("RGBA32F", "FLOAT_2D", "to_img", ("WRITE",)),),
-        local_size=(_THREADS, _THREADS, 1),
-    )
+_COPY = ShaderInfo(
+    name="aplanat_highlight_list",
+    compute="""void main()
+{
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (texel.y < textureSize(from_tx, 0).y) {
+    imageStore(to_img, texel, texelFetch(from_tx, texel, 0));
+  }
+}
+""",
+    samplers=(("FLOAT_2D", "from_tx"),),
+    images=(("RGBA32F", "FLOAT_2D", "to_img", ("WRITE",)),),
+    local_size=(_THREADS, _THREADS, 1),
+)
 
 
 class HighlightList:
@@ -77,7 +80,7 @@ class HighlightList:
         """Make room for at least so many; return what held the list before."""
         before = self._targets
         self._targets = _made(max(least, 2 * COLUMNS * before.height))
-        shader = compile_shader(_info())
+        shader = compile_shader(_COPY)
         for name in ("a", "b"):
             shader.bind()
             shader.uniform_sampler("from_tx", before[name])
