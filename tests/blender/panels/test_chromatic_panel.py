@@ -43,6 +43,8 @@ def blue(picture):
 
 
 def test_previews_follow_the_settings(panel, tmp_path):
+    # The axial map is what is taken away, and the pictures show what is left: t.
+    panel.run("chromatic().axial_then = 'ONE_MINUS'")
     settle(panel)
     rising = picture_of_editor(panel, tmp_path / "rising.png")
     assert orange(rising) > 3000
