@@ -15,6 +15,7 @@ from addon.device import geometry, shader_variants
 from addon.device.shaders import ShaderInfo, compile_shader, dispatch
 from addon.device.targets import Targets, TargetSpec
 from addon.device.uniforms import uniform_buffer
+from addon.passes.bokeh import peel
 from addon.passes.nodes import surface_code
 from addon.passes.surface import data, environment_bake, surface, surface_target
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
@@ -46,14 +47,17 @@ def surface_targets():
             made = surface_target.through_lens(made) if bends else made
             yield f"color {splits=} {disperses=} {bends=}", made
     for target in (surface_target.COLOR, surface_target.COLOR_AND_MATTES):
-        shadowed = surface_target.with_shadows(target)
+        shadowed = surface_target.lit(target, True)
         yield "shadows", shadowed
+        yield "shadows split", surface_target.without_highlights(shadowed)
         yield "layer shadows", surface_target.of_layers(shadowed)
         yield "layer", surface_target.of_layers(target)
         split = surface_target.without_highlights(target)
         yield "layer splits", surface_target.of_layers(split)
         bent = surface_target.of_layers(surface_target.blurred_by_lens(target))
         yield "layer through a real lens", bent
+    for target in (peel.HIGHLIGHTS, peel.VEILS):
+        yield "shadows searched", surface_target.lit(target, True)
     for number in range(3):
         for names in combinations(("Vector", "Detail"), number):
             for bends in (False, True):

@@ -13,7 +13,7 @@ from ...device.targets import Targets, TargetSpec
 from ...device.uniforms import uniform_buffer
 from ...passes import background
 from ...passes.bokeh import highlights, peel
-from ...passes.surface import surface
+from ...passes.surface import surface, surface_target
 from .lamp_areas import NO_AREAS, LampAreas, lamp_areas
 from .search_tiles import tiles_of
 
@@ -168,13 +168,17 @@ class HighlightSearch:
             if drawing.farthest > self._world_covered_from():
                 covers = drawing.full_detail_draws(peel.COVERS)
             return covers, (), (), ()
-        shining = drawing.full_detail_draws(peel.HIGHLIGHTS, search.surfaces)
+        shadows = self._plan.shadows
+        target = surface_target.lit(peel.HIGHLIGHTS, shadows)
+        shining = drawing.full_detail_draws(target, search.surfaces)
         if not shining:
             return (), (), (), ()
         others = drawing.surfaces() - search.surfaces
         see_through = drawing.see_through()
         veils = [
-            *drawing.full_detail_draws(peel.VEILS, see_through & search.surfaces),
+            *drawing.full_detail_draws(
+                surface_target.lit(peel.VEILS, shadows), see_through & search.surfaces
+            ),
             *drawing.full_detail_draws(peel.OTHER_VEILS, see_through & others),
         ]
         hiders = drawing.full_detail_draws(peel.HIDERS)

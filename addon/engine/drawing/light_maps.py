@@ -1,8 +1,7 @@
 """Light maps of a frame: of each light sample, what hides its light (**ours**).
 
-Light samples have places in an atlas, which are drawn over as the lens samples go on. Lights have
-their turns in periods as long as the atlas has places, so that whichever lens samples share a
-drawing, it is lit by as many places on each light as they would have been one by one.
+Light samples have places in an atlas. Those of a generation of lens samples stay there, so that
+each is drawn once; where a next generation follows, its light samples take their places.
 """
 
 from dataclasses import replace
@@ -14,29 +13,20 @@ from ...device.targets import Targets, TargetSpec
 from ...device.textures import texture_2d
 from ...device.uniforms import uniform_buffer
 from ...passes.surface import light_map, light_table, surface
-from ...sampling.lights.light_samples import schedule, turns_of
-from ...sampling.lights.sky_samples import NORMALS
+from ...sampling.lights.light_turns import GENERATION, LightTurns, unhidden
 from ...sampling.spectral_samples import GROUP
 from . import culling, light_views
-from .light_places import aim_sample, aim_sky_sample, light_shares
+from .light_places import aim_sample, aim_sky_samples, half_angles, light_shares
 
-# Texels of the atlas, and along a side of a place in it. Maps are turned from sample to sample, so
-# that over the samples their steps are smooth: they need not be finer than the picture.
-_MOST_TEXELS = 1 << 26
+# Texels of the atlas, and along a side of a lamp's map in it. Maps are turned from sample to
+# sample, so that over the samples their steps are smooth: they need not be finer than the picture.
+_MOST_TEXELS = 1 << 25
 _LEAST_SIDE, _MOST_SIDE = 512, 1024
 _WIDEST_ATLAS = 8192
-_MOST_PLACES = 128
-# Light samples after which every light has had its turns, where their number is not known.
-_PERIOD = 64
+# A map of the sky is so many times smaller: there are more of them, far apart.
+_OF_SKY = 2
 # Square root of the largest mean area of the triangles of what hides light, in texels of the map.
 _FINER = 0.6
-# Places from which a lens sample is lit at most, and from which a picture is lit at least where
-# that allows it: half of the sky's directions are below a surface, and the rest are far apart.
-_MOST_EACH = 4
-_LEAST_OF_LAMPS, _LEAST_OF_SKY = 128, 512
-# Places that what may be splatted is lit from: fewer take less time where much of the picture is as
-# bright as highlights.
-_STEADY = light_map.MOST_STEADY
 
 
 class _Casters:
@@ -136,8 +126,7 @@ class LightMaps:
         ]
         self._corners = corners
         self._targets = None
-        self._empty = None
-        self._plan = None
+        self._plan = self._turns = None
         self.draw_calls = self.triangles = 0
 
     def aim(self, plan, seen, extents):
@@ -155,10 +144,10 @@ class LightMaps:
         self._plan = plan
         if follows:
             return
-        self._batch = None
+        self._generation = None
         self._shown = set()
-        self._steady = self._places = 0
         self._samples = []
+        self._turns = None
         shares = np.zeros(len(self._content.lights) + 1)
         if plan.shadows and seen.any() and (len(shares) > 1 or self._buffers.sky.irradiance):
             ends = (extents.nearest[seen], extents.farthest[seen])
@@ -167,108 +156,85 @@ class LightMaps:
             shares = light_shares(lights, sky, self._receivers, self._spheres, seen)
         if shares.any():
             self._divide(plan, shares)
+            self._begin_generation(0)
         self._fill_table()
 
     def _divide(self, plan, shares):
-        """Choose the number of light samples, and whose turn it is at each."""
-        side = 2 ** int(np.ceil(np.log2(max(plan.width, plan.height))))
-        self._side = int(np.clip(side, _LEAST_SIDE, _MOST_SIDE))
-        self._steady = _STEADY if plan.bokeh else 0
-        most = min(_MOST_PLACES, _MOST_TEXELS // self._side**2) - self._steady
-        group = GROUP if plan.chromatic else 1
-        self._group = group
-        self._each = self._places_of_sample(plan, shares[-1] / shares.sum())
-        if plan.automatic:
-            self._places = min(_PERIOD, most)
-        else:
-            total = -(-plan.samples // group) * self._each
-            self._places = -(-total // -(-total // most))
+        """Choose the light samples, and where their maps are in the atlas."""
+        lights = self._content.lights
+        # Samples of all wavelengths of a group have the same shadows.
+        self._group = GROUP if plan.chromatic else 1
         self._seed = plan.source.seed if plan.source else 0
-        self._turns = turns_of(shares, self._places)
-        self._schedule = schedule(self._turns, self._seed)
-        self._steady_turns = turns_of(shares, self._steady)
-        self._steady_schedule = schedule(self._steady_turns, self._seed)
-        columns = _WIDEST_ATLAS // self._side
-        count = self._steady + self._places
-        columns = min(columns, int(np.ceil(np.sqrt(count))))
-        size = (columns * self._side, -(-count // columns) * self._side)
+        self._turns = LightTurns(
+            shares,
+            np.append(half_angles(lights, self._receivers), 0.0),
+            np.append([light.kind == "AREA" for light in lights], False),
+            None if plan.automatic else -(-plan.samples // self._group),
+            self._seed,
+        )
+        self._of, self._numbers = self._turns.lights_and_numbers()
+        lamps = int((self._of < len(lights)).sum())
+        cells = lamps + -(-(len(self._of) - lamps) // _OF_SKY**2)
+        side = 2 ** int(np.ceil(np.log2(max(plan.width, plan.height))))
+        side = int(np.clip(side, _LEAST_SIDE, _MOST_SIDE))
+        while cells * side**2 > _MOST_TEXELS:
+            side //= 2
+        columns = min(_WIDEST_ATLAS // side, int(np.ceil(np.sqrt(cells))))
+        size = (columns * side, -(-cells // columns) * side)
+        self._lamps, self._side, self._columns = lamps, side, columns
         if self._targets is None or (self._targets.width, self._targets.height) != size:
             self.release()
-            specs = [TargetSpec("maps", "DEPTH_COMPONENT32F")]
-            self._targets = Targets(*size, specs)
-        self._columns = columns
-        self._begin_batch(0)
+            self._targets = Targets(*size, [TargetSpec("maps", "DEPTH_COMPONENT32F")])
 
-    def _places_of_sample(self, plan, of_sky):
-        """Return from how many places a lens sample is lit; `of_sky`: the sky's share of light."""
-        if plan.automatic:
-            # The first look may be the last.
-            return _MOST_EACH
-        least = _LEAST_OF_LAMPS + of_sky * (_LEAST_OF_SKY - _LEAST_OF_LAMPS)
-        wanted = 1.0 + float(plan.subsample_counts.mean())
-        wanted = max(wanted, least * self._group / plan.samples)
-        return int(np.clip(np.ceil(wanted - 1e-6), 1, _MOST_EACH))
+    def _tile(self, place):
+        """Return the corner and the side of a light sample's place in the atlas, texels."""
+        side, lamps, part = self._side, self._lamps, (0, 0)
+        cell = place
+        if place >= lamps:
+            cell, inside = divmod(place - lamps, _OF_SKY**2)
+            cell += lamps
+            part = (inside % _OF_SKY, inside // _OF_SKY)
+        corner = [cell % self._columns * side, cell // self._columns * side]
+        if place >= lamps:
+            side //= _OF_SKY
+        return (corner[0] + part[0] * side, corner[1] + part[1] * side), side
 
-    def _begin_batch(self, batch):
-        """Take new places on the lights; those of the steady samples stay."""
-        self._batch = batch
-        self._samples = self._samples[: self._steady]
-        if not self._samples:
-            self._samples = self._aimed(self._steady_schedule, self._steady_turns, 0, 1)
-        self._samples += self._aimed(self._schedule, self._turns, batch, 0)
-        self._shown = {place for place in self._shown if place < self._steady}
-
-    def _aimed(self, scheduled, turns, batch, stream):
-        lights, count = self._content.lights, int(turns.sum())
-        found = []
-        for light, number in zip(*(part.tolist() for part in scheduled), strict=True):
-            resources = {
-                "weight": count / int(turns[light]),
-                "number": number + batch * int(turns[light]),
-                "stream": 2 * light + stream,
-                "seed": self._seed,
-                "receivers": self._receivers,
-                "hiding": self._hiding,
-            }
+    def _begin_generation(self, generation):
+        """Take new places on the lights."""
+        self._generation = generation
+        self._shown = set()
+        lights, counts = self._content.lights, self._turns.counts
+        self._samples = []
+        resources = {
+            "seed": self._seed,
+            "receivers": self._receivers,
+            "hiding": self._hiding,
+        }
+        for light, number in zip(self._of.tolist(), self._numbers.tolist(), strict=True):
             if light < len(lights):
-                found.append(aim_sample(lights[light], light, **resources))
-            else:
-                found.append(aim_sky_sample(self._buffers.sky, **resources))
-        return found
+                number += generation * int(counts[light])
+                given = (lights[light], light, number, 2 * light)
+                self._samples.append(aim_sample(*given, **resources))
+        if counts[-1]:
+            each = int(self._turns.each[-1])
+            given = (each, int(counts[-1]) // each, generation, 2 * len(lights))
+            self._samples += aim_sky_samples(self._buffers.sky, *given, **resources)
 
     def _fill_table(self):
         rows = np.zeros((len(self._samples), light_map.ROW_TEXELS, 4), np.float32)
         for place, sample in enumerate(self._samples):
-            steady = place < self._steady
-            rows[place, 0] = (sample.light, sample.weight, len(sample.views), steady)
+            rows[place, 0] = (sample.light, 0.0, len(sample.views), 0.0)
             rows[place, 1, :3] = sample.place
             rows[place, 2, :3] = sample.light_of_sky
-            rectangles = self._rectangles(place, len(sample.views))
+            rectangles = self._rectangles(place)
             for i, (view, rectangle) in enumerate(zip(sample.views, rectangles, strict=True)):
                 first = light_map.HEAD_TEXELS + i * light_map.VIEW_TEXELS
                 rows[place, first : first + light_map.VIEW_TEXELS] = view.texels(rectangle)
-        skies = [self._sky_table(samples) for samples in self._sequences()]
-        self._table = texture_2d(light_table.table_texels(self._content.lights, rows, skies))
+        self._table = texture_2d(light_table.table_texels(self._content.lights, rows))
 
-    def _sequences(self):
-        """Return the light samples of the two sequences that surfaces read, if there are any."""
-        if not self._samples:
-            return ()
-        return self._samples[self._steady :], self._samples[: self._steady]
-
-    def _sky_table(self, samples):
-        of_sky = [sample for sample in samples if sample.light < 0]
-        if not of_sky:
-            return np.ones((NORMALS, NORMALS))
-        directions = np.stack([sample.place for sample in of_sky])
-        light = np.array([sample.light_of_sky for sample in of_sky])
-        return self._buffers.sky.corrections(directions, light)
-
-    def _rectangles(self, place, count):
-        if not count:
-            return []
-        corner = (place % self._columns * self._side, place // self._columns * self._side)
-        return light_views.tiles(count, corner, self._side)
+    def _rectangles(self, place):
+        count = len(self._samples[place].views)
+        return light_views.tiles(count, *self._tile(place)) if count else []
 
     def of_samples(self, index, samples):
         """Return what surfaces are lit by that are drawn for lens samples; their maps are drawn.
@@ -284,53 +250,43 @@ class LightMaps:
         -------
         passes.surface.light_map.Lighting
         """
-        if not self._places:
-            return self._bound(())
-        batch = index // self._group * self._each // self._places
-        if batch != self._batch:
-            self._begin_batch(batch)
+        if self._turns is None:
+            return self._bound(None)
+        generation = index // self._group // GENERATION
+        if generation != self._generation:
+            self._begin_generation(generation)
             self._fill_table()
-        numbers = [
-            (sample // self._group * self._each + i) % self._places
-            for sample in samples
-            for i in range(self._each)
-        ]
-        if len(numbers) > light_map.MOST_MAPS:
-            numbers = numbers[:: -(-len(numbers) // light_map.MOST_MAPS)]
-        return self._bound([self._steady + number for number in numbers])
+        return self._bound(self._turns.of_samples([n // self._group for n in samples]))
 
     def shared(self):
         """Return what surfaces are lit by in drawings that all lens samples share."""
-        numbers = np.unique(np.linspace(0, self._places, light_map.MOST_MAPS, False, dtype=int))
-        return self._bound([self._steady + int(number) for number in numbers if self._places])
+        if self._turns is None:
+            return self._bound(None)
+        return self._bound(self._turns.of_samples(range(GENERATION)))
 
     def steady(self):
         """Return what highlights are found by."""
-        return self._bound(range(self._steady))
+        return self._bound(self._turns and self._turns.steady())
 
-    def _bound(self, places):
-        steady = range(self._steady)
-        for place in (*places, *steady):
+    def _bound(self, own):
+        """Return what is bound for surfaces lit by a `LightList`; None: nothing hides light."""
+        if own is None:
+            lists = light_table.list_texels([unhidden(len(self._content.lights))] * 2)
+            nothing = texture_2d(np.ones((1, 1, 1), np.float32), "R32F")
+            return light_map.Lighting(self._table, nothing, texture_2d(lists))
+        steady = self._turns.steady()
+        for place in (*own.places.tolist(), *steady.places.tolist()):
             if place not in self._shown:
                 self._draw_map(place)
-        if self._targets is None:
-            if self._empty is None:
-                self._empty = texture_2d(np.ones((1, 1, 1), np.float32), "R32F")
-            maps = self._empty
-        else:
-            maps = self._targets["maps"]
-        own = light_map.packed(places, light_map.MOST_MAPS // 4)
-        return light_map.Lighting(
-            self._table, maps, own, light_map.packed(steady, light_map.MOST_STEADY // 4)
-        )
+        lists = texture_2d(light_table.list_texels((own, steady)))
+        return light_map.Lighting(self._table, self._targets["maps"], lists)
 
     def _draw_map(self, place):
         sample = self._samples[place]
         self._targets.forget_framebuffers()
         framebuffer = self._targets.framebuffer(depth="maps")
         with framebuffer.bind():
-            rectangles = self._rectangles(place, len(sample.views))
-            for view, rectangle in zip(sample.views, rectangles, strict=True):
+            for view, rectangle in zip(sample.views, self._rectangles(place), strict=True):
                 with state.scissored(*rectangle):
                     framebuffer.clear(depth=1.0)
                 with state.confined(*rectangle):
@@ -351,7 +307,8 @@ class LightMaps:
         for casters in self._casters:
             simplifies = self._plan.level_bias is not None
             listed = casters.listed(view, rectangle, simplifies)
-            light_map.draw(listed, params, casters.instances, place + (self._batch << 8))
+            number = place + self._generation * len(self._samples)
+            light_map.draw(listed, params, casters.instances, number)
             self.draw_calls += len(listed)
             self.triangles += sum(draw.triangles * draw.count for draw in listed)
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...sampling.lights.light_samples import ball_points, disk_points, sequence
+from ...sampling.lights.light_samples import ball_points, disk_points, sequence, sky_places
 from . import light_views
 
 # Points in view at which lights are compared: of instances, and along each side of slices of depth.
@@ -22,8 +22,6 @@ class LightSample:
     ----------
     light : int
         Of the content's; -1 for the sky.
-    weight : float
-        Light samples of the period over those of this light.
     place : ndarray of shape (3,)
         In world space; of a sun the way light travels, of the sky the direction towards it.
     views : list of light_views.LightView
@@ -32,7 +30,6 @@ class LightSample:
     """
 
     light: int
-    weight: float
     place: np.ndarray
     views: list
     light_of_sky: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -108,22 +105,65 @@ def light_shares(lights, sky, receivers, spheres, seen):
     return np.where([*(each.shadow for each in lights), True], shares, 0.0)
 
 
-def aim_sky_sample(sky, weight, number, stream, seed, receivers, hiding):
-    """Choose a direction of the sky and its views of the scene; see `aim_sample`."""
-    turn = np.random.default_rng([seed, 5, stream, number]).random()
-    towards, light = sky.directions(sequence([number], 2, seed, stream))
-    views = light_views.parallel_views(receivers, *hiding, -towards[0], turn)
-    return LightSample(-1, weight, towards[0], views, tuple(light[0].tolist()))
+def half_angles(lights, receivers):
+    """Return the half angle under which each light is seen from where it is largest, radians.
+
+    Parameters
+    ----------
+    lights : sequence of Light
+    receivers : light_views.Receivers
+
+    Returns
+    -------
+    ndarray of shape (L,)
+    """
+    low, high = receivers.box()
+    found = np.zeros(len(lights))
+    for number, light in enumerate(lights):
+        place, size = np.array(light.position), light.radius
+        if light.kind == "AREA":
+            size = float(np.hypot(*light.half_size))
+        distance = 1.0
+        if light.kind != "SUN":
+            distance = float(np.linalg.norm(np.clip(place, low, high) - place))
+        found[number] = np.arctan2(size, distance)
+    return found
 
 
-def aim_sample(light, number_of_light, weight, number, stream, seed, receivers, hiding):
+def aim_sky_samples(sky, each, sets, generation, stream, seed, receivers, hiding):
+    """Choose directions of the sky, those of a lens sample side by side, and their views.
+
+    Half of each lens sample's directions follow the light; see
+    `sampling.lights.light_samples.sky_places` for the numbers, and `aim_sample`.
+
+    Returns
+    -------
+    list of LightSample
+    """
+    turns = np.random.default_rng([seed, 5, stream, generation]).random(each * sets)
+    towards, light = np.empty((sets, each, 3)), np.empty((sets, each, 3))
+    for follows in (False, True):
+        u = sky_places(each // 2, sets, seed, stream + follows, generation)
+        found = sky.directions(u.reshape(-1, 2), follows)
+        for given, part in zip((towards, light), found, strict=True):
+            given[:, follows::2] = part.reshape(sets, -1, 3)
+    return [
+        LightSample(
+            -1, place, light_views.parallel_views(receivers, *hiding, -place, turn), tuple(given)
+        )
+        for place, given, turn in zip(
+            towards.reshape(-1, 3), light.reshape(-1, 3).tolist(), turns, strict=True
+        )
+    ]
+
+
+def aim_sample(light, number_of_light, number, stream, seed, receivers, hiding):
     """Choose a place on a light and its views of the scene.
 
     Parameters
     ----------
     light : Light
     number_of_light : int
-    weight : float
     number : int
         Of the place among those of this light.
     stream, seed : int
@@ -147,7 +187,7 @@ def aim_sample(light, number_of_light, weight, number, stream, seed, receivers, 
         along = direction + x * right + y * up
         along /= np.linalg.norm(along)
         views = light_views.parallel_views(receivers, *hiding, along, turn[0])
-        return LightSample(number_of_light, weight, along, views)
+        return LightSample(number_of_light, along, views)
     place = np.array(light.position, np.float64)
     cone = None
     axes = np.array(light.axes, np.float64)
@@ -163,4 +203,4 @@ def aim_sample(light, number_of_light, weight, number, stream, seed, receivers, 
             if light.radius > 0.0:
                 cone = None
     views = light_views.lamp_views(receivers, place, turn, cone)
-    return LightSample(number_of_light, weight, place, views)
+    return LightSample(number_of_light, place, views)

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sampling.lights.light_samples import rotation
+
 # Tangent of the half angle of a frustum up to which one is enough for a lamp.
 _WIDEST = 2.0
 # Nearest depth of a lamp's view, in its farthest.
@@ -327,12 +329,12 @@ def lamp_views(receivers, place, turn, cone=None):
         across = across * max(1.0, least / np.linalg.norm(across))
         up = up * max(1.0, least / np.linalg.norm(up))
         return [LightView(place, across, up, along, False, near, far)]
-    rotation = _rotation(turn)
+    axes = rotation(turn)
     views = []
     for face in range(6):
         # The faces of one cube fit together.
-        along = rotation[:, face % 3] * (1.0 if face < 3 else -1.0)
-        right, up = (rotation[:, (face + i) % 3] * (1.0 + _OVERLAP) for i in (1, 2))
+        along = axes[:, face % 3] * (1.0 if face < 3 else -1.0)
+        right, up = (axes[:, (face + i) % 3] * (1.0 + _OVERLAP) for i in (1, 2))
         view = LightView(place, right, up, along, False, near, far)
         if _meets(view, offsets) and (cone is None or _in_beam(along, cone)):
             views.append(view)
@@ -355,20 +357,6 @@ def _in_beam(along, cone):
     """Whether a face of a cube may be in a beam; its corners are 55 degrees from its middle."""
     angle = np.arccos(np.clip(along @ cone[0], -1.0, 1.0))
     return angle <= np.arctan(cone[1]) + np.radians(56.0)
-
-
-def _rotation(u):
-    """Return an even random rotation from three numbers from 0 to 1 (Shoemake, 1992)."""
-    a, b = np.sqrt(1.0 - u[0]), np.sqrt(u[0])
-    x, y = a * np.sin(2 * np.pi * u[1]), a * np.cos(2 * np.pi * u[1])
-    z, w = b * np.sin(2 * np.pi * u[2]), b * np.cos(2 * np.pi * u[2])
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 def tiles(count, corner, side):

@@ -28,7 +28,7 @@ HIGHLIGHTS = surface_target.SurfaceTarget(
     "passes/bokeh/peel_frag.glsl",
     (),
     # Without the first (surfaces whose light is never splatted) only depth is written.
-    defines=(surface_target.SPLIT, "SHADOWS"),
+    defines=(surface_target.SPLIT,),
     samplers=highlights.COUNT_SAMPLERS,
     images=highlights.APPEND_IMAGES + highlights.COUNT_IMAGES,
     push_constants=highlights.APPEND_CONSTANTS,
@@ -51,7 +51,7 @@ COVERS = surface_target.SurfaceTarget(
 # See-through surfaces of `HIGHLIGHTS`, where they are no highlight.
 VEILS = replace(
     HIGHLIGHTS,
-    defines=(surface_target.SPLIT, "SHADOWS", "VEILS"),
+    defines=(surface_target.SPLIT, "VEILS"),
     samplers=(),
     images=highlights.APPEND_IMAGES,
 )

@@ -1,9 +1,8 @@
-"""The lights of a scene and the light samples of a frame as a texture.
+"""The lights of a scene and the light samples of a frame as a texture, and lists of them.
 
-The first row says how many lights there are (x), in which row the light samples begin (y), and in
-which the tables of the sky (z). Then a row a light (``lib/surface/light_lib.glsl``), a row a light
-sample (``lib/surface/light_map_lib.glsl``), and for the two sequences of light samples what
-`Sky.corrections` gives.
+The first row says how many lights there are (x), and in which row the light samples begin (y). Then
+a row a light (``lib/surface/light_lib.glsl``), and a row a light sample
+(``lib/surface/light_map_lib.glsl``).
 """
 
 import numpy as np
@@ -36,7 +35,7 @@ def light_texels(lights):
     return texels
 
 
-def table_texels(lights, samples, skies=()):
+def table_texels(lights, samples):
     """Lay out lights and light samples.
 
     Parameters
@@ -44,22 +43,42 @@ def table_texels(lights, samples, skies=()):
     lights : sequence of Light
     samples : ndarray of shape (M, R, 4)
         Rows of light samples.
-    skies : sequence of ndarray of shape (n, n)
-        Tables of the sky.
 
     Returns
     -------
     ndarray of shape (rows, columns, 4)
         float32.
     """
-    rows = light_texels(lights)
-    tables = [np.asarray(sky, np.float32)[..., None] for sky in skies]
-    parts = [part for part in (rows, samples, *tables) if len(part)]
+    parts = [part for part in (light_texels(lights), samples) if len(part)]
     columns = max((part.shape[1] for part in parts), default=1)
     table = np.zeros((1 + sum(map(len, parts)), columns, 4), np.float32)
-    table[0, 0, :3] = len(rows), 1 + len(rows), 1 + len(rows) + len(samples)
+    table[0, 0, :2] = len(lights), 1 + len(lights)
     place = 1
     for part in parts:
-        table[place : place + len(part), : part.shape[1], : part.shape[2]] = part
+        table[place : place + len(part), : part.shape[1]] = part
         place += len(part)
     return table
+
+
+def list_texels(lists):
+    """Lay out what a drawing is lit from, a list a row.
+
+    Parameters
+    ----------
+    lists : sequence of sampling.lights.light_turns.LightList
+
+    Returns
+    -------
+    ndarray of shape (rows, columns, 4)
+        float32. A texel a light, the sky last: in which column its places begin, how many there
+        are, and its weight; then a texel a place: its row among the light samples.
+    """
+    lights = len(lists[0].counts)
+    columns = lights + max(len(each.places) for each in lists)
+    texels = np.zeros((len(lists), columns, 4), np.float32)
+    for row, each in zip(texels, lists, strict=True):
+        row[:lights, 0] = lights + each.firsts
+        row[:lights, 1] = each.counts
+        row[:lights, 2] = each.weights
+        row[lights : lights + len(each.places), 0] = each.places
+    return texels

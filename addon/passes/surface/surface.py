@@ -24,14 +24,10 @@ LIGHTING_TEXTURES = (
     "environment_levels_tx",
     "ggx_tx",
 )
-# Which light samples a drawing is lit by, and how far a coarser level of detail may be from the
-# true surface, in the mesh's units.
-SHADOW_CONSTANTS = (
-    ("IVEC4", "light_places"),
-    ("IVEC4", "more_light_places"),
-    ("IVEC2", "steady_places"),
-    ("FLOAT", "slack"),
-)
+# The same with shadows: the atlas of light maps, and which light samples a drawing is lit by.
+SHADOW_TEXTURES = ("light_maps_tx", "lit_by_tx")
+# How far a coarser level of detail may be from the true surface, in the mesh's units.
+SHADOW_CONSTANTS = (("FLOAT", "slack"),)
 
 VIEW_PARAMS = UniformStruct("shared/view_params.glsl", "ViewParams")
 HIGHLIGHT_PARAMS = UniformStruct("shared/highlight_params.glsl", "HighlightParams")
@@ -170,7 +166,7 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
         uniforms.append(("EnvironmentParams", "environment_buf"))
         samplers += [("FLOAT_2D", name) for name in LIGHTING_TEXTURES]
         if "SHADOWS" in defines:
-            samplers.append(("FLOAT_2D", "light_maps_tx"))
+            samplers += [("FLOAT_2D", name) for name in SHADOW_TEXTURES]
             push_constants += SHADOW_CONSTANTS
     if target.names_material and not holdout:
         push_constants.append(("FLOAT", "material_id"))

@@ -96,22 +96,22 @@ def without_highlights(target, unsplit=frozenset()):
 
 def of_picture(mattes, shadows):
     """Return the target of the colour picture, with or without mattes and shadows."""
-    target = COLOR_AND_MATTES if mattes else COLOR
-    return with_shadows(target) if shadows else target
+    return lit(COLOR_AND_MATTES if mattes else COLOR, shadows)
 
 
-def with_shadows(target):
-    """Return a target whose lit surfaces are shadowed; their shaders are larger.
+def lit(target, shadows):
+    """Return a target whose lit surfaces are shadowed, or not: with shadows shaders are larger.
 
     Parameters
     ----------
     target : SurfaceTarget
+    shadows : bool
 
     Returns
     -------
     SurfaceTarget
     """
-    return replace(target, defines=(*target.defines, "SHADOWS"))
+    return replace(target, defines=(*target.defines, "SHADOWS")) if shadows else target
 
 
 def whole(target):

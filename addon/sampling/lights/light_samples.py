@@ -13,6 +13,7 @@ import numpy as np
 # light is overdrawn before it.
 _MANY_TURNS = 8
 _BALL_TABLE = 1024
+_GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
 def turns_of(shares, count):
@@ -103,6 +104,64 @@ def sequence(numbers, dimensions, seed=0, stream=0):
     steps = ratio ** -np.arange(1.0, dimensions + 1.0)
     shift = np.random.default_rng([seed, 4, stream]).random(dimensions)
     return np.mod(shift + np.asarray(numbers)[:, None] * steps, 1.0)
+
+
+def sky_places(each, sets, seed=0, stream=0, lattice=0):
+    """Return where in the square directions of the sky are.
+
+    They are a Fibonacci lattice on the sphere, turned at random, so that all together are even.
+    It is dealt out to lens samples, each of which gets a few that are about as far apart as the
+    corners of a tetrahedron, so that each has some above every surface.
+
+    Parameters
+    ----------
+    each : int
+        Directions of a lens sample.
+    sets : int
+        Lens samples.
+    seed, stream, lattice : int
+        Of the turn.
+
+    Returns
+    -------
+    ndarray of shape (sets, each, 2)
+        Longitude and sine of the latitude, from 0 to 1.
+    """
+    count = each * sets
+    number = np.arange(count)
+    u = np.column_stack([(number + 0.5) / count, np.mod(number * _GOLDEN, 1.0)])
+    turn = rotation(np.random.default_rng([seed, 6, stream, lattice]).random(3))
+    points = sphere_points(u) @ turn.T
+    free = np.ones(count, bool)
+    dealt = np.empty((sets, each), np.int64)
+    # The first lens samples begin all over the lattice.
+    begins = np.argsort(np.mod(number * _GOLDEN, 1.0))
+    for own in dealt:
+        own[0] = begins[free[begins]][0]
+        free[own[0]] = False
+        for k in range(1, each):
+            cosines = points @ points[own[:k]].T
+            # Those of a tetrahedron are -1/3; of two directions alone opposite ones are best.
+            wanted = -1.0 / (each - 1.0)
+            own[k] = np.where(free, np.abs(cosines - wanted).sum(axis=1), np.inf).argmin()
+            free[own[k]] = False
+    x, y, z = points[dealt].transpose(2, 0, 1)
+    found = np.stack([np.arctan2(y, x) / (2.0 * np.pi) + 0.5, 0.5 * z + 0.5], axis=-1)
+    return np.clip(found, 0.0, 1.0 - 1e-9)
+
+
+def rotation(u):
+    """Return an even random rotation from three numbers from 0 to 1 (Shoemake, 1992)."""
+    a, b = np.sqrt(1.0 - u[0]), np.sqrt(u[0])
+    x, y = a * np.sin(2 * np.pi * u[1]), a * np.cos(2 * np.pi * u[1])
+    z, w = b * np.sin(2 * np.pi * u[2]), b * np.cos(2 * np.pi * u[2])
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
 
 
 def disk_points(u):

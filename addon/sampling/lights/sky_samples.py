@@ -1,7 +1,9 @@
 """Directions of a world, chosen by its light (**ours**).
 
-A texel of the world's image is drawn in proportion to its light and solid angle; what a direction
-stands for is the texel's light over the density of directions there.
+Every other direction is that of a texel of the world's image, drawn in proportion to its light
+and solid angle; the others are spread evenly, so that surfaces that face away from the brightest
+part of the sky are lit by some, too. What a direction stands for is the texel's light over the
+density of directions there.
 """
 
 from dataclasses import dataclass
@@ -9,11 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-# Share of the directions that are spread evenly whatever the light: colours of little luminance and
-# the interpolation between texels have light where the texels' luminance has none.
-_EVEN = 0.05
-# Rows and columns of the table of normals.
-NORMALS = 32
+# Share of the directions that are spread evenly.
+_EVEN = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,78 +38,52 @@ class Sky:
 
     @cached_property
     def _shares(self):
-        """Probability of each texel."""
+        """Probability of each texel where directions follow the light."""
         light = np.abs(self.pixels).mean(axis=2) * self._solid_angles
         total = light.sum()
-        even = self._solid_angles / (4.0 * np.pi)
-        return _EVEN * even + (1.0 - _EVEN) * light / total if total > 0.0 else even
+        return light / total if total > 0.0 else self._solid_angles / (4.0 * np.pi)
 
     @property
     def irradiance(self):
         """Mean of the channels of the light that a surface gets from half of the sky, W/m^2."""
         return float((np.abs(self.pixels).mean(axis=2) * self._solid_angles).sum() / 4.0)
 
-    def directions(self, u):
+    def directions(self, u, follows):
         """Return directions and what they stand for.
 
         Parameters
         ----------
         u : ndarray of shape (N, 2)
             From 0 to 1.
+        follows : bool
+            They follow the light; else they are spread evenly.
 
         Returns
         -------
         directions : ndarray of shape (N, 3)
             In world space, unit length, towards the sky.
         light : ndarray of shape (N, 3)
-            Radiance over the density of directions.
+            Radiance over the density of directions of both kinds.
         """
         height, width = self.pixels.shape[:2]
-        rows = self._shares.sum(axis=1)
-        row, y = _draw(np.cumsum(rows)[None], u[:, 1])
-        column, x = _draw(np.cumsum(self._shares, axis=1)[row], u[:, 0])
-        sines = np.sin((np.stack([row, row + 1]) / height - 0.5) * np.pi)
-        z = sines[0] + (sines[1] - sines[0]) * y
-        around = (0.5 - (column + x) / width) * 2.0 * np.pi
+        if follows:
+            rows = self._shares.sum(axis=1)
+            row, y = _draw(np.cumsum(rows)[None], u[:, 1])
+            column, x = _draw(np.cumsum(self._shares, axis=1)[row], u[:, 0])
+            sines = np.sin((np.stack([row, row + 1]) / height - 0.5) * np.pi)
+            z = sines[0] + (sines[1] - sines[0]) * y
+            x = column + x
+        else:
+            z = 2.0 * u[:, 1] - 1.0
+            x = width * u[:, 0]
+            row = ((np.arcsin(z) / np.pi + 0.5) * height).astype(int).clip(0, height - 1)
+            column = x.astype(int).clip(0, width - 1)
+        around = (0.5 - x / width) * 2.0 * np.pi
         across = np.sqrt(np.maximum(1.0 - z * z, 0.0))
         local = np.column_stack([across * np.cos(around), across * np.sin(around), z])
         density = (self._shares / self._solid_angles)[row, column]
+        density = _EVEN / (4.0 * np.pi) + (1.0 - _EVEN) * density
         return local @ self.rotation, self.pixels[row, column] / density[:, None]
-
-    @cached_property
-    def _diffuse(self):
-        """Light of a white Lambertian surface of each normal of the table, shape (n, n, 3)."""
-        height, width = self.pixels.shape[:2]
-        z = np.sin(((np.arange(height) + 0.5) / height - 0.5) * np.pi)[:, None]
-        around = (0.5 - (np.arange(width) + 0.5) / width) * 2.0 * np.pi
-        across = np.sqrt(1.0 - z * z)
-        local = np.stack(
-            np.broadcast_arrays(across * np.cos(around), across * np.sin(around), z), axis=-1
-        )
-        towards = local.reshape(-1, 3) @ self.rotation
-        light = (self.pixels * self._solid_angles[..., None]).reshape(-1, 3)
-        found = np.maximum(table_normals().reshape(-1, 3) @ towards.T, 0.0) @ light / np.pi
-        return found.reshape(NORMALS, NORMALS, 3)
-
-    def corrections(self, directions, light):
-        """Return what a set of directions must be multiplied with to give the light of all.
-
-        Parameters
-        ----------
-        directions, light : ndarray of shape (N, 3)
-            As of `directions`.
-
-        Returns
-        -------
-        ndarray of shape (n, n)
-            By normal, `table_normals`: the light of a white surface under the whole sky over that
-            under these directions, by luminance.
-        """
-        cosines = np.maximum(table_normals() @ directions.T, 0.0)
-        found = (cosines @ light).mean(axis=2) / (np.pi * len(directions))
-        whole = self._diffuse.mean(axis=2)
-        ratio = np.divide(whole, found, out=np.ones_like(whole), where=np.abs(found) > 1e-12)
-        return np.clip(ratio, 0.0, 4.0)
 
 
 def _draw(sums, u):
@@ -121,15 +94,3 @@ def _draw(sums, u):
     high = sums[rows, step]
     low = np.where(step > 0, sums[rows, np.maximum(step - 1, 0)], 0.0)
     return step, np.clip((wanted - low) / np.maximum(high - low, 1e-30), 0.0, 1.0)
-
-
-def table_normals():
-    """Return the normals of the table, shape (n, n, 3): an octahedral map, nodes at its edges."""
-    place = np.linspace(-1.0, 1.0, NORMALS)
-    x, y = np.meshgrid(place, place)
-    z = 1.0 - np.abs(x) - np.abs(y)
-    below = z < 0.0
-    turned_x = np.where(x >= 0.0, 1.0, -1.0) * (1.0 - np.abs(y))
-    turned_y = np.where(y >= 0.0, 1.0, -1.0) * (1.0 - np.abs(x))
-    normals = np.stack([np.where(below, turned_x, x), np.where(below, turned_y, y), z], axis=-1)
-    return normals / np.linalg.norm(normals, axis=-1, keepdims=True)

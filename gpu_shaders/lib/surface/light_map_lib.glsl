@@ -1,7 +1,6 @@
 // Which light samples do not reach a point, from their light maps (addon/passes/surface/light_map.py).
-// A light sample is a row of the light table below the lights: number of its light, -1 for the sky, its
-// weight, number of views, and of which sequence of light samples it is; its place or direction; of the sky
-// what it stands for; and for each view 5 texels: origin, and whether it is parallel;
+// A light sample is a row of the light table below the lights: number of its light, -1 for the sky, and
+// number of views (z); its place or direction; of the sky what it stands for; and for each view 5 texels: origin, and whether it is parallel;
 // across, to the edge of the map at distance 1 (parallel: at any), and the least depth; up, and the
 // largest; along, of unit length, and the size of a texel at distance 1 (parallel: at any), m; the map's
 // corner and size in the atlas, texels.
@@ -9,10 +8,7 @@
 #define LIGHT_MAP_LIB_GLSL
 
 // Must agree with passes/surface/light_map.py.
-#define LIGHT_MAPS 32
 #define LIGHT_HEAD_TEXELS 3
-// Rows and columns of a table over normals; sampling/lights/sky_samples.py.
-#define SKY_NORMALS 32
 #define LIGHT_VIEW_TEXELS 5
 // What hides a point lies this many texels before the plane of its triangle at least: what is curved
 // inwards lies before it. More where light grazes it, at most so many.
@@ -21,15 +17,6 @@
 #define LIGHT_MOST_BIAS 1.0
 // Of a depth: of its rounding.
 #define LIGHT_ROUNDING 2e-6
-
-// Place in the atlas of the i-th light sample of a list of bytes, from 1; 0: there are no more.
-int light_map_place(ivec4 places, ivec4 more, int i)
-{
-  ivec4 words = (i < 16) ? places : more;
-  int k = i & 15;
-  int word = (k < 8) ? ((k < 4) ? words.x : words.y) : ((k < 12) ? words.z : words.w);
-  return (word >> (8 * (i & 3))) & 255;
-}
 
 // Whether something lies between the point and the light's place. `normal`: of the triangle, of any
 // length and side; `slack`: how far from the true surface the point may be, m.
@@ -79,53 +66,6 @@ bool light_map_hides(
     return hider < own - bias - LIGHT_ROUNDING * max(abs(own), far - near);
   }
   return false;
-}
-
-// The light samples of a list that do not reach a point, a bit each.
-uint light_maps_hiding(sampler2D lights_tx,
-                       sampler2D maps_tx,
-                       ivec4 places,
-                       ivec4 more,
-                       vec3 position,
-                       vec3 normal,
-                       float slack)
-{
-  uint hiding = 0u;
-  int first = int(texelFetch(lights_tx, ivec2(0, 0), 0).y + 0.5);
-  for (int i = 0; i < LIGHT_MAPS; i++) {
-    int place = light_map_place(places, more, i);
-    if (place == 0) {
-      break;
-    }
-    if (light_map_hides(lights_tx, maps_tx, first + place - 1, position, normal, slack)) {
-      hiding |= 1u << uint(i);
-    }
-  }
-  return hiding;
-}
-
-// What the sky's light samples of a sequence must be multiplied with to give the light of the whole sky to
-// a surface of a normal; `octahedron`: of the normal.
-float sky_correction(sampler2D lights_tx, vec2 octahedron, int sequence)
-{
-  int first = int(texelFetch(lights_tx, ivec2(0, 0), 0).z + 0.5) + sequence * SKY_NORMALS;
-  vec2 place = clamp(octahedron * 0.5 + 0.5, 0.0, 1.0) * float(SKY_NORMALS - 1);
-  ivec2 node = min(ivec2(place), ivec2(SKY_NORMALS - 2));
-  vec2 part = place - vec2(node);
-  float a = texelFetch(lights_tx, ivec2(node.x, first + node.y), 0).x;
-  float b = texelFetch(lights_tx, ivec2(node.x + 1, first + node.y), 0).x;
-  float c = texelFetch(lights_tx, ivec2(node.x, first + node.y + 1), 0).x;
-  float d = texelFetch(lights_tx, ivec2(node.x + 1, first + node.y + 1), 0).x;
-  return mix(mix(a, b, part.x), mix(c, d, part.x), part.y);
-}
-
-int light_maps_count(ivec4 places, ivec4 more)
-{
-  int count = 0;
-  for (int i = 0; i < LIGHT_MAPS; i++) {
-    count += (light_map_place(places, more, i) > 0) ? 1 : 0;
-  }
-  return count;
 }
 
 #endif

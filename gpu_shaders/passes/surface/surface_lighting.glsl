@@ -1,9 +1,8 @@
-// Lighting of closures: reflection of lights and of the world. All lights are added up as if nothing hid
-// them; then what light samples do not reach is taken away again, in proportion to what each stands for.
+// Lighting of closures: reflection of lights and of the world, each as much as arrives of it.
 // Included into shaders that draw surfaces. Without SHADES only the transmittance is computed, and no
 // light is read.
 // Inputs: world_position, world_normal where the mesh has normals; view_buf, lens_sample (OF_LAYER: eye);
-// lights_tx (light table), light_maps_tx, light_places, steady_places (light samples), slack;
+// lights_tx (light table), light_maps_tx, lit_by_tx (light samples), slack;
 // environment_buf, environment_tx (image), environment_levels_tx
 // (prefiltered), ggx_tx (albedo table).
 // Source: split-sum environment, Karis, SIGGRAPH 2013 course; closures as Cycles composes them.
@@ -146,10 +145,46 @@ vec3 environment_diffuse(vec3 normal)
 
 #include "passes/surface/surface_shadows.glsl"
 
+#ifdef SHADOWS
+// What arrives of the light on a white surface, by the light samples of a list; `lit`: if nothing hid it.
+Reflected arriving_diffuse(Shading s, int list, vec3 of_sky, out vec3 lit)
+{
+  lit = of_sky;
+  Reflected sum = Reflected(vec3(0.0), vec3(0.0), vec3(0.0));
+  vec3 axis = diffuse_axis(s);
+  sum.light = diffuse_share(s) * sky_arriving(s, list, axis, environment_diffuse(axis));
+  for (int i = 0; i < light_count(lights_tx); i++) {
+    Light light = light_fetch(lights_tx, i);
+    if (light.kind == LIGHT_NONE) {
+      continue;
+    }
+    vec3 reflected = lamp_diffuse(s, light, light_illuminate(light, s.position));
+    lit += reflected;
+    if (reflected != vec3(0.0)) {
+      reflected *= lamp_arriving(s, list, i, light);
+      sum.light += reflected;
+      sum.unsplit += reflected * light.unsplit;
+    }
+  }
+  return sum;
+}
+#endif
+
 // Of a white surface.
 Reflected diffuse_light(Shading s)
 {
-  vec3 sum = diffuse_share(s) * environment_diffuse(diffuse_axis(s));
+  vec3 of_sky = diffuse_share(s) * environment_diffuse(diffuse_axis(s));
+#ifdef SHADOWS
+  vec3 lit;
+  Reflected own = arriving_diffuse(s, OWN, of_sky, lit);
+  if (light_is_steady(max(own.light, lit))) {
+    Reflected steady = arriving_diffuse(s, STEADY, of_sky, lit);
+    steady.shift = own.light - steady.light;
+    return steady;
+  }
+  return own;
+#else
+  vec3 sum = of_sky;
   vec3 unsplit = vec3(0.0);
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
@@ -160,10 +195,6 @@ Reflected diffuse_light(Shading s)
     sum += reflected;
     unsplit += reflected * light.unsplit;
   }
-#ifdef SHADOWS
-  Reflected hidden = hidden_diffuse(s, sum);
-  return Reflected(sum - hidden.light, unsplit - hidden.unsplit, hidden.shift);
-#else
   return Reflected(sum, unsplit, vec3(0.0));
 #endif
 }
@@ -290,46 +321,29 @@ vec3 lamp_glossy(Shading s, Light light, Lobes lobes)
 }
 
 #ifdef SHADOWS
-// Of what lobes reflect, what light samples of a list do not reach.
-// The sky's light `mirrored` is hidden as it is from a white Lambertian surface that faces the mirrored
-// direction.
-Reflected hidden_glossy_of(Shading s, Shadowing shadowing, Lobes lobes, vec3 mirrored)
+// What arrives of the light that lobes reflect, by the light samples of a list. The sky's light is hidden
+// as it is from a white Lambertian surface that faces the mirrored direction. `lit`: if nothing hid light.
+Reflected arriving_glossy(Shading s, int list, Lobes lobes, vec3 of_sky, out vec3 lit)
 {
-  Reflected hidden = Reflected(vec3(0.0), vec3(0.0), vec3(0.0));
-  for (int i = 0; i < LIGHT_MAPS; i++) {
-    if ((shadowing.hiding >> uint(i)) == 0u) {
-      break;
-    }
-    if (((shadowing.hiding >> uint(i)) & 1u) == 0u) {
+  lit = of_sky;
+  Reflected sum = Reflected(vec3(0.0), vec3(0.0), vec3(0.0));
+  vec3 whole = environment_diffuse(lobes.mirrored);
+  sum.light = of_sky * sky_arriving(s, list, lobes.mirrored, whole) / max(whole, vec3(1e-12));
+  for (int i = 0; i < light_count(lights_tx); i++) {
+    Light light = light_fetch(lights_tx, i);
+    if (light.kind == LIGHT_NONE) {
       continue;
     }
-    int row = light_sample_row(shadowing, i);
-    vec4 head = texelFetch(lights_tx, ivec2(0, row), 0);
-    if (head.x < 0.0) {
-      vec3 whole = max(abs(environment_diffuse(lobes.mirrored)), vec3(1e-12));
-      vec3 part = sky_diffuse(lobes.mirrored, head, row) * (head.y * shadowing.share) / whole;
-      hidden.light += mirrored * part;
-      continue;
+    vec3 reflected = lamp_glossy(s, light, lobes);
+    lit += reflected;
+    if (reflected != vec3(0.0)) {
+      reflected *= lamp_arriving(s, list, i, light);
+      sum.light += reflected;
+      sum.unsplit += reflected * light.unsplit;
     }
-    Light light = light_fetch(lights_tx, int(head.x + 0.5));
-    vec3 reflected = lamp_glossy(s, light, lobes) * (head.y * shadowing.share);
-    hidden.light += reflected;
-    hidden.unsplit += reflected * light.unsplit;
   }
-  return hidden;
+  return sum;
 }
-
-Reflected hidden_glossy(Shading s, vec3 lit, Lobes lobes, vec3 mirrored)
-{
-  Reflected own = hidden_glossy_of(s, own_shadowing(s), lobes, mirrored);
-  if (!light_is_steady(lit)) {
-    return own;
-  }
-  Reflected steady = hidden_glossy_of(s, steady_shadowing(s), lobes, mirrored);
-  steady.shift = steady.light - own.light;
-  return steady;
-}
-
 #endif
 
 // Light reflected by two lobes of one roughness.
@@ -352,7 +366,16 @@ Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
   }
   float alpha = max(roughness * roughness, MIN_ALPHA);
   Lobes lobes = Lobes(alpha, mirrored, a, repeat_a, b, repeat_b);
-  vec3 of_sky = sum;
+#ifdef SHADOWS
+  vec3 lit;
+  Reflected own = arriving_glossy(s, OWN, lobes, sum, lit);
+  if (light_is_steady(max(own.light, lit))) {
+    Reflected steady = arriving_glossy(s, STEADY, lobes, sum, lit);
+    steady.shift = own.light - steady.light;
+    return steady;
+  }
+  return own;
+#else
   vec3 unsplit = vec3(0.0);
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
@@ -363,10 +386,6 @@ Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
     sum += reflected;
     unsplit += reflected * light.unsplit;
   }
-#ifdef SHADOWS
-  Reflected hidden = hidden_glossy(s, sum, lobes, of_sky);
-  return Reflected(sum - hidden.light, unsplit - hidden.unsplit, hidden.shift);
-#else
   return Reflected(sum, unsplit, vec3(0.0));
 #endif
 }

@@ -1,8 +1,10 @@
-// Shadows of lit surfaces: of the light of all lamps, what the light samples of a drawing do not reach is
-// taken away, in proportion to what each of them stands for.
+// Shadows of lit surfaces: of each light, what arrives from its light samples. Of lamps it is a ratio of what
+// those give that nothing hides to what all of them give: where nothing hides a light there is no noise,
+// and what is hidden gives nothing, never less.
 // Included by surface_lighting. Light that may be splatted as a highlight is shadowed by the steady light
 // samples, the same in every drawing, so that what is splatted and what lens samples keep add up; how the
 // shadows of this drawing differ from those is `shift`.
+// Source: ratio of shadowed to unshadowed light, Heitz et al., I3D 2018.
 
 // Reflected by a white surface of the shape, of one lamp.
 vec3 lamp_diffuse(Shading s, Light light, Illumination incoming)
@@ -15,54 +17,55 @@ vec3 lamp_diffuse(Shading s, Light light, Illumination incoming)
 
 // From this share of the highlight threshold on light may be splatted.
 #define STEADY_FROM 0.75
-// Most that a place on an area light gives of what its whole does.
-#define LARGEST_PART 4.0
+// Rows of lit_by_tx: light samples of this drawing, and those that all drawings share.
+#define OWN 0
+#define STEADY 1
+// Most light samples in a list, 32 a word; sampling/lights/light_turns.py.
+#define LIST_WORDS 4
 
-// Light samples of a list: their places in the atlas, and which of them do not reach the fragment, a bit
-// each.
-struct Shadowing {
-  ivec4 places;
-  ivec4 more_places;
-  uint hiding;
-  float share;  // of a light sample
+// Which light samples of the lists were asked for, and which of those are hidden, a bit each.
+uint asked[2 * LIST_WORDS] = uint[](0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+uint hidden[2 * LIST_WORDS] = uint[](0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+
+// Light samples of a light in a list: column of the first, their number, and the weight of its light.
+struct LightTurn {
+  int first;
+  int count;
+  float weight;
 };
 
-// Found when they are first asked for.
-bool own_known = false, steady_known = false;
-Shadowing own_samples, steady_samples;
-
-Shadowing find_shadowing(ivec4 places, ivec4 more_places, Shading s)
+// `light`: its number; that of the sky is the number of lights.
+LightTurn light_turn(int list, int light)
 {
-  float away = slack;
-  if (away > 0.0) {
-    mat4 world = instance_world(instances_tx, instance_row);
-    away *= max(length(world[0].xyz), max(length(world[1].xyz), length(world[2].xyz)));
-  }
-  Shadowing found;
-  found.places = places;
-  found.more_places = more_places;
-  found.hiding =
-      light_maps_hiding(lights_tx, light_maps_tx, places, more_places, s.position, s.geometric, away);
-  found.share = 1.0 / float(max(light_maps_count(places, more_places), 1));
-  return found;
+  vec4 texel = texelFetch(lit_by_tx, ivec2(light, list), 0);
+  return LightTurn(int(texel.x + 0.5), int(texel.y + 0.5), texel.z);
 }
 
-Shadowing own_shadowing(Shading s)
+// Row in the light table of the light sample in a column of a list.
+int light_sample_row(int list, int column)
 {
-  if (!own_known) {
-    own_samples = find_shadowing(light_places, more_light_places, s);
-    own_known = true;
-  }
-  return own_samples;
+  return int(texelFetch(lights_tx, ivec2(0, 0), 0).y + 0.5) +
+         int(texelFetch(lit_by_tx, ivec2(column, list), 0).x + 0.5);
 }
 
-Shadowing steady_shadowing(Shading s)
+// Whether the light sample in a column of a list reaches the surface.
+bool light_sample_arrives(Shading s, int list, int column, int row)
 {
-  if (!steady_known) {
-    steady_samples = find_shadowing(ivec4(steady_places, 0, 0), ivec4(0), s);
-    steady_known = true;
+  int number = column - light_count(lights_tx) - 1;
+  int word = list * LIST_WORDS + (number >> 5);
+  uint bit = 1u << uint(number & 31);
+  if ((asked[word] & bit) == 0u) {
+    asked[word] |= bit;
+    float away = slack;
+    if (away > 0.0) {
+      mat4 world = instance_world(instances_tx, instance_row);
+      away *= max(length(world[0].xyz), max(length(world[1].xyz), length(world[2].xyz)));
+    }
+    if (light_map_hides(lights_tx, light_maps_tx, row, s.position, s.geometric, away)) {
+      hidden[word] |= bit;
+    }
   }
-  return steady_samples;
+  return (hidden[word] & bit) == 0u;
 }
 
 // Whether light may be splatted, so that all drawings must agree on its shadows.
@@ -82,77 +85,75 @@ bool light_is_steady(vec3 light)
 #endif
 }
 
-// Row of a light sample in the light table.
-int light_sample_row(Shadowing shadowing, int i)
+// How much a place on a lamp gives a surface, in proportion to the lamp's other places.
+float lamp_place_light(Shading s, Light light, vec3 place)
 {
-  return int(texelFetch(lights_tx, ivec2(0, 0), 0).y + 0.5) +
-         light_map_place(shadowing.places, shadowing.more_places, i) - 1;
-}
-
-// What a place on an area light gives of the light of its whole, 1 on the average over places.
-float lamp_part(Shading s, Light light, Illumination incoming, vec3 place)
-{
-  float whole = horizon_cosine(dot(s.normal, incoming.towards), incoming.sin2) *
-                dot(incoming.irradiance, vec3(1.0));
-  if (light.kind != LIGHT_AREA || whole <= 0.0) {
-    return 1.0;
+  if (light.kind == LIGHT_SUN) {
+    return max(dot(s.normal, -place), 0.0);
   }
   vec3 offset = place - s.position;
   float distance2 = max(dot(offset, offset), 1e-12);
   vec3 towards = offset * inversesqrt(distance2);
-  float area = 4.0 * light.half_size.x * light.half_size.y;
-  float part = area * max(dot(light.direction, -towards), 0.0) * max(dot(s.normal, towards), 0.0) *
-               light_beam(light, -towards, sqrt(distance2)) * dot(light.radiance, vec3(1.0)) / distance2;
-  return clamp(part / whole, 0.0, LARGEST_PART);
+  float given = max(dot(s.normal, towards), 0.0);
+  if (light.kind == LIGHT_AREA) {
+    given *= max(dot(light.direction, -towards), 0.0) *
+             light_beam(light, -towards, sqrt(distance2)) / distance2;
+  }
+  return given;
 }
 
-// Of the sky's light on a white Lambertian surface of a normal, what a light sample of it stands for.
-vec3 sky_diffuse(vec3 normal, vec4 head, int row)
+// The share of a lamp's light that arrives; `light`: of the number `number`.
+float lamp_arriving(Shading s, int list, int number, Light light)
 {
-  vec3 towards = texelFetch(lights_tx, ivec2(1, row), 0).xyz;
-  vec3 light = texelFetch(lights_tx, ivec2(2, row), 0).rgb;
-  vec2 place = direction_to_octahedron(normal);
-  return light * (max(dot(normal, towards), 0.0) / PI *
-                  sky_correction(lights_tx, place, int(head.w + 0.5)));
-}
-
-// Of `diffuse_light`, what light samples of a list do not reach.
-Reflected hidden_diffuse_of(Shading s, Shadowing shadowing)
-{
-  Reflected hidden = Reflected(vec3(0.0), vec3(0.0), vec3(0.0));
-  for (int i = 0; i < LIGHT_MAPS; i++) {
-    if ((shadowing.hiding >> uint(i)) == 0u) {
-      break;
+  LightTurn turn = light_turn(list, number);
+  if (turn.count == 0 || turn.weight <= 0.0) {
+    return turn.weight;
+  }
+  float whole = 0.0, arriving = 0.0, seen = 0.0;
+  for (int i = 0; i < turn.count; i++) {
+    int row = light_sample_row(list, turn.first + i);
+    float given = lamp_place_light(s, light, texelFetch(lights_tx, ivec2(1, row), 0).xyz);
+    if (light_sample_arrives(s, list, turn.first + i, row)) {
+      arriving += given;
+      seen += 1.0;
     }
-    if (((shadowing.hiding >> uint(i)) & 1u) == 0u) {
+    whole += given;
+  }
+  // A part of the lamp may be above the horizon of a surface, but none of these places.
+  float share = (whole > 0.0) ? arriving / whole : seen / float(turn.count);
+  return turn.weight * share;
+}
+
+// Of the sky's light `whole` on a white Lambertian surface of a normal, what arrives: the part of it that
+// the directions say which are not hidden, corrected by how much more or less than their part these give:
+// a control variate that is exact where all or none are hidden. Directions of a lens sample give about the
+// same light, so that it is hardly biased.
+vec3 sky_arriving(Shading s, int list, vec3 normal, vec3 whole)
+{
+  LightTurn turn = light_turn(list, light_count(lights_tx));
+  if (turn.count == 0) {
+    return whole;
+  }
+  vec3 all = vec3(0.0), arriving = vec3(0.0);
+  float above = 0.0, open = 0.0;
+  for (int i = 0; i < turn.count; i++) {
+    int row = light_sample_row(list, turn.first + i);
+    float cosine = dot(normal, texelFetch(lights_tx, ivec2(1, row), 0).xyz);
+    if (cosine <= 0.0) {
       continue;
     }
-    int row = light_sample_row(shadowing, i);
-    vec4 head = texelFetch(lights_tx, ivec2(0, row), 0);
-    if (head.x < 0.0) {
-      hidden.light += diffuse_share(s) * sky_diffuse(diffuse_axis(s), head, row) *
-                      (head.y * shadowing.share);
-      continue;
+    vec3 given = texelFetch(lights_tx, ivec2(2, row), 0).rgb * (cosine / (PI * float(turn.count)));
+    all += given;
+    above += 1.0;
+    if (light_sample_arrives(s, list, turn.first + i, row)) {
+      arriving += given;
+      open += 1.0;
     }
-    vec3 place = texelFetch(lights_tx, ivec2(1, row), 0).xyz;
-    Light light = light_fetch(lights_tx, int(head.x + 0.5));
-    Illumination incoming = light_illuminate(light, s.position);
-    vec3 reflected = lamp_diffuse(s, light, incoming) * lamp_part(s, light, incoming, place) *
-                     (head.y * shadowing.share);
-    hidden.light += reflected;
-    hidden.unsplit += reflected * light.unsplit;
   }
-  return hidden;
-}
-
-Reflected hidden_diffuse(Shading s, vec3 lit)
-{
-  Reflected own = hidden_diffuse_of(s, own_shadowing(s));
-  if (!light_is_steady(lit)) {
-    return own;
+  if (open == 0.0 || open == above) {
+    return (above > 0.0 && open == 0.0) ? vec3(0.0) : whole;
   }
-  Reflected steady = hidden_diffuse_of(s, steady_shadowing(s));
-  steady.shift = steady.light - own.light;
-  return steady;
+  float part = open / above;
+  return max(part * whole + arriving - part * all, vec3(0.0));
 }
 #endif

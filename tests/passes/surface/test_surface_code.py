@@ -5,7 +5,8 @@ import pytest
 
 from addon.passes.nodes import surface_code
 from addon.passes.surface.environment import ggx_table
-from addon.passes.surface.light_table import table_texels
+from addon.passes.surface.light_table import list_texels, table_texels
+from addon.sampling.lights.light_turns import LightList
 from addon.snapshot.content import Light
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 from tests.surface_graphs import emission_graph
@@ -71,10 +72,19 @@ def test_smooth_lobes_reflect_everything_and_rough_ones_lose_what_theory_says():
 
 def test_the_light_table_says_how_many_lights_there_are():
     none = table_texels((), np.zeros((0, 3, 4)))
-    assert none.shape[0] == 1 and none[0, 0].tolist() == [0.0, 1.0, 1.0, 0.0]
+    assert none.shape[0] == 1 and none[0, 0].tolist() == [0.0, 1.0, 0.0, 0.0]
     sun = Light("SUN", (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), (1.0, 1.0, 1.0))
-    table = table_texels([sun] * 3, np.full((2, 9, 4), 7.0), (np.full((4, 4), 0.5),))
-    assert table[0, 0].tolist() == [3.0, 4.0, 6.0, 0.0]
+    table = table_texels([sun] * 3, np.full((2, 9, 4), 7.0))
+    assert table[0, 0].tolist() == [3.0, 4.0, 0.0, 0.0]
     assert table[1:4, 0, 3].tolist() == [1.0, 1.0, 1.0]
     assert (table[4:6] == 7.0).all()
-    assert (table[6:10, :4, 0] == 0.5).all()
+
+
+def test_a_list_of_places_says_which_are_on_each_light():
+    own = LightList(np.array([4, 9, 2]), np.array([0, 2, 2]), np.array([2, 0, 1]), np.ones(3))
+    other = LightList(np.array([1]), np.array([0, 0, 1]), np.array([1, 0, 0]), np.full(3, 2.0))
+    texels = list_texels((own, other))
+    assert texels.shape == (2, 6, 4)
+    assert texels[0, :3, :3].tolist() == [[3, 2, 1], [5, 0, 1], [5, 1, 1]]
+    assert texels[0, 3:, 0].tolist() == [4, 9, 2]
+    assert texels[1, :3, 2].tolist() == [2, 2, 2] and texels[1, 3, 0] == 1

@@ -109,3 +109,26 @@ def test_ray_visibility_says_what_throws_shadows(aplanat_bpy):
     assert energy_ratio(ours, cycles) == pytest.approx(1.0, abs=0.005)
     bpy.data.objects["Sphere"].visible_shadow = False
     assert ssim(render_aplanat(scene, 16), cycles) < 0.97
+
+
+def test_a_room_that_hides_nearly_all_light_is_neither_negative_nor_dotted(aplanat_bpy):
+    """A strong sun and a sky outside, a weak lamp inside: outlines have no dots of either sign."""
+    bpy = aplanat_bpy
+    scene = sky_scene(bpy, "even")
+    sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
+    sun.data.energy, sun.rotation_euler = 30.0, (0.3, 0.2, 0.0)
+    inside = bpy.data.objects.new("inside", bpy.data.lights.new("inside", "POINT"))
+    inside.data.energy, inside.data.shadow_soft_size = 40.0, 0.2
+    inside.location = (1.0, -1.5, 2.0)
+    for lamp in (sun, inside):
+        scene.collection.objects.link(lamp)
+    bpy.ops.mesh.primitive_cube_add(size=14, location=(0, 0, 6))
+    bpy.context.object.data.materials.append(bpy.data.materials["diffuse"])
+    ours = render_aplanat(scene, 32)
+    # Nothing of these gets in; Cycles would spend most of its rays on them.
+    sun.hide_render, scene.world = True, None
+    cycles = render_cycles(scene, 256)
+    assert ours.min() >= 0.0
+    assert ssim(ours, cycles) >= 0.98
+    # A light that was taken away from all that it gives unhidden left 0.2 and more at outlines.
+    assert np.abs(ours - cycles)[..., :3].max() < 0.15
