@@ -11,8 +11,9 @@ import re
 
 # The number of copies in a warning, which may change from frame to frame.
 _COUNT = re.compile(r" \(\d+ copies\)$")
-# The data-block that a warning begins with.
-_SUBJECT = re.compile(r"(object|material|image|camera|world|scene|view layer) '(.*?)'(?=: | \(| )")
+# The kind of the data-block that a warning begins with, and what may be the end of its name.
+_KIND = re.compile(r"(object|material|image|camera|world|scene|view layer) '")
+_END = re.compile(r"'(?=: | )")
 
 
 def frame_report(snapshot, renderer=None):
@@ -46,21 +47,31 @@ def in_short(lines):
     return f"{len(lines)} warnings, the first: {lines[0]}"
 
 
-def subject_of(line):
+def subject_of(line, is_there=None):
     """Return the data-block that a warning is about.
 
     Parameters
     ----------
     line : str
+    is_there : callable or None
+        Whether there is a data-block, by kind and name: names and what is said of them may have
+        quotes, and the longest name counts that there is. None takes the shortest.
 
     Returns
     -------
     kind, name : str
-        In Blender's words, in lower case: ``"object"``, ``"view layer"``. Both empty if the line
-        begins with none of them.
+        In Blender's words, in lower case: ``"object"``, ``"view layer"``; and the full name, with
+        the library of what is linked. Both empty if the line begins with none of them.
     """
-    found = _SUBJECT.match(line)
-    return found.groups() if found else ("", "")
+    found = _KIND.match(line)
+    if not found:
+        return "", ""
+    kind = found[1]
+    names = [line[found.end() : end.start()] for end in _END.finditer(line, found.end())]
+    if not names:
+        return "", ""
+    there = (name for name in reversed(names) if is_there and is_there(kind, name))
+    return kind, next(there, names[0])
 
 
 def one_line(error):

@@ -55,7 +55,7 @@ def read_unsupported(depsgraph):
     lines += [f"view layer '{layer.name}': {what}" for what in _of_layer(layer)]
     world = depsgraph.view_layer_eval.world_override or depsgraph.scene_eval.world
     if world is not None and layer.use_sky:
-        lines += [f"world '{world.name}': {what}" for what in _of_world(world)]
+        lines += [f"world '{world.name_full}': {what}" for what in _of_world(world)]
     return lines
 
 
@@ -149,7 +149,7 @@ def _of_camera(scene):
         return
     if camera is not None and camera.type == "CAMERA" and camera.data.stereo.use_spherical_stereo:
         yield (
-            f"camera '{camera.name}': spherical stereo is not drawn; both eyes look ahead from"
+            f"camera '{camera.name_full}': spherical stereo is not drawn; both eyes look ahead from"
             " where they are"
         )
 

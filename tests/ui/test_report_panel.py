@@ -67,6 +67,67 @@ def test_a_warning_begins_with_its_data_block(line, subject):
     assert subject_of(line) == subject
 
 
+@pytest.mark.parametrize("name", ["It's 'a' (hair) curve: x", "a': b", "a' [b.blend]", "a' (b"])
+def test_names_may_have_quotes(scene, things, name):
+    things["Rug"].name = name
+    lack(scene, "viewport", f"object '{name}': attribute 'k' of mesh 'm': is (too) odd (3 copies)")
+    (button,) = shown(scene).operators
+    assert (button.kind, button.name) == ("object", name)
+
+
+def test_a_linked_object_is_told_from_its_namesake(scene, things, aplanat_bpy, tmp_path):
+    from addon.ui.panels.report_panel import BOTH, VIEWPORT, findings_of
+
+    bpy, own = aplanat_bpy, things["Rug"]
+    curves = bpy.data.hair_curves.new("Hair")
+    curves.add_curves([4])
+    hair = bpy.data.objects.new("Hair", curves)
+    scene.collection.objects.link(hair)
+    bpy.data.libraries.write(str(tmp_path / "rugs.blend"), {hair, own})
+    with bpy.data.libraries.load(str(tmp_path / "rugs.blend"), link=True) as (_, wanted):
+        wanted.objects = ["Rug", "Hair"]
+    for linked in wanted.objects:
+        scene.collection.objects.link(linked)
+    linked = wanted.objects[0]
+    own.hide_render = True
+    lines = [f"object '{obj.name_full}': is odd" for obj in (own, linked)]
+    lack(scene, "viewport", *lines)
+    assert dict(findings_of(scene)) == dict(zip(lines, (VIEWPORT, BOTH), strict=True))
+    for button, obj in zip(shown(scene).operators, (own, linked), strict=True):
+        bpy.ops.object.aplanat_select_reported(kind=button.kind, name=button.name)
+        assert bpy.context.selected_objects == [obj]
+    # So the warnings name them.
+    with resources().open_session() as session:
+        extractor = session.extractor()
+        found = extractor.extract_content(bpy.context.evaluated_depsgraph_get())
+    told = [line.split(":")[0] for line in found.report if "hair" in line]
+    assert told == ["object 'Hair'", "object 'Hair [rugs.blend]'"]
+
+
+def test_the_button_finds_what_geometry_nodes_assign(scene, things, aplanat_bpy):
+    bpy, holder = aplanat_bpy, things["Hidden"]
+    tree = bpy.data.node_groups.new("Made", "GeometryNodeTree")
+    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    nodes = [tree.nodes.new(f"GeometryNode{name}") for name in ("MeshCube", "SetMaterial")]
+    nodes[1].inputs["Material"].default_value = bpy.data.materials.new("By nodes")
+    tree.links.new(nodes[0].outputs["Mesh"], nodes[1].inputs["Geometry"])
+    last = tree.nodes.new("NodeGroupOutput")
+    tree.links.new(nodes[1].outputs[0], last.inputs[0])
+    holder.modifiers.new("Made", "NODES").node_group = tree
+    for spread in (False, True):
+        if spread:
+            # Only as an instance.
+            instance = tree.nodes.new("GeometryNodeInstanceOnPoints")
+            points = tree.nodes.new("GeometryNodePoints")
+            tree.links.new(points.outputs[0], instance.inputs["Points"])
+            tree.links.new(nodes[1].outputs[0], instance.inputs["Instance"])
+            tree.links.new(instance.outputs[0], last.inputs[0])
+        bpy.ops.object.select_all(action="DESELECT")
+        done = bpy.ops.object.aplanat_select_reported(kind="material", name="By nodes")
+        assert done == {"FINISHED"}
+        assert bpy.context.selected_objects == [holder] == [bpy.context.object]
+
+
 def test_each_line_says_where_it_counts(scene, things, aplanat_bpy):
     from addon.ui.panels.report_panel import BOTH, RENDER, VIEWPORT, findings_of
 

@@ -166,7 +166,7 @@ def read_optics(depsgraph, camera, world=None, sources=None):
         "breathing": breathing,
         "artist": read_artist(data, real_lens),
         "f_number": real_lens.f_number if real_lens else data.dof.aperture_fstop,
-        "report": tuple(f"camera '{camera.name}': {line}" for line in problems),
+        "report": tuple(f"camera '{camera.name_full}': {line}" for line in problems),
     }
 
 
@@ -196,8 +196,8 @@ def camera_place(camera):
     place = camera.matrix_world.normalized()
     if abs(place.determinant()) < 1e-6:
         raise CameraError(
-            f"camera '{camera.name}' or one of its parents has a scale of 0 and looks nowhere; set"
-            " the scale to 1 (Object > Apply > Scale, or the scale of the parent)"
+            f"camera '{camera.name_full}' or one of its parents has a scale of 0 and looks nowhere;"
+            " set the scale to 1 (Object > Apply > Scale, or the scale of the parent)"
         )
     return place
 
@@ -228,7 +228,7 @@ def check_kind(camera):
     kind = camera.data.type
     if kind not in {"PERSP", "ORTHO"}:
         raise CameraError(
-            f"camera '{camera.name}' is {_KINDS.get(kind, kind.lower())}; Aplanat renders"
+            f"camera '{camera.name_full}' is {_KINDS.get(kind, kind.lower())}; Aplanat renders"
             " perspective and orthographic cameras (Camera > Lens > Type)"
         )
 

@@ -2,7 +2,8 @@
 
 The focus is Blender's own (`Camera.dof`), so it holds for every engine. A camera that follows a
 focus object goes on following it from the place that was picked: an empty there, a child of the
-object, becomes the focus object, and keeps its offset while the object moves.
+object, becomes the focus object, and keeps its offset while the object moves. What a driver, a lock
+or a library holds is never changed in vain: `why_not_focused` says so first.
 """
 
 import bpy
@@ -15,6 +16,8 @@ from .camera import camera_place, read_lens
 
 # Custom property of the empties that are made here.
 OFFSET_MARK = "aplanat_focus_offset"
+# Of a camera's data.
+DISTANCE = "dof.focus_distance"
 
 
 def depth_along(camera, point):
@@ -32,6 +35,71 @@ def depth_along(camera, point):
         In m; negative behind the camera.
     """
     return -(camera_place(camera).inverted() @ Vector(point)).z
+
+
+def why_not_focused(camera, follow=True):
+    """Return why a camera's focus cannot be moved.
+
+    Parameters
+    ----------
+    camera : bpy.types.Object or None
+    follow : bool
+        Whether the focus object, if there is one, goes on being followed; then the focus distance
+        does not count.
+
+    Returns
+    -------
+    str
+        A sentence without its full stop; empty if the focus can be moved.
+    """
+    if camera is None or camera.type != "CAMERA":
+        return "The scene has no camera; the focus stays"
+    data = camera.data
+    if not data.is_editable:
+        return f"The data of camera '{camera.name}' is linked; make a library override of it"
+    followed = data.dof.focus_object if follow else None
+    if followed is None:
+        if _is_driven(data, DISTANCE):
+            return f"A driver sets the focus distance of camera '{camera.name}'; the focus stays"
+    elif _is_own_empty(followed, data):
+        holder = _holder(followed)
+        if holder:
+            return f"{holder} holds focus object '{followed.name}'; the focus stays"
+    return ""
+
+
+def _is_driven(block, path):
+    drivers = block.animation_data.drivers if block.animation_data else ()
+    return any(curve.data_path == path and not curve.mute for curve in drivers)
+
+
+def _is_own_empty(followed, data):
+    # A copied camera has the empty of the first, whose focus must stay.
+    others = (other for other in bpy.data.cameras if other != data)
+    shared = any(other.dof.focus_object == followed for other in others)
+    return OFFSET_MARK in followed and followed.is_editable and not shared
+
+
+def _holder(empty):
+    if any(empty.lock_location):
+        return "A lock"
+    if _is_driven(empty, "location"):
+        return "A driver"
+    if any(constraint.enabled and constraint.influence > 0.0 for constraint in empty.constraints):
+        return "A constraint"
+    return ""
+
+
+def key_focus(scene, data):
+    """Set a key of a camera's focus distance where Blender sets keys by itself.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+    data : bpy.types.Camera
+    """
+    if scene.tool_settings.use_keyframe_insert_auto and data.dof.focus_object is None:
+        data.keyframe_insert(DISTANCE)
 
 
 def focus_on(scene, camera, point, follow=True):
@@ -54,8 +122,10 @@ def focus_on(scene, camera, point, follow=True):
     Raises
     ------
     FocusError
-        If the place is not in front of the camera.
+        If the place is not in front of the camera, or the focus cannot be moved.
     """
+    if why := why_not_focused(camera, follow):
+        raise FocusError(why)
     distance = depth_along(camera, point)
     if not distance > 0.0:
         raise FocusError("the place is behind the camera; the focus stays")
@@ -64,7 +134,7 @@ def focus_on(scene, camera, point, follow=True):
     followed = dof.focus_object if follow else None
     if followed is None:
         dof.focus_object = None
-    elif OFFSET_MARK in followed:
+    elif _is_own_empty(followed, camera.data):
         followed.matrix_world = Matrix.Translation(point)
     else:
         _follow_from(scene, camera, followed, point)
@@ -81,7 +151,12 @@ def _follow_from(scene, camera, followed, point):
     empty.hide_render = True
     home = next((c for c in camera.users_collection if c.is_editable), scene.collection)
     home.objects.link(empty)
-    empty.parent = followed
+    if OFFSET_MARK in followed:
+        # Beside the empty of another camera.
+        empty.parent, empty.parent_type = followed.parent, followed.parent_type
+        empty.parent_bone = followed.parent_bone
+    else:
+        empty.parent = followed
     if dof.focus_subtarget and followed.pose and dof.focus_subtarget in followed.pose.bones:
         empty.parent_type, empty.parent_bone = "BONE", dof.focus_subtarget
     # Blender solves it for the place within the parent.

@@ -259,14 +259,14 @@ class _Reader:
             if getattr(switches, switch) and size(obj.data):
                 notes.append(f"{what} cannot be drawn; left out")
         # What only throws shadows is not missed in the picture.
-        return drawn, tuple((name, note) for note in notes if camera)
+        return drawn, tuple((obj.name_full, note) for note in notes if camera)
 
     def _is_in_view(self, obj):
         return self._space is None or obj.visible_in_viewport_get(self._space)
 
     def _read_light(self, obj, parent, matrix):
         if len(self.out.lights) == MAX_LIGHTS:
-            self.note(obj.name, f"more than {MAX_LIGHTS} lights; this one does not shine")
+            self.note(obj.name_full, f"more than {MAX_LIGHTS} lights; this one does not shine")
             return
         light, notes = read_light(obj.data, matrix)
         if light is not None:
@@ -278,7 +278,7 @@ class _Reader:
             self.out.lights.append(light)
             notes += _light_object_notes(obj, parent)
         for note in notes:
-            self.note(obj.name, note)
+            self.note(obj.name_full, note)
 
     def _flags_of_place(self, parent):
         number = parent.original.session_uid
@@ -302,7 +302,7 @@ class _Reader:
             if original.type == "MESH" and not obj.data.is_editmode:
                 base = original.data.evaluated_get(self._depsgraph)
             carried = not self._in_viewport or any(m.type == "NODES" for m in original.modifiers)
-            source = MeshSource(number, obj.data, wrapped_by, obj.name, base, carried)
+            source = MeshSource(number, obj.data, wrapped_by, obj.name_full, base, carried)
             out.sources[number] = source
             out.owners[number] = set()
         owners = out.owners[number]

@@ -99,7 +99,7 @@ def _read_pose(depsgraph, here, sources):
         world[row] = instance.matrix_world
         if not np.isfinite(world[row]).all():
             world[row] = here[row]
-            lost[instance.object.name] = True
+            lost[instance.object.name_full] = True
         uid = sources.meshes[row]
         if uid in moved:
             continue

@@ -120,11 +120,11 @@ class ImageReader:
         use = self._seen[key] = self._read(key, image, image_user, frame)
         if use is None:
             where = f" ({image.filepath})" if image.filepath else ""
-            self.report.append(f"image '{image.name}'{where} cannot be read; drawn in magenta")
+            self.report.append(f"image '{image.name_full}'{where} cannot be read; drawn in magenta")
         else:
             entry = self._entries[key]
             self.images[use.uid] = entry.snapshot
-            self.report += [f"image '{image.name}': {note}" for note in entry.notes]
+            self.report += [f"image '{image.name_full}': {note}" for note in entry.notes]
         return use
 
     def computed(self, key, name, compute):

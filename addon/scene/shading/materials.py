@@ -112,7 +112,7 @@ class MaterialReader:
         output, _owner = inlined(material, "EEVEE")
         if output is None:
             return SurfaceGraph()
-        owner = f"material '{material.name}'"
+        owner = f"material '{material.name_full}'"
         reader = TreeReader(owner, self.image_reader, READERS, material.pass_index)
         # First, so that all that follows has the normal that it bends.
         read_displacement(reader, output)

@@ -42,7 +42,7 @@ def read_world(world, images):
     output, _owner = inlined(world, "EEVEE")
     if output is None:
         return World(), notes
-    reader = _WorldReader(world.name, images, notes)
+    reader = _WorldReader(world.name_full, images, notes)
     volume = next((s for s in output.inputs if s.identifier == "Volume"), None)
     if volume is not None and source_of(volume, ())[0].is_output:
         reader.note("volume is not drawn")

@@ -7,6 +7,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Matrix, Vector
 
 from ...scene.camera.camera import camera_place
+from ...scene.camera.focusing import key_focus, why_not_focused
 from .focus_overlay import frame_at, planes, shown_blur
 from .lengths import in_units
 
@@ -26,7 +27,7 @@ class APLANAT_GT_focus_plane(bpy.types.Gizmo):
     """A plane across the camera's view."""
 
     bl_idname = "APLANAT_GT_focus_plane"
-    __slots__ = ("_before", "_grabbed", "_shapes", "face_alpha", "movable")
+    __slots__ = ("_before", "_data", "_grabbed", "_shapes", "face_alpha", "movable")
 
     def setup(self):
         """Make the shapes."""
@@ -52,7 +53,8 @@ class APLANAT_GT_focus_plane(bpy.types.Gizmo):
 
     def invoke(self, context, event):
         """Remember where the focus was."""
-        self._before = context.scene.camera.data.dof.focus_distance
+        self._data = context.scene.camera.data
+        self._before = self._data.dof.focus_distance
         self._grabbed = event.mouse_region_x, event.mouse_region_y
         return {"RUNNING_MODAL"}
 
@@ -86,12 +88,18 @@ class APLANAT_GT_focus_plane(bpy.types.Gizmo):
         return self._before * math.exp(moved.y / _PIXELS_OF_E)
 
     def exit(self, context, cancel):
-        """Keep the focus, or put it back."""
+        """Keep the focus, and key it where Blender sets keys by itself; or put it back."""
         context.area.header_text_set(None)
         if cancel:
-            context.scene.camera.data.dof.focus_distance = self._before
+            self._data.dof.focus_distance = self._before
         else:
+            key_focus(context.scene, self._data)
             bpy.ops.ed.undo_push(message="Focus Distance")
+
+
+def is_movable(camera):
+    """Whether the plane of the focus can be dragged: no object, driver or library holds it."""
+    return camera.data.dof.focus_object is None and not why_not_focused(camera)
 
 
 class APLANAT_GGT_focus(bpy.types.GizmoGroup):
@@ -134,7 +142,7 @@ class APLANAT_GGT_focus(bpy.types.GizmoGroup):
                 continue
             depth, plane.color, _ = found[i]
             plane.color_highlight = plane.color
-            plane.movable = i == 0 and camera.data.dof.focus_object is None
+            plane.movable = i == 0 and is_movable(camera)
             plane.hide_select = not plane.movable
             plane.face_alpha = _FACE_ALPHA[i > 0]
             corners = frame_at(

@@ -1,42 +1,45 @@
 """Focusing on what is under the cursor, and pulling focus between two places."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.anim_utils import action_get_channelbag_for_slot
 
 from ...engine.focus_pick import point_under
 from ...errors import AplanatError
-from ...scene.camera.focusing import depth_along, focus_on
+from ...scene.camera.focusing import DISTANCE, depth_along, focus_on, key_focus, why_not_focused
 from .lengths import in_units
 
-_DISTANCE = "dof.focus_distance"
 # By the name of the choice: Blender's interpolation of the first key.
 _EASINGS = {"SMOOTH": "SINE", "STRONG": "CUBIC", "LINEAR": "LINEAR"}
 
 
 class _PickOperator:
-    """Waits for clicks in 3D views; a subclass takes the places."""
+    """Waits for clicks in 3D views; a subclass takes the places.
+
+    There is no `poll`: a key whose operator is refused there tells nothing.
+    """
 
     bl_options = {"REGISTER", "UNDO"}
 
-    @classmethod
-    def poll(cls, context):
-        """Whether the scene's camera can be focused."""
-        camera = context.scene and context.scene.camera
-        if camera is None or camera.type != "CAMERA":
-            cls.poll_message_set("The scene has no camera")
-            return False
-        if not camera.data.is_editable:
-            cls.poll_message_set("The camera is linked; make a library override of it")
-            return False
-        return True
-
     def invoke(self, context, event):
-        """Take the place under the cursor if a key asks for it; otherwise wait for a click."""
+        """Wait for a click if the camera can be focused."""
+        if self.is_refused(context):
+            return {"CANCELLED"}
         context.window.cursor_modal_set("EYEDROPPER")
         self.begin(context)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
+
+    def is_refused(self, context):
+        """Whether the camera cannot be focused; the user is told why."""
+        why = why_not_focused(self.camera_of(context.scene), self.follow)
+        if why:
+            self.report({"WARNING"}, why)
+        return bool(why)
+
+    def camera_of(self, scene):
+        """Return the camera that is focused, or None."""
+        return scene.camera
 
     def begin(self, context):
         """Tell what to click on."""
@@ -47,6 +50,9 @@ class _PickOperator:
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             self.finish(context)
             return {"CANCELLED"}
+        if event.type == "Z" and (event.ctrl or event.oskey):
+            # Undone or redone, there would be nothing of what the first click has noted.
+            return {"RUNNING_MODAL"}
         if event.type != "LEFTMOUSE" or event.value != "PRESS":
             return {"PASS_THROUGH"}
         return self._take(context, event)
@@ -56,6 +62,10 @@ class _PickOperator:
         if view is None:
             # The sidebar, a header, another editor.
             return {"PASS_THROUGH"}
+        if self.is_refused(context):
+            # Between the clicks the camera can have been deleted.
+            self.finish(context)
+            return {"CANCELLED"}
         point = self.look(context, *view)
         if point is None:
             return {"RUNNING_MODAL"}
@@ -76,7 +86,7 @@ class _PickOperator:
             return None
         if point is None:
             self.report({"WARNING"}, "There is nothing at this place; the focus stays")
-        elif depth_along(context.scene.camera, point) <= 0.0:
+        elif depth_along(self.camera_of(context.scene), point) <= 0.0:
             self.report({"WARNING"}, "This place is behind the camera; the focus stays")
             return None
         return point
@@ -89,6 +99,10 @@ class _PickOperator:
         """Leave the window as it was."""
         context.window.cursor_modal_restore()
         context.workspace.status_text_set(None)
+        self.show_again()
+
+    def show_again(self):
+        """Show what was shown before the first click; a subclass that changes it says how."""
 
 
 def _view_under(window, x, y):
@@ -138,6 +152,8 @@ class APLANAT_OT_focus_pick(_PickOperator, bpy.types.Operator):
         """Take what is under the mouse, or wait for a click."""
         if not self.at_cursor:
             return super().invoke(context, event)
+        if self.is_refused(context):
+            return {"CANCELLED"}
         view = _view_under(context.window, event.mouse_x, event.mouse_y)
         point = view and self.look(context, *view)
         return {"CANCELLED"} if point is None else self.take(context, point)
@@ -160,8 +176,7 @@ class APLANAT_OT_focus_pick(_PickOperator, bpy.types.Operator):
         except AplanatError as error:
             self.report({"WARNING"}, str(error))
             return {"CANCELLED"}
-        if scene.tool_settings.use_keyframe_insert_auto and camera.data.dof.focus_object is None:
-            camera.data.keyframe_insert(_DISTANCE)
+        key_focus(scene, camera.data)
         self.report({"INFO"}, f"'{camera.name}' focuses at {in_units(scene, distance)}")
         return {"FINISHED"}
 
@@ -190,20 +205,38 @@ class APLANAT_OT_focus_pull(_PickOperator, bpy.types.Operator):
     )
     first: FloatProperty(name="From", description="First distance", unit="LENGTH", min=0.0)
     second: FloatProperty(name="To", description="Second distance", unit="LENGTH", min=0.0)
+    camera: StringProperty(
+        name="Camera",
+        description="Whose focus is pulled, with its library; empty: the scene's camera",
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
+    # The keys are of the camera's own distance.
+    follow = False
+
+    def camera_of(self, scene):
+        """Return the camera of the first click: markers may show another one in the last frame."""
+        if not self.camera:
+            return scene.camera
+        return next((obj for obj in scene.objects if obj.name_full == self.camera), None)
 
     def begin(self, context):
         """Tell what to click on first."""
-        self.start = context.scene.frame_current
+        scene = context.scene
+        self._before = scene.name_full, scene.frame_current, scene.frame_subframe
+        self.start = scene.frame_current
+        self.camera = scene.camera.name_full
         self.first = self.second = 0.0
         self._tell(context, "in focus when the pull begins", self.start)
 
     def take(self, context, point):
         """Take the first distance and show the last frame, or take the second."""
-        distance = depth_along(context.scene.camera, point)
+        scene = context.scene
+        camera = self.camera_of(scene)
+        distance = depth_along(camera, point)
         if not self.first:
             self.first = distance
             end = self.start + self.length
-            context.scene.frame_set(end)
+            _show(scene, end, 0.0, camera)
             self._tell(context, "in focus when it ends", end)
             return {"RUNNING_MODAL"}
         self.second = distance
@@ -214,27 +247,32 @@ class APLANAT_OT_focus_pull(_PickOperator, bpy.types.Operator):
             f"Click on what is {what}, frame {frame}  |  Esc, right mouse button: cancel"
         )
 
-    def finish(self, context):
-        """Show the first frame again."""
-        super().finish(context)
-        context.scene.frame_set(self.start)
+    def show_again(self):
+        """Show the frame and the camera of before."""
+        name, frame, subframe = self._before
+        scene = next((found for found in bpy.data.scenes if found.name_full == name), None)
+        if scene is not None:
+            _show(scene, frame, subframe, self.camera_of(scene))
 
     def execute(self, context):
         """Set the two keys."""
         if not (self.first > 0.0 and self.second > 0.0):
             self.report({"WARNING"}, "A focus pull needs two distances in front of the camera")
             return {"CANCELLED"}
-        camera = context.scene.camera.data
+        if self.is_refused(context):
+            return {"CANCELLED"}
+        scene = context.scene
+        camera = self.camera_of(scene).data
         dof = camera.dof
         let_go, dof.focus_object = dof.focus_object, None
         dof.use_dof = True
         end = self.start + self.length
         for distance, frame in ((self.first, self.start), (self.second, end)):
             dof.focus_distance = distance
-            camera.keyframe_insert(_DISTANCE, frame=frame)
+            camera.keyframe_insert(DISTANCE, frame=frame)
         self._ease(camera)
-        context.scene.frame_set(context.scene.frame_current)
-        told = " to ".join(in_units(context.scene, d) for d in (self.first, self.second))
+        _show(scene, scene.frame_current, scene.frame_subframe, scene.camera)
+        told = " to ".join(in_units(scene, d) for d in (self.first, self.second))
         gone = f"; '{let_go.name}' is no longer followed" if let_go else ""
         self.report({"INFO"}, f"Focus pull from {told}, frames {self.start} to {end}{gone}")
         return {"FINISHED"}
@@ -242,11 +280,18 @@ class APLANAT_OT_focus_pull(_PickOperator, bpy.types.Operator):
     def _ease(self, camera):
         animation = camera.animation_data
         bag = action_get_channelbag_for_slot(animation.action, animation.action_slot)
-        for key in bag.fcurves.find(_DISTANCE).keyframe_points:
+        for key in bag.fcurves.find(DISTANCE).keyframe_points:
             # Keys before and behind the pull stay as they are.
             if self.start <= key.co.x < self.start + self.length:
                 key.interpolation = _EASINGS[self.easing]
                 key.easing = "EASE_IN_OUT"
+
+
+def _show(scene, frame, subframe, camera):
+    """Show a frame through a camera, whatever markers say; without one, through theirs."""
+    scene.frame_set(frame, subframe=subframe)
+    if camera is not None:
+        scene.camera = camera
 
 
 CLASSES = (APLANAT_OT_focus_pick, APLANAT_OT_focus_pull)

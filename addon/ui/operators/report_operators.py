@@ -23,7 +23,9 @@ class APLANAT_OT_select_reported(bpy.types.Operator):
     kind: StringProperty(
         name="Kind", description="Object, camera, material or image", options=set()
     )
-    name: StringProperty(name="Name", description="Of the data-block", options=set())
+    name: StringProperty(
+        name="Name", description="Of the data-block, with its library", options=set()
+    )
 
     @classmethod
     def poll(cls, context):
@@ -36,7 +38,7 @@ class APLANAT_OT_select_reported(bpy.types.Operator):
     def execute(self, context):
         """Select what is there and not hidden."""
         layer = context.view_layer
-        found = objects_of(layer, self.kind, self.name)
+        found = objects_of(context.evaluated_depsgraph_get(), self.kind, self.name)
         shown = [(obj, slot) for obj, slot in found if obj.visible_get(view_layer=layer)]
         if not shown:
             why = "is hidden" if found else "is shown by no object of this view layer"
@@ -48,7 +50,7 @@ class APLANAT_OT_select_reported(bpy.types.Operator):
             obj.select_set(True, view_layer=layer)
         first, slot = shown[0]
         layer.objects.active = first
-        if self.kind in {"material", "image"}:
+        if slot is not None:
             first.active_material_index = slot
         return {"FINISHED"}
 

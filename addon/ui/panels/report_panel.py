@@ -4,7 +4,7 @@ import bpy
 
 from ...engine.report import subject_of
 from ...engine.shared_resources import resources
-from ...scene.reported_blocks import is_rendered
+from ...scene.reported_blocks import is_rendered, is_there
 from ..operators.report_operators import SELECTABLE, APLANAT_OT_select_reported
 from .panel_bases import EnginePanel
 from .sentences import draw_alert, draw_sentences, letters_across
@@ -43,7 +43,7 @@ class APLANAT_RENDER_PT_report(EnginePanel, bpy.types.Panel):
         column, letters = self.layout.column(), letters_across(context)
         findings, failures = findings_of(context.scene), _failures(context.scene)
         for line, where in findings[:_MOST_LINES]:
-            kind, name = subject_of(line)
+            kind, name = subject_of(line, is_there)
             row = column.box().row()
             text = row.column(align=True)
             if line in failures:
@@ -115,7 +115,9 @@ def _reach(scene, line, in_view, in_render):
     if line not in in_view:
         return RENDER
     # What is shown in the viewport is rendered, too, unless it is switched off for renders.
-    return BOTH if line in in_render or is_rendered(scene, *subject_of(line)) else VIEWPORT
+    return (
+        BOTH if line in in_render or is_rendered(scene, *subject_of(line, is_there)) else VIEWPORT
+    )
 
 
 CLASSES = (APLANAT_RENDER_PT_report,)
