@@ -40,6 +40,7 @@ def test_focus_is_picked_with_key_and_mouse_and_undone(stage, tmp_path):
     stage.wait_for(f"13.2 < {DISTANCE} < 14.2", timeout=20)
     stage.run("with override(): bpy.ops.ed.undo()")
     stage.wait_for(f"5.4 < {DISTANCE} < 6.2", timeout=20)
+    check_pull(stage)
     stage.run(
         "bpy.context.scene.aplanat.show_coc = bpy.context.scene.aplanat.show_focus_planes = 1"
     )
@@ -53,3 +54,20 @@ def test_focus_is_picked_with_key_and_mouse_and_undone(stage, tmp_path):
     top = picture.shape[0] - bottom - height
     head = picture[top + 40 : top + 140, left : left + width]
     assert ((head[..., 0] > 150) & (head[..., 0] - head[..., 2] > 60)).sum() > 200
+
+
+def check_pull(stage):
+    """Each click counts where it was made, however slow the picture; undo is for later."""
+    near, far = (stage.run(PLACE.format(name=name)) for name in ("thing0", "thing4"))
+    stage.run("with override(): bpy.ops.view3d.aplanat_focus_pull('INVOKE_DEFAULT', length=5)")
+    for place in (near, far):
+        stage.xdotool("mousemove", *place)
+        stage.xdotool("click", "1")
+        if place is near:
+            stage.xdotool("key", "ctrl+z")
+    data = "bpy.context.scene.camera.data"
+    stage.wait_for(f"{data}.animation_data is not None", timeout=20)
+    distances = [
+        stage.run(f"bpy.context.scene.frame_set({frame}); result = {DISTANCE}") for frame in (6, 1)
+    ]
+    assert 13.2 < distances[0] < 14.2 and 5.4 < distances[1] < 6.2
