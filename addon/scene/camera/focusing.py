@@ -8,6 +8,7 @@ or a library holds is never changed in vain: `why_not_focused` says so first.
 
 import bpy
 import numpy as np
+from bpy_extras.anim_utils import action_get_channelbag_for_slot
 from mathutils import Matrix, Vector
 
 from ...errors import FocusError
@@ -61,6 +62,8 @@ def why_not_focused(camera, follow=True):
     if followed is None:
         if _is_driven(data, DISTANCE):
             return f"A driver sets the focus distance of camera '{camera.name}'; the focus stays"
+        if _has_locked_keys(data):
+            return f"Keyframes of the focus distance of camera '{camera.name}' are locked or linked"
     elif _is_own_empty(followed, data):
         holder = _holder(followed)
         if holder:
@@ -71,6 +74,15 @@ def why_not_focused(camera, follow=True):
 def _is_driven(block, path):
     drivers = block.animation_data.drivers if block.animation_data else ()
     return any(curve.data_path == path and not curve.mute for curve in drivers)
+
+
+def _has_locked_keys(data):
+    action = data.animation_data and data.animation_data.action
+    if not action:
+        return False
+    bag = action_get_channelbag_for_slot(action, data.animation_data.action_slot)
+    curve = bag and bag.fcurves.find(DISTANCE)
+    return not action.is_editable or bool(curve and curve.lock)
 
 
 def _is_own_empty(followed, data):

@@ -80,12 +80,16 @@ def pull(stage, aplanat_bpy, monkeypatch):
     return found
 
 
-def keys(camera):
+def curve_of(camera):
     from bpy_extras.anim_utils import action_get_channelbag_for_slot
 
     animation = camera.data.animation_data
     bag = action_get_channelbag_for_slot(animation.action, animation.action_slot)
-    return [tuple(key.co) for key in bag.fcurves.find(DISTANCE).keyframe_points]
+    return bag.fcurves.find(DISTANCE)
+
+
+def keys(camera):
+    return [tuple(key.co) for key in curve_of(camera).keyframe_points]
 
 
 def test_a_pull_stays_with_the_camera_of_the_first_click(stage, pull, aplanat_bpy):
@@ -157,6 +161,15 @@ def test_a_driver_holds_the_distance(stage, aplanat_bpy):
     done = bpy.ops.view3d.aplanat_focus_pull("EXEC_DEFAULT", first=2.0, second=3.0)
     assert done == {"CANCELLED"}
     assert not data.dof.use_dof and data.animation_data.action is None
+
+
+def test_locked_keys_are_told(stage, aplanat_bpy):
+    data = stage.camera.data
+    data.keyframe_insert(DISTANCE, frame=1)
+    curve_of(stage.camera).lock = True
+    done = aplanat_bpy.ops.view3d.aplanat_focus_pull("EXEC_DEFAULT", first=2.0, second=3.0)
+    assert done == {"CANCELLED"} and data.dof.focus_distance == 7.0
+    assert "locked" in why_not_focused(stage.camera)
 
 
 @pytest.mark.parametrize("holder", ["lock", "driver", "constraint"])
