@@ -224,7 +224,7 @@ class LightMaps:
         rows = np.zeros((len(self._samples), light_map.ROW_TEXELS, 4), np.float32)
         for place, sample in enumerate(self._samples):
             rows[place, 0] = (sample.light, 0.0, len(sample.views), 0.0)
-            rows[place, 1, :3] = sample.place
+            rows[place, 1] = (*sample.place, sample.group_of_sky)
             rows[place, 2, :3] = sample.light_of_sky
             rectangles = self._rectangles(place)
             for i, (view, rectangle) in enumerate(zip(sample.views, rectangles, strict=True)):

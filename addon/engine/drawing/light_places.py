@@ -5,13 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...sampling.lights.light_samples import ball_points, disk_points, sequence, sky_places
+from ...sampling.lights.light_turns import SKY_GROUP
 from . import light_views
 
 # Points in view at which lights are compared: of instances, and along each side of slices of depth.
 _MOST_INSTANCES = 128
 _ALONG = 4
-# Square of the distance at which all light counts alike, as a share of that of the view's box.
-_CLOSEST = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,12 +26,15 @@ class LightSample:
     views : list of light_views.LightView
     light_of_sky : tuple of 3 float
         Radiance over the density of directions.
+    group_of_sky : int
+        Of the sky: which group of a lens sample's directions it is of, 0 or 1.
     """
 
     light: int
     place: np.ndarray
     views: list
     light_of_sky: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    group_of_sky: int = 0
 
 
 def irradiances(light, points):
@@ -141,18 +143,29 @@ def aim_sky_samples(sky, each, sets, generation, stream, seed, receivers, hiding
     list of LightSample
     """
     turns = np.random.default_rng([seed, 5, stream, generation]).random(each * sets)
-    towards, light = np.empty((sets, each, 3)), np.empty((sets, each, 3))
+    # A group after the other; of each, every other direction follows the light.
+    groups = each // SKY_GROUP
+    towards, light = np.empty((2, sets, groups, SKY_GROUP, 3))
     for follows in (False, True):
-        u = sky_places(each // 2, sets, seed, stream + follows, generation)
+        u = sky_places(groups, sets, seed, stream + follows, generation)
         found = sky.directions(u.reshape(-1, 2), follows)
         for given, part in zip((towards, light), found, strict=True):
-            given[:, follows::2] = part.reshape(sets, -1, 3)
+            given[:, :, follows::2] = part.reshape(sets, groups, -1, 3)
+    group_of = np.broadcast_to(np.arange(groups)[:, None], (sets, groups, SKY_GROUP))
     return [
         LightSample(
-            -1, place, light_views.parallel_views(receivers, *hiding, -place, turn), tuple(given)
+            -1,
+            place,
+            light_views.parallel_views(receivers, *hiding, -place, turn),
+            tuple(given),
+            group,
         )
-        for place, given, turn in zip(
-            towards.reshape(-1, 3), light.reshape(-1, 3).tolist(), turns, strict=True
+        for place, given, turn, group in zip(
+            towards.reshape(-1, 3),
+            light.reshape(-1, 3).tolist(),
+            turns,
+            group_of.ravel().tolist(),
+            strict=True,
         )
     ]
 

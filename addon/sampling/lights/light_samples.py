@@ -106,46 +106,37 @@ def sequence(numbers, dimensions, seed=0, stream=0):
     return np.mod(shift + np.asarray(numbers)[:, None] * steps, 1.0)
 
 
-def sky_places(each, sets, seed=0, stream=0, lattice=0):
+def sky_places(pairs, sets, seed=0, stream=0, lattice=0):
     """Return where in the square directions of the sky are.
 
-    They are a Fibonacci lattice on the sphere, turned at random, so that all together are even.
-    It is dealt out to lens samples, each of which gets a few that are about as far apart as the
-    corners of a tetrahedron, so that each has some above every surface.
+    They are pairs of opposite directions, so that one of each is above every surface, half of them
+    a Fibonacci lattice, turned at random, so that all together are even. Lens samples get their
+    first pairs in an order that begins all over the lattice, further ones by chance, so that what
+    is hidden of one pair says nothing of how much light another gives.
 
     Parameters
     ----------
-    each : int
-        Directions of a lens sample.
+    pairs : int
+        Of a lens sample.
     sets : int
         Lens samples.
     seed, stream, lattice : int
-        Of the turn.
+        Of the turn and the chance.
 
     Returns
     -------
-    ndarray of shape (sets, each, 2)
+    ndarray of shape (sets, pairs, 2, 2)
         Longitude and sine of the latitude, from 0 to 1.
     """
-    count = each * sets
-    number = np.arange(count)
-    u = np.column_stack([(number + 0.5) / count, np.mod(number * _GOLDEN, 1.0)])
-    turn = rotation(np.random.default_rng([seed, 6, stream, lattice]).random(3))
-    points = sphere_points(u) @ turn.T
-    free = np.ones(count, bool)
-    dealt = np.empty((sets, each), np.int64)
-    # The first lens samples begin all over the lattice.
-    begins = np.argsort(np.mod(number * _GOLDEN, 1.0))
-    for own in dealt:
-        own[0] = begins[free[begins]][0]
-        free[own[0]] = False
-        for k in range(1, each):
-            cosines = points @ points[own[:k]].T
-            # Those of a tetrahedron are -1/3; of two directions alone opposite ones are best.
-            wanted = -1.0 / (each - 1.0)
-            own[k] = np.where(free, np.abs(cosines - wanted).sum(axis=1), np.inf).argmin()
-            free[own[k]] = False
-    x, y, z = points[dealt].transpose(2, 0, 1)
+    number = np.arange(pairs * sets)
+    along = np.mod(number * _GOLDEN, 1.0)
+    rng = np.random.default_rng([seed, 6, stream, lattice])
+    turn = rotation(rng.random(3))
+    half = sphere_points(np.column_stack([(number + 0.5) / (2 * pairs * sets), along])) @ turn.T
+    half = half[np.argsort(along)].reshape(sets, pairs, 3)
+    for pair in range(1, pairs):
+        half[:, pair] = rng.permutation(half[:, pair])
+    x, y, z = np.moveaxis(np.stack([half, -half], axis=2), -1, 0)
     found = np.stack([np.arctan2(y, x) / (2.0 * np.pi) + 0.5, 0.5 * z + 0.5], axis=-1)
     return np.clip(found, 0.0, 1.0 - 1e-9)
 

@@ -28,6 +28,12 @@ _EACH_OF_UNEVEN = 4
 # samples of a generation have others.
 _EACH_OF_SKY, _BRIGHT_SKY = (4, 8), 0.25
 _SETS_OF_SKY = 32
+# Directions of the sky that come together, two opposite ones of each kind. With two such groups a
+# lens sample has each corrected by what is hidden of the other.
+SKY_GROUP = 4
+# When sets come again the second group is that of the set so many on: other groups meet, without
+# more maps.
+_SETS_ON = 11
 # Places on weak lights: of a generation, and of a lens sample.
 _MOST_WEAK, _EACH_WEAK = 128, 2
 # Most places of one drawing: of all main lamps, of the sky, of weak lights.
@@ -133,8 +139,11 @@ class LightTurns:
         for light in (*self._main.tolist(), self._sky):
             each, count = self.each[light], self.counts[light]
             if count:
-                own = (samples[:, None] * each + np.arange(each)).ravel() % count
-                most = _MOST_LISTED[1] if light == self._sky else most_of_lamp
+                if light == self._sky:
+                    own, most = self._of_sky(samples), _MOST_LISTED[1]
+                else:
+                    own = (samples[:, None] * each + np.arange(each)).ravel() % count
+                    most = most_of_lamp
                 found[light] = _thinned(np.unique(own), most)
         if turns := len(self._weak_lights):
             slots = (samples[:, None] * _EACH_WEAK + np.arange(_EACH_WEAK)).ravel()
@@ -146,6 +155,16 @@ class LightTurns:
             for light in np.unique(lights).tolist():
                 found[light] = numbers[lights == light]
         return self._list(found, weights)
+
+    def _of_sky(self, samples):
+        """Return which directions of the sky lens samples see."""
+        each = self.each[-1]
+        sets = self.counts[-1] // each
+        groups = np.arange(each // SKY_GROUP)
+        again = samples // sets * _SETS_ON
+        whose = (samples[:, None] + again[:, None] * groups) % sets
+        firsts = whose * each + groups * SKY_GROUP
+        return np.add.outer(firsts, np.arange(SKY_GROUP)).ravel()
 
     def steady(self):
         """Return what all drawings are lit from that must agree; weak lights are not hidden."""

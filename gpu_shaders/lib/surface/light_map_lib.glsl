@@ -1,6 +1,7 @@
 // Which light samples do not reach a point, from their light maps (addon/passes/surface/light_map.py).
 // A light sample is a row of the light table below the lights: number of its light, -1 for the sky, and
-// number of views (z); its place or direction; of the sky what it stands for; and for each view 5 texels: origin, and whether it is parallel;
+// number of views (z); its place or direction, and of the sky which group of a lens sample's directions it
+// is of (w, 0 or 1); of the sky what it stands for; and for each view 5 texels: origin, and whether it is parallel;
 // across, to the edge of the map at distance 1 (parallel: at any), and the least depth; up, and the
 // largest; along, of unit length, and the size of a texel at distance 1 (parallel: at any), m; the map's
 // corner and size in the atlas, texels.

@@ -145,14 +145,11 @@ vec3 environment_diffuse(vec3 normal)
 
 #include "passes/surface/surface_shadows.glsl"
 
-#ifdef SHADOWS
 // What arrives of the light on a white surface, by the light samples of a list; `lit`: if nothing hid it.
 Reflected arriving_diffuse(Shading s, int list, vec3 of_sky, out vec3 lit)
 {
   lit = of_sky;
-  Reflected sum = Reflected(vec3(0.0), vec3(0.0), vec3(0.0));
-  vec3 axis = diffuse_axis(s);
-  sum.light = diffuse_share(s) * sky_arriving(s, list, axis, environment_diffuse(axis));
+  Reflected sum = Reflected(of_sky * sky_share(s, list, diffuse_axis(s)), vec3(0.0), vec3(0.0));
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
     if (light.kind == LIGHT_NONE) {
@@ -161,20 +158,18 @@ Reflected arriving_diffuse(Shading s, int list, vec3 of_sky, out vec3 lit)
     vec3 reflected = lamp_diffuse(s, light, light_illuminate(light, s.position));
     lit += reflected;
     if (reflected != vec3(0.0)) {
-      reflected *= lamp_arriving(s, list, i, light);
+      reflected *= lamp_share(s, list, i, light);
       sum.light += reflected;
       sum.unsplit += reflected * light.unsplit;
     }
   }
   return sum;
 }
-#endif
 
 // Of a white surface.
 Reflected diffuse_light(Shading s)
 {
   vec3 of_sky = diffuse_share(s) * environment_diffuse(diffuse_axis(s));
-#ifdef SHADOWS
   vec3 lit;
   Reflected own = arriving_diffuse(s, OWN, of_sky, lit);
   if (light_is_steady(max(own.light, lit))) {
@@ -183,20 +178,6 @@ Reflected diffuse_light(Shading s)
     return steady;
   }
   return own;
-#else
-  vec3 sum = of_sky;
-  vec3 unsplit = vec3(0.0);
-  for (int i = 0; i < light_count(lights_tx); i++) {
-    Light light = light_fetch(lights_tx, i);
-    if (light.kind == LIGHT_NONE) {
-      continue;
-    }
-    vec3 reflected = lamp_diffuse(s, light, light_illuminate(light, s.position));
-    sum += reflected;
-    unsplit += reflected * light.unsplit;
-  }
-  return Reflected(sum, unsplit, vec3(0.0));
-#endif
 }
 
 // The world in a direction, averaged over a lobe of a roughness.
@@ -320,15 +301,12 @@ vec3 lamp_glossy(Shading s, Light light, Lobes lobes)
          lobes_reflect(lobes.a, lobes.repeat_a, lobes.b, lobes.repeat_b, cos_d);
 }
 
-#ifdef SHADOWS
 // What arrives of the light that lobes reflect, by the light samples of a list. The sky's light is hidden
 // as it is from a white Lambertian surface that faces the mirrored direction. `lit`: if nothing hid light.
 Reflected arriving_glossy(Shading s, int list, Lobes lobes, vec3 of_sky, out vec3 lit)
 {
   lit = of_sky;
-  Reflected sum = Reflected(vec3(0.0), vec3(0.0), vec3(0.0));
-  vec3 whole = environment_diffuse(lobes.mirrored);
-  sum.light = of_sky * sky_arriving(s, list, lobes.mirrored, whole) / max(whole, vec3(1e-12));
+  Reflected sum = Reflected(of_sky * sky_share(s, list, lobes.mirrored), vec3(0.0), vec3(0.0));
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
     if (light.kind == LIGHT_NONE) {
@@ -337,14 +315,13 @@ Reflected arriving_glossy(Shading s, int list, Lobes lobes, vec3 of_sky, out vec
     vec3 reflected = lamp_glossy(s, light, lobes);
     lit += reflected;
     if (reflected != vec3(0.0)) {
-      reflected *= lamp_arriving(s, list, i, light);
+      reflected *= lamp_share(s, list, i, light);
       sum.light += reflected;
       sum.unsplit += reflected * light.unsplit;
     }
   }
   return sum;
 }
-#endif
 
 // Light reflected by two lobes of one roughness.
 Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
@@ -366,7 +343,6 @@ Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
   }
   float alpha = max(roughness * roughness, MIN_ALPHA);
   Lobes lobes = Lobes(alpha, mirrored, a, repeat_a, b, repeat_b);
-#ifdef SHADOWS
   vec3 lit;
   Reflected own = arriving_glossy(s, OWN, lobes, sum, lit);
   if (light_is_steady(max(own.light, lit))) {
@@ -375,19 +351,6 @@ Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
     return steady;
   }
   return own;
-#else
-  vec3 unsplit = vec3(0.0);
-  for (int i = 0; i < light_count(lights_tx); i++) {
-    Light light = light_fetch(lights_tx, i);
-    if (light.kind == LIGHT_NONE) {
-      continue;
-    }
-    vec3 reflected = lamp_glossy(s, light, lobes);
-    sum += reflected;
-    unsplit += reflected * light.unsplit;
-  }
-  return Reflected(sum, unsplit, vec3(0.0));
-#endif
 }
 
 #include "passes/surface/surface_closures.glsl"

@@ -13,13 +13,14 @@ vec3 lamp_diffuse(Shading s, Light light, Illumination incoming)
          (light.factors.x * diffuse_response(s, incoming.towards, incoming.sin2));
 }
 
+// Rows of lit_by_tx: light samples of this drawing, and those that all drawings share.
+#define OWN 0
+#define STEADY 1
+
 #ifdef SHADOWS
 
 // From this share of the highlight threshold on light may be splatted.
 #define STEADY_FROM 0.75
-// Rows of lit_by_tx: light samples of this drawing, and those that all drawings share.
-#define OWN 0
-#define STEADY 1
 // Most light samples in a list, 32 a word; sampling/lights/light_turns.py.
 #define LIST_WORDS 4
 
@@ -103,7 +104,7 @@ float lamp_place_light(Shading s, Light light, vec3 place)
 }
 
 // The share of a lamp's light that arrives; `light`: of the number `number`.
-float lamp_arriving(Shading s, int list, int number, Light light)
+float lamp_share(Shading s, int list, int number, Light light)
 {
   LightTurn turn = light_turn(list, number);
   if (turn.count == 0 || turn.weight <= 0.0) {
@@ -124,36 +125,68 @@ float lamp_arriving(Shading s, int list, int number, Light light)
   return turn.weight * share;
 }
 
-// Of the sky's light `whole` on a white Lambertian surface of a normal, what arrives: the part of it that
+// The share of the sky's light on a white Lambertian surface of a normal that arrives: the part of it that
 // the directions say which are not hidden, corrected by how much more or less than their part these give:
-// a control variate that is exact where all or none are hidden. Directions of a lens sample give about the
-// same light, so that it is hardly biased.
-vec3 sky_arriving(Shading s, int list, vec3 normal, vec3 whole)
+// a control variate that is exact where all or none are hidden. If there are two groups of directions, each
+// is corrected by what is hidden of the other, of which it is independent: where more light comes from
+// is mostly more open, too, so that a group corrected by itself is too dark, by about 1 part in 50 of what
+// gets into a room. Few directions of a weak sky are one group.
+vec3 sky_share(Shading s, int list, vec3 normal)
 {
   LightTurn turn = light_turn(list, light_count(lights_tx));
   if (turn.count == 0) {
-    return whole;
+    return vec3(1.0);
   }
-  vec3 all = vec3(0.0), arriving = vec3(0.0);
-  float above = 0.0, open = 0.0;
+  vec3 arriving = vec3(0.0), first = vec3(0.0), second = vec3(0.0);
+  vec2 number = vec2(0.0), above = vec2(0.0), open = vec2(0.0);
   for (int i = 0; i < turn.count; i++) {
     int row = light_sample_row(list, turn.first + i);
-    float cosine = dot(normal, texelFetch(lights_tx, ivec2(1, row), 0).xyz);
+    vec4 direction = texelFetch(lights_tx, ivec2(1, row), 0);
+    vec2 is_of = vec2(1.0 - direction.w, direction.w);
+    number += is_of;
+    float cosine = dot(normal, direction.xyz);
     if (cosine <= 0.0) {
       continue;
     }
     vec3 given = texelFetch(lights_tx, ivec2(2, row), 0).rgb * (cosine / (PI * float(turn.count)));
-    all += given;
-    above += 1.0;
+    first += given * is_of.x;
+    second += given * is_of.y;
+    above += is_of;
     if (light_sample_arrives(s, list, turn.first + i, row)) {
       arriving += given;
-      open += 1.0;
+      open += is_of;
     }
   }
-  if (open == 0.0 || open == above) {
-    return (above > 0.0 && open == 0.0) ? vec3(0.0) : whole;
+  float most = above.x + above.y, part = (open.x + open.y) / max(most, 1.0);
+  if (most == 0.0 || part == 1.0) {
+    return vec3(1.0);
   }
-  float part = open / above;
-  return max(part * whole + arriving - part * all, vec3(0.0));
+  if (part == 0.0) {
+    return vec3(0.0);
+  }
+  vec2 parts = vec2((above.x > 0.0) ? open.x / above.x : part,
+                    (above.y > 0.0) ? open.y / above.y : part);
+  vec3 whole = environment_diffuse(normal);
+  vec2 shares = number / float(turn.count);
+  arriving += parts.y * (shares.x * whole - first) + parts.x * (shares.y * whole - second);
+  return max(arriving, vec3(0.0)) / max(whole, vec3(1e-12));
+}
+
+#else
+
+// Nothing hides light.
+vec3 sky_share(Shading s, int list, vec3 normal)
+{
+  return vec3(1.0);
+}
+
+float lamp_share(Shading s, int list, int number, Light light)
+{
+  return 1.0;
+}
+
+bool light_is_steady(vec3 light)
+{
+  return false;
 }
 #endif
