@@ -22,7 +22,7 @@ def told(bpy, monkeypatch):
 
     lines = []
 
-    def note(_engine, _session, report):
+    def note(_engine, _session, _scene, report):
         lines.extend(report)
 
     monkeypatch.setattr(final_render, "_show_report", note)
