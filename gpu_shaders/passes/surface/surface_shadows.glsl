@@ -129,7 +129,7 @@ float lamp_share(Shading s, int list, int number, Light light)
 // the directions say which are not hidden, corrected by how much more or less than their part these give:
 // a control variate that is exact where all or none are hidden. If there are two groups of directions, each
 // is corrected by what is hidden of the other, of which it is independent: where more light comes from
-// is mostly more open, too, so that a group corrected by itself is too dark, by about 1 part in 50 of what
+// is mostly more open, too, so that a group corrected by itself is too dark, by up to 1 part in 30 of what
 // gets into a room. Few directions of a weak sky are one group.
 vec3 sky_share(Shading s, int list, vec3 normal)
 {
@@ -151,19 +151,20 @@ vec3 sky_share(Shading s, int list, vec3 normal)
     vec3 given = texelFetch(lights_tx, ivec2(2, row), 0).rgb * (cosine / (PI * float(turn.count)));
     first += given * is_of.x;
     second += given * is_of.y;
-    above += is_of;
+    above += is_of * cosine;
     if (light_sample_arrives(s, list, turn.first + i, row)) {
       arriving += given;
-      open += is_of;
+      open += is_of * cosine;
     }
   }
-  float most = above.x + above.y, part = (open.x + open.y) / max(most, 1.0);
-  if (most == 0.0 || part == 1.0) {
+  if (open == above) {
     return vec3(1.0);
   }
-  if (part == 0.0) {
+  if (open == vec2(0.0)) {
     return vec3(0.0);
   }
+  // By the cosine: a direction that grazes a surface, where a map says little, says as little here.
+  float part = (open.x + open.y) / (above.x + above.y);
   vec2 parts = vec2((above.x > 0.0) ? open.x / above.x : part,
                     (above.y > 0.0) ? open.y / above.y : part);
   vec3 whole = environment_diffuse(normal);

@@ -96,7 +96,7 @@ def sky_with_a_sun():
 def test_what_is_hidden_of_one_group_says_nothing_of_the_light_of_the_other():
     """The shader's share of the sky, by a twin, where much of it is hidden: right in the mean.
 
-    What is hidden of all directions together follows the sun: 0.03 too dark in the mean here.
+    What is hidden of all directions together follows the sun: up to 0.03 too dark here.
     """
     sky = Sky(sky_with_a_sun(), np.eye(3))
     errors = {"groups": [], "together": []}
@@ -126,20 +126,20 @@ def test_what_is_hidden_of_one_group_says_nothing_of_the_light_of_the_other():
             given = np.maximum(all_around @ normal, 0.0) * light_around
             whole, exact = given.sum(), given[is_open(all_around)].sum()
             cosine = np.maximum(towards @ normal, 0.0)
-            above, seen = cosine > 0.0, is_open(towards)
+            seen = is_open(towards)
             given = cosine * light / 8.0
             arriving = (given * seen).sum(axis=(1, 2))
-            parts = (above & seen).sum(axis=2) / np.maximum(above.sum(axis=2), 1)
+            parts = (cosine * seen).sum(axis=2) / cosine.sum(axis=2)
             lacks = 0.5 * whole - given.sum(axis=2)
             shares = arriving + (parts[:, ::-1] * lacks).sum(axis=1)
             errors["groups"].append(np.maximum(shares, 0.0).mean() / exact - 1.0)
-            part = (above & seen).sum(axis=(1, 2)) / np.maximum(above.sum(axis=(1, 2)), 1)
+            part = (cosine * seen).sum(axis=(1, 2)) / cosine.sum(axis=(1, 2))
             shares = arriving + part * lacks.sum(axis=1)
             errors["together"].append(np.maximum(shares, 0.0).mean() / exact - 1.0)
     # 1280 sets that differ by about 0.3: chance is 0.008 at one place.
     assert np.abs(errors["groups"]).max() < 0.015
     assert abs(np.mean(errors["groups"])) < 0.006
-    assert np.mean(errors["together"]) < -0.015
+    assert np.min(errors["together"]) < -0.03
 
 
 def test_directions_of_a_sky_stand_for_its_light():
