@@ -14,7 +14,7 @@ _EASINGS = {"SMOOTH": "SINE", "STRONG": "CUBIC", "LINEAR": "LINEAR"}
 
 
 class _PickOperator:
-    """Waits for clicks in 3D views; a subclass takes the places.
+    """Waits for clicks in 3D views; a subclass tells what to click on (`begin`), and takes the places.
 
     There is no `poll`: a key whose operator is refused there tells nothing.
     """
@@ -40,10 +40,6 @@ class _PickOperator:
     def camera_of(self, scene):
         """Return the camera that is focused, or None."""
         return scene.camera
-
-    def begin(self, context):
-        """Tell what to click on."""
-        raise NotImplementedError
 
     def modal(self, context, event):
         """Wait; views can be moved and zoomed meanwhile."""
