@@ -3,6 +3,7 @@
 import textwrap
 
 import blf
+import bpy
 
 _FONT = 0
 # Of Blender's status text, and to the view's edge, in points.
@@ -21,14 +22,17 @@ def draw(text, area, region):
     region : bpy.types.Region
         Of the area: the view itself.
     """
+    # Pixels in a point.
+    scale = bpy.context.preferences.system.ui_scale
+    margin = _MARGIN * scale
     # The toolbar lies over the view.
-    left = _MARGIN + sum(other.width for other in area.regions if other.type == "TOOLS")
-    blf.size(_FONT, _SIZE)
+    left = margin + sum(other.width for other in area.regions if other.type == "TOOLS")
+    blf.size(_FONT, _SIZE * scale)
     blf.color(_FONT, *_COLOR)
-    letter, height = blf.dimensions(_FONT, "n")[0], 1.6 * _SIZE
-    across = max(20, int((region.width - left - _MARGIN) / letter))
+    letter, height = blf.dimensions(_FONT, "n")[0], 1.6 * _SIZE * scale
+    across = max(20, int((region.width - left - margin) / letter))
     # Below the header, which lies over the view.
-    top = region.height - 4 * _MARGIN
+    top = region.height - 4 * margin
     for i, line in enumerate(textwrap.wrap(text, across)):
         blf.position(_FONT, left, top - i * height, 0.0)
         blf.draw(_FONT, line)

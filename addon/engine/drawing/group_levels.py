@@ -25,12 +25,15 @@ class GroupLevels:
         self._content = content
         self.triangles, self._blurs = [], []
         self._group_of = np.zeros(len(content.instances.world), np.int64)
-        bent = {uid: bent_attributes(found.graph) for uid, found in content.materials.items()}
+        bent = {}
         for number, group in enumerate(content.groups):
             self._group_of[group.first : group.first + group.count] = number
-            keys = frozenset().union(*(bent[uid] for uid in group.materials))
             meshes = buffers.level_meshes(content.meshes[group.mesh])
-            if keys and len(meshes) > 1:
+            if len(meshes) > 1:
+                for uid in group.materials:
+                    if uid not in bent:
+                        bent[uid] = bent_attributes(content.materials[uid].graph)
+                keys = frozenset().union(*(bent[uid] for uid in group.materials))
                 meshes = meshes[: 1 + buffers.unbent_levels(group.mesh, keys)]
             self.triangles.append([len(mesh.triangles) for mesh in meshes])
             self._blurs.append(blur_for_levels(*meshes))

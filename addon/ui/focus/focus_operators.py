@@ -14,7 +14,7 @@ _EASINGS = {"SMOOTH": "SINE", "STRONG": "CUBIC", "LINEAR": "LINEAR"}
 
 
 class _PickOperator:
-    """Waits for clicks in 3D views; a subclass tells what to click on (`begin`), and takes the places.
+    """Waits for clicks in 3D views; a subclass tells where to (`begin`), and takes the places.
 
     There is no `poll`: a key whose operator is refused there tells nothing.
     """
