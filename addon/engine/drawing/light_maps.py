@@ -286,6 +286,8 @@ class LightMaps:
         self._targets.forget_framebuffers()
         framebuffer = self._targets.framebuffer(depth="maps")
         with framebuffer.bind():
+            # On Vulkan a depth buffer that may not be written is cleared as a whole.
+            state.opaque()
             for view, rectangle in zip(sample.views, self._rectangles(place), strict=True):
                 with state.scissored(*rectangle):
                     framebuffer.clear(depth=1.0)
