@@ -64,7 +64,6 @@ REASONS = {
     "OBJECT_PT_shading": "light linking and terminators are not followed; a warning says so",
     "OBJECT_PT_shadow_terminator": "shadows begin where triangles turn away",
     "MATERIAL_PT_preview": "no previews of materials",
-    "EEVEE_MATERIAL_PT_displacement": "what is linked to Displacement is drawn as bump",
     "EEVEE_MATERIAL_PT_settings": "Aplanat's *Settings*, of what it follows",
     "EEVEE_MATERIAL_PT_thickness": "glass is seen straight through",
     "NODE_EEVEE_MATERIAL_PT_settings": "Aplanat's *Settings*, of what it follows",

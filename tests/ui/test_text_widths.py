@@ -12,15 +12,15 @@ from .panel_drawing import draw, panels_of, states
 # In pixels at a scale of 1: the tabs, both margins of a panel with its scroll bar, an icon, the box
 # of a switch.
 TABS, MARGINS, ICON, BOX = 38, 24, 20, 18
-# Blender's size of text in panels, and the gap that it keeps on both sides.
-POINTS, GAP = 12, 4
+# The gap that Blender keeps on both sides of a text.
+GAP = 4
 
 
 @pytest.mark.parametrize("width", [280, 400])
-def test_no_text_is_cut(context, width):
+def test_no_text_is_cut(context, width, aplanat_bpy):
     import blf
 
-    blf.size(0, POINTS)
+    blf.size(0, aplanat_bpy.context.preferences.ui_styles[0].widget.points)
     context.region = SimpleNamespace(width=width - TABS)
     room = width - TABS - MARGINS
     cut = set()
@@ -61,3 +61,22 @@ def test_panels_of_the_camera_follow_depth_of_field(aplanat_bpy, monkeypatch):
     for name in registered:
         cls = getattr(bpy.types, name)
         assert cls.is_registered and "APLANAT" in cls.COMPAT_ENGINES
+
+
+def test_lines_are_filled_by_the_width_of_what_is_drawn(aplanat_bpy):
+    import blf
+
+    from addon.ui.panels.sentences import wrapped
+
+    text = "Object 'lily': little illuminated hills will fill this till it is full, i.e. still"
+    lines = wrapped(text, 24)
+    assert " ".join(lines) == text
+    widths = [blf.dimensions(0, line)[0] for line in lines]
+    # The next word would not have fitted into 24 letters of 6.5 px.
+    words = [line.split()[0] for line in lines[1:]]
+    assert max(widths) <= 24 * 6.5
+    for line, word in zip(lines, words, strict=False):
+        assert blf.dimensions(0, f"{line} {word}")[0] > 24 * 6.5
+    # Narrow letters: more than 24 of them.
+    assert max(map(len, lines)) > 30
+    assert "".join(wrapped("W" * 60, 24)) == "W" * 60 and len(wrapped("W" * 60, 24)) > 3

@@ -15,7 +15,9 @@ from ...scene.camera.focusing import read_depth_of_field
 from .lengths import in_units
 
 NEAR, FOCUS, FAR = (1.0, 0.3, 0.2), (0.2, 0.95, 0.35), (0.35, 0.55, 1.0)
-_FONT, _SIZE = 0, 12
+_FONT, _SIZE = 0, 13
+# Numbers are written in pale colours with a dark rim, so that they stand out against the tint.
+_PALE, _RIM = 0.55, 6
 
 # What Blender gives for a handler that is added, to remove it.
 _handles = []
@@ -114,8 +116,9 @@ def frame_at(scene, camera, depth):
 
 def _write(text, color, x, y):
     blf.enable(_FONT, blf.SHADOW)
-    blf.shadow(_FONT, 3, 0.0, 0.0, 0.0, 0.8)
-    blf.color(_FONT, *color, 1.0)
+    blf.shadow(_FONT, _RIM, 0.0, 0.0, 0.0, 0.9)
+    blf.shadow_offset(_FONT, 0, 0)
+    blf.color(_FONT, *(_PALE + (1.0 - _PALE) * part for part in color), 1.0)
     blf.position(_FONT, x, y, 0.0)
     blf.draw(_FONT, text)
     blf.disable(_FONT, blf.SHADOW)

@@ -18,6 +18,7 @@ _ADDED = frozenset(
         "DATA_PT_EEVEE_light",
         "NODE_DATA_PT_EEVEE_light",
         "EEVEE_MATERIAL_PT_context_material",
+        "EEVEE_MATERIAL_PT_displacement",
         "EEVEE_MATERIAL_PT_surface",
         "EEVEE_MATERIAL_PT_volume",
         "EEVEE_WORLD_PT_surface",

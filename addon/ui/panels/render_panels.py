@@ -124,6 +124,9 @@ class APLANAT_VIEWLAYER_PT_data(EnginePanel, bpy.types.Panel):
         include.prop(layer, "use_pass_normal", text="Normal")
         include.prop(layer, "use_pass_position", text="Position")
         include.prop(layer, "use_pass_vector", text="Vector")
+        whole = column.column()
+        whole.use_property_split = False
+        whole.prop(layer, "pass_alpha_threshold")
         lens = column.column(heading="Lens")
         lens.prop(layer.aplanat, "use_pass_coc")
         lens.prop(layer.aplanat, "use_pass_focus_matte")
