@@ -1,12 +1,15 @@
 """A captured picture seen through the lens: against rays through flat cards, and the refusals."""
 
+import threading
+import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from addon.engine.layered import layered_drawing
-from addon.engine.refocus.refocusing import Refocusing, refocus
+from addon.engine.refocus import live_picture
+from addon.engine.refocus.refocusing import Refocusing, planned_frame, refocus
 from addon.engine.refocus.settings import RefocusSettings, bokeh_of, lens_of
 from addon.errors import FocusError
 from addon.layers.layer_stack import DepthLayer, LayerCamera, LayerStack
@@ -166,3 +169,32 @@ def test_the_picture_is_blurred_by_the_iris_image(aplanat_bpy, stack):
     picture = refocus(stack, settings)
     expected = traced(stack, lens, lens_samples(0, 1024, iris, 5) * lens.aperture_radius)
     assert np.abs(picture - expected).mean() < 0.02
+
+
+def test_rays_of_a_real_lens_are_traced_beside_the_live_picture(aplanat_bpy, stack, monkeypatch):
+    made, may_trace = [], threading.Event()
+
+    def planned(stack, settings, content):
+        assert threading.current_thread() is not threading.main_thread()
+        assert may_trace.wait(60)
+        made.append(settings.focus_distance)
+        return planned_frame(stack, settings, content)
+
+    monkeypatch.setattr(live_picture, "planned_frame", planned)
+    lens = library_lens("singlet-planoconvex-100mm")
+    picture = live_picture.LivePicture(stack)
+    try:
+        wanted = [RefocusSettings(focus, real_lens=lens, samples=8) for focus in (3.0, 4.0, 5.0)]
+        for settings in wanted:
+            picture.change(settings)
+            assert picture.refine() is None and not picture.is_planned
+        may_trace.set()
+        end = time.monotonic() + 60.0
+        while not picture.finished and time.monotonic() < end:
+            found = picture.refine()
+        # What was asked for in between is left out, and nothing of it is in the picture.
+        assert made == [3.0, 5.0]
+        np.testing.assert_array_equal(found, refocus(stack, wanted[-1]))
+    finally:
+        may_trace.set()
+        picture.release()

@@ -1,16 +1,19 @@
 """A captured picture that follows its settings: refined piece by piece, begun anew by a change.
 
 Pieces are small, so that whoever draws them between other work never waits long; the picture is
-shown after the first set of lens samples, and then from time to time until it has them all.
+shown after the first set of lens samples, and then from time to time until it has them all. Rays
+through a real lens are traced by a thread; the picture before stays until they are.
 """
 
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 from ...device import context as device_context
 from ...device import state
 from ...errors import FocusError
 from ..frame.pacing import Pacer
-from .refocusing import Refocusing
+from ..bokeh.lens_profiles import lens_profile, lens_pupil
+from .refocusing import Refocusing, nothing, planned_frame
 
 # Lens samples of the first picture that is worth a look.
 FIRST_SAMPLES = 16
@@ -43,6 +46,14 @@ class LivePicture:
         self._pacer = Pacer(PIECE_SECONDS)
         self._shown, self._shown_at, self._finished = 0, 0.0, False
         self._changed_at = 0.0
+        self._content = nothing()
+        # What is being planned, and the thread that does it, there while there is a real lens.
+        self._plan = self._thread = None
+
+    @property
+    def is_planned(self):
+        """Whether the next `refine` will draw, and not wait for rays through the lens."""
+        return self._plan is None or self._plan[1].done()
 
     @property
     def samples_done(self):
@@ -94,6 +105,7 @@ class LivePicture:
             return self._piece()
         except FocusError:
             # Nothing has begun with such a lens.
+            self._plan = None
             raise
         except BaseException:
             # Nobody knows how far it went.
@@ -101,12 +113,16 @@ class LivePicture:
             raise
 
     def _piece(self):
+        if self._is_drawn:
+            # Others were asked for in between.
+            self._plan = None
+        elif not self._is_ready():
+            return None
         device_context.ensure_context()
         with state.preserved():
-            if self._refocusing is None:
-                self._refocusing = Refocusing(self.stack, self.settings, drafts=True)
+            if not self._is_drawn:
+                self._begin()
             refocusing = self._refocusing
-            refocusing.change(self.settings)
             if not refocusing.sampled:
                 # The first picture is no later than it must, and a change waits for a piece only.
                 self._pacer.samples = min(self._pacer.samples, FIRST_SAMPLES)
@@ -119,6 +135,37 @@ class LivePicture:
             picture = refocusing.read()
         self._shown, self._shown_at = refocusing.samples_done, time.perf_counter()
         return picture
+
+    @property
+    def _is_drawn(self):
+        """Whether the picture on the device is of these settings."""
+        return self._refocusing is not None and self._refocusing.settings == self.settings
+
+    def _is_ready(self):
+        """Whether the picture can begin; where rays are to be traced, that is begun."""
+        if self.settings.real_lens is None:
+            self._plan = None
+            return True
+        if self._plan is not None and self._plan[1].done():
+            if self._plan[0] == self.settings:
+                return True
+            # Settings have changed since: those of now are next.
+            self._plan = None
+        if self._plan is None:
+            self._thread = self._thread or ThreadPoolExecutor(1, "lens")
+            found = self._thread.submit(_planned, self.stack, self.settings, self._content)
+            self._plan = self.settings, found
+        return False
+
+    def _begin(self):
+        if self._plan is not None:
+            planned, self._plan = self._plan[1].result(), None
+        else:
+            planned = planned_frame(self.stack, self.settings, self._content)
+        if self._refocusing is None:
+            self._refocusing = Refocusing(self.stack, self.settings, drafts=True, planned=planned)
+        else:
+            self._refocusing.change(self.settings, planned)
 
     def _advance(self, refocusing):
         start, before = time.perf_counter(), refocusing.samples_done
@@ -143,6 +190,20 @@ class LivePicture:
     def release(self):
         """Release everything on the device; the next piece begins anew."""
         self.show_again()
+        self._plan = None
+        if self._thread:
+            self._thread.shutdown(wait=False, cancel_futures=True)
+            self._thread = None
         if self._refocusing:
             self._refocusing.release()
             self._refocusing = None
+
+
+def _planned(stack, settings, content):
+    """Plan a picture through a real lens, and have what its discs need in the cache."""
+    planned = planned_frame(stack, settings, content)
+    lens = planned[0].camera.real_lens
+    if settings.bokeh is not None and lens.shapes_bokeh:
+        lens_profile(lens)
+        lens_pupil(lens)
+    return planned

@@ -61,13 +61,37 @@ def refocus_snapshot(stack, settings, content=None):
     )
     sampling = Sampling(method="LAYERED", lens_samples=settings.samples, seed=settings.seed)
     return SceneSnapshot(
-        content=content or _nothing(),
+        content=content or nothing(),
         camera=camera,
         film=Film(stack.width, stack.height, (0, 0, stack.width, stack.height), True, "BOX", 1.0),
         sampling=sampling,
         passes=("Combined", "Defocus", "Bokeh") if stack.fills else ("Combined",),
         stack=stack,
     )
+
+
+def planned_frame(stack, settings, content=None):
+    """Return how a captured picture is made; without the graphics device.
+
+    Rays are traced through a real lens here, which takes seconds.
+
+    Parameters
+    ----------
+    stack, settings, content
+        As for `refocus_snapshot`.
+
+    Returns
+    -------
+    snapshot : SceneSnapshot
+    plan : FramePlan
+
+    Raises
+    ------
+    FocusError
+        If the focus distance or the f-number cannot form a picture.
+    """
+    snapshot = refocus_snapshot(stack, settings, content)
+    return snapshot, plan_frame(snapshot)
 
 
 class Refocusing:
@@ -86,6 +110,8 @@ class Refocusing:
     drafts : bool
         Begin with a draft of the bokeh, unless the last whole one was quick, and leave the whole to
         `refine_bokeh`.
+    planned : tuple of SceneSnapshot and FramePlan, optional
+        Of `planned_frame`; made here if it is not given.
 
     Attributes
     ----------
@@ -99,23 +125,25 @@ class Refocusing:
         If the focus distance or the f-number cannot form a picture.
     """
 
-    def __init__(self, stack, settings, look_textures=None, drafts=False):
+    def __init__(self, stack, settings, look_textures=None, drafts=False, planned=None):
         self.stack = stack
         self.settings = settings
-        snapshot = refocus_snapshot(stack, settings)
+        snapshot, plan = planned or planned_frame(stack, settings)
         self._content = snapshot.content
         self._buffers = SceneBuffers(look_textures)
         self._buffers.update(self._content)
         self._buffers.captured = StackLayers(stack)
-        self._drafts, plan = drafts, plan_frame(snapshot)
+        self._drafts = drafts
         self._renderer = FrameRenderer(plan, snapshot, self._buffers, drafts)
 
-    def change(self, settings):
+    def change(self, settings, planned=None):
         """Begin anew with other settings; the same ones go on where they are.
 
         Parameters
         ----------
         settings : RefocusSettings
+        planned : tuple of SceneSnapshot and FramePlan, optional
+            Of `planned_frame` with the content of the picture before.
 
         Raises
         ------
@@ -124,8 +152,8 @@ class Refocusing:
         """
         if settings == self.settings:
             return
-        snapshot = refocus_snapshot(self.stack, settings, self._content)
-        self._renderer.restart(plan_frame(snapshot), snapshot, self._drafts)
+        snapshot, plan = planned or planned_frame(self.stack, settings, self._content)
+        self._renderer.restart(plan, snapshot, self._drafts)
         self.settings = settings
 
     @property
@@ -232,6 +260,7 @@ def refocus(stack, settings, go_on=lambda share: True):
         refocusing.release()
 
 
-def _nothing():
+def nothing():
+    """Return the content of a picture that has layers only."""
     table = InstanceTable(np.zeros((0, 4, 4), np.float32), np.zeros(0, np.float32))
     return SceneContent({}, {}, {}, table, ())

@@ -66,6 +66,8 @@ class LiveRefocus:
         """Share of the picture that is done; None while there is none to be done."""
         if self._picture is None or self.error or self._picture.settings is None:
             return None
+        if self.is_tracing:
+            return 0.0
         if self._picture.finished:
             return 1.0
         return min(self._picture.samples_done / self._picture.settings.samples, 0.99)
@@ -76,6 +78,11 @@ class LiveRefocus:
         return self._reading is not None
 
     @property
+    def is_tracing(self):
+        """Whether rays through the lens are being traced for the picture."""
+        return self._picture is not None and not self._picture.is_planned
+
+    @property
     def finished(self):
         """Whether the image shows the whole picture of the present settings."""
         return self._picture is not None and self._picture.finished and not self.is_reading
@@ -83,7 +90,7 @@ class LiveRefocus:
     @property
     def told(self):
         """What a panel tells at once, besides the share."""
-        return self.finished, self.error, self.is_reading, self.notes
+        return self.finished, self.error, self.is_reading, self.is_tracing, self.notes
 
     def is_panel_late(self):
         """Whether a panel has told another share for some time; True once for each change."""
@@ -323,7 +330,8 @@ def _work():
             busy = live.work(scene, bpy.context.evaluated_depsgraph_get())
         if before != live.told or live.is_panel_late():
             _redraw_panels(places)
-        next_look = _PIECE_PAUSE if busy and not live.is_reading else _LOOK_SECONDS
+        waits = live.is_reading or live.is_tracing
+        next_look = _PIECE_PAUSE if busy and not waits else _LOOK_SECONDS
         pause = next_look if pause is None else min(pause, next_look)
     pictures.keep_only(found)
     return pause

@@ -72,6 +72,8 @@ class APLANAT_IMAGE_PT_refocus(_RefocusPanel, bpy.types.Panel):
             column.label(text="Reading the file...", icon="TIME")
         elif live.share is not None:
             text = "Done" if live.share == 1.0 else f"{live.share:.0%}"
+            if live.is_tracing:
+                text = "Tracing the lens"
             stack = live.stack
             count = len(stack.layers)
             layers = "1 layer" if count == 1 else f"{count} layers"
