@@ -11,8 +11,8 @@ from concurrent.futures import ThreadPoolExecutor
 from ...device import context as device_context
 from ...device import state
 from ...errors import FocusError
+from ...lens_io import profile_cache
 from ..frame.pacing import Pacer
-from ..bokeh.lens_profiles import lens_profile, lens_pupil
 from .refocusing import Refocusing, nothing, planned_frame
 
 # Lens samples of the first picture that is worth a look.
@@ -204,6 +204,5 @@ def _planned(stack, settings, content):
     planned = planned_frame(stack, settings, content)
     lens = planned[0].camera.real_lens
     if settings.bokeh is not None and lens.shapes_bokeh:
-        lens_profile(lens)
-        lens_pupil(lens)
+        profile_cache.pupil_tables(lens.prescription, lens.label, lens_id=lens.id)
     return planned
