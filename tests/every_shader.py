@@ -73,7 +73,7 @@ def _node(kind, settings=(), **inputs):
 
 
 _GLOW = _node("emission", Color=(1.0, 1.0, 1.0), Strength=(2.0,))
-_CLEAR = _node("transparent", Color=(1.0, 1.0, 1.0))
+_CLEAR = _node("transparent", Color=(1.0, 0.5, 1.0))
 
 
 def _pair(kind):
@@ -170,16 +170,17 @@ def surface_infos():
         if (graph_name, mesh_name) not in _TELLING and target is not _TARGET_OF[mesh_name]:
             continue
         code = surface_code.generate(graph, mesh)
-        for holdout, deforms, glow in product((False, True), repeat=3):
-            if glow and (holdout or not code.glows):
+        parts = (None, *["GLOW"] * code.glows, *["FILTER"] * code.filters)
+        for holdout, deforms, part in product((False, True), (False, True), parts):
+            if part and holdout:
                 continue
             # Deforming is of corners, the others are of the end of a fragment: singly with the
             # plain targets, together with the others.
-            ends = holdout or glow
+            ends = holdout or bool(part)
             if (deforms and ends) if target in _PLAIN else (deforms != ends):
                 continue
-            label = f"{target_name}, {graph_name}, {mesh_name}, {holdout=}, {deforms=}, {glow=}"
-            yield label, surface.surface_info(target, code, mesh, holdout, deforms, glow)
+            label = f"{target_name}, {graph_name}, {mesh_name}, {holdout=}, {deforms=}, {part=}"
+            yield label, surface.surface_info(target, code, mesh, holdout, deforms, part)
 
 
 def world_infos():

@@ -114,6 +114,14 @@ def glow():
     gpu.state.blend_set("ADDITIVE_PREMULT")
 
 
+def filter_light():
+    """Multiply all four channels where the depth test passes; depth is kept."""
+    import gpu
+
+    behind()
+    gpu.state.blend_set("MULTIPLY")
+
+
 def additive():
     """Add all four channels; no depth."""
     import gpu

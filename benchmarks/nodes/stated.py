@@ -15,7 +15,7 @@ STATED = {
     "OutputMaterial": (EXACT, "Surface; Displacement as bump; Volume where there is no Surface"),
     "OutputWorld": (EXACT, "Surface; no Volume"),
     "OutputLight": (APPROXIMATE, "one Emission of constant inputs"),
-    "BsdfTransparent": (APPROXIMATE, "light that passes keeps its colour, dimmed by the mean"),
+    "BsdfTransparent": (EXACT, "shadows of coloured ones are grey"),
     "BsdfDiffuse": (APPROXIMATE, "no light from other surfaces"),
     "BsdfAnisotropic": (APPROXIMATE, "mirrors lights and the world; no anisotropy"),
     "BsdfPrincipled": (

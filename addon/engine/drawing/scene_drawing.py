@@ -55,9 +55,9 @@ class SceneDrawing:
         self._buffers = buffers
         self.target = target
         self._draws = surface.build_draws(content, buffers, target)
-        self._glows = surface.build_glow_draws(content, buffers, target)
+        self._veils = surface.build_veils(content, buffers, target)
         self.full_detail = sum(
-            d.triangles * d.count for d in (*self._draws, *self._glows) if d.level == 0
+            d.triangles * d.count for d in (*self._draws, *self._veils) if d.level == 0
         )
         bounds = {uid: mesh.bounds for uid, mesh in buffers.meshes.items()}
         self._spheres = culling.BoundingSpheres(content, bounds)
@@ -67,10 +67,10 @@ class SceneDrawing:
             self._group_of[group.first : group.first + group.count] = number
         self._group_levels = GroupLevels(content, buffers)
         self._by_level = _by_level(self._draws)
-        self._glows_by_level = _by_level(self._glows)
+        self._veils_by_level = _by_level(self._veils)
         # Transparent and glowing surfaces differ from sample to sample: they share no drawing.
         self._unshared = {d.group for d in self._draws if d.transparent}
-        self._unshared |= {d.group for d in self._glows}
+        self._unshared |= {d.group for d in self._veils}
         self._shared = SharedDrawings("MATTES" in target.defines)
         self._graded = GradedDrawings(content, buffers, graded)
         self._divided = DividedDrawings(content)
@@ -180,6 +180,9 @@ class SceneDrawing:
             )
             self._table = texture_2d(instance_texels(ordered))
             self._place[order] = np.arange(count)
+        forwards = -self._plan.view[2]
+        # Of the middle of each row of the table, m.
+        self._depths = self._spheres.centers[order] @ forwards[:3] + forwards[3]
 
     def _list(self, draws, index):
         """List the draw calls for a sample, without rows that share a drawing."""
@@ -285,9 +288,12 @@ class SceneDrawing:
         self.counts.sprites_drawn = shared.drawn
         self.counts.sprites_copied = shared.copied
 
-    def draw_glows(self, index, framebuffer, view):
-        """Add the light of glowing transparent surfaces to a lens sample."""
-        listed = self._list(self._glows, index) + self._of_single(self._glows_by_level, index)
+    def draw_veils(self, index, framebuffer, view):
+        """Filter a lens sample by coloured surfaces, and add the light of transparent ones."""
+        listed = self._list(self._veils, index) + self._of_single(self._veils_by_level, index)
+        if len({draw.part for draw in listed}) > 1:
+            # What is added is filtered by what is in front of it only.
+            listed.sort(key=lambda draw: -self._depths[draw.first : draw.first + draw.count].mean())
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
         lights = listed and self.lights.of_samples(index, (index,))
@@ -295,12 +301,12 @@ class SceneDrawing:
             lens_sample = self._plan.lens_sample(index)
             resources = {"highlights": self._highlights, "optics": self._optics(index)}
             resources["lights"] = lights
-            surface.draw_glows(listed, view, self._table, lens_sample, **resources)
+            surface.draw_veils(listed, view, self._table, lens_sample, index, **resources)
 
     @property
     def has_chance(self):
         """Whether any surface may let light through, or add some to what is behind it."""
-        return bool(self._glows) or any(draw.transparent for draw in self._draws)
+        return bool(self._veils) or any(draw.transparent for draw in self._draws)
 
     @property
     def content(self):
@@ -313,7 +319,7 @@ class SceneDrawing:
 
     def surfaces(self):
         """Return group and slot of all surfaces."""
-        return frozenset((draw.group, draw.slot) for draw in (*self._draws, *self._glows))
+        return frozenset((draw.group, draw.slot) for draw in (*self._draws, *self._veils))
 
     def see_through(self):
         """Return group and slot of the surfaces that may let light through."""

@@ -331,7 +331,7 @@ class FrameRenderer(ReadableFrame):
             framebuffer_of_color = targets.framebuffer("sample", depth="sample_depth")
             with framebuffer_of_color.bind(), self._drawing.confined():
                 self._draw_background(index)
-        self._drawing.draw_glows(index, framebuffer, self._view)
+        self._drawing.draw_veils(index, framebuffer, self._view)
 
     def _draw_background(self, index):
         background.draw(

@@ -156,7 +156,7 @@ class LayeredDrawing:
         with framebuffer.bind(), self._drawing.confined():
             self.cast(index, fullscreen, targets["behind"] if background else None)
         self._draw_by_chance(index, framebuffer, view)
-        self._drawing.draw_glows(index, framebuffer, view)
+        self._drawing.draw_veils(index, framebuffer, view)
 
     def cast(self, index, fullscreen, behind=None, counts=False):
         """Cast the rays of a lens sample into the bound frame buffer.

@@ -149,7 +149,7 @@ def _principled(node, writer):
         members["shape"] = _shape(writer, "ROUGH", rough)
     surface = writer.lit_closure("BSDF", "BSDF_PRINCIPLED", members | _normal(node, writer))
     if "Transmission Weight" in given:
-        _see_through(writer, surface)
+        _see_through(writer, surface, node.input("Base Color"))
     alpha = dict(node.inputs).get("Alpha")
     if alpha is None:
         return surface
@@ -190,11 +190,12 @@ def _glass(node, writer):
         "specular_level": "1.0" if node.setting("mirrors") else "0.0",
     }
     glass = writer.lit_closure("BSDF", "BSDF_GLASS", members | _normal(node, writer))
-    _see_through(writer, glass)
+    _see_through(writer, glass, node.input("Color"))
     return glass
 
 
-def _see_through(writer, outputs):
+def _see_through(writer, outputs, color):
+    writer.filter(color)
     writer.transmitting.add(outputs["BSDF"][1])
     # What it mirrors does not fade where it is clear.
     writer.glows = True
@@ -216,6 +217,7 @@ def _fog(node, writer):
         "thickness": f"fog_thickness({writer.place()}, {corners})",
         "shape": _shape(writer, "FOG", writer.value(node.input("Anisotropy"), "float")),
     }
+    writer.filter(node.input("Scatter"), node.input("Absorption"))
     fog = writer.lit_closure("Volume", "BSDF_FOG", members)
     writer.transmitting.add(fog["Volume"][1])
     writer.glows = True
@@ -225,6 +227,7 @@ def _fog(node, writer):
 @generates("transparent")
 def _transparent(node, writer):
     color = writer.value(node.input("Color"), "vec3")
+    writer.filter(node.input("Color"))
     result = writer.closure("BSDF", f"closure_transparent({color})")
     writer.transmitting.add(result["BSDF"][1])
     writer.dark.add(result["BSDF"][1])

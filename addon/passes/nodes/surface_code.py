@@ -42,6 +42,8 @@ class SurfaceCode:
     glows : bool
         The surface may emit where it is transparent, so that its light must be added for every
         sample and not only for those that find it opaque.
+    filters : bool
+        Light that passes the surface is multiplied by a colour.
     libraries : tuple of str
         Shader files below ``gpu_shaders/`` that the code calls, besides those of every surface.
     reads_place : bool
@@ -61,6 +63,7 @@ class SurfaceCode:
     transparent: bool
     lit: bool = False
     glows: bool = False
+    filters: bool = False
     libraries: tuple[str, ...] = ()
     reads_place: bool = False
     features: tuple[str, ...] = ()
@@ -101,6 +104,7 @@ def generate(graph, available):
         transparent=surface in writer.transmitting,
         lit=writer.bsdfs > 0,
         glows=writer.glows and surface in writer.transmitting,
+        filters=writer.filters and surface in writer.transmitting,
         libraries=tuple(libraries),
         reads_place=writer.reads_place,
         features=tuple(sorted(writer.features)),

@@ -32,6 +32,8 @@ class Writer:
     transmitting, dark : set of str
         Closures that may be transparent, and those that add no light of their own.
     glows : bool
+    filters : bool
+        Some closure lets colours pass unevenly, or more light than there is.
     reads_place : bool
         The code reads the position in object space.
     features : set of str
@@ -50,6 +52,7 @@ class Writer:
     transmitting: set[str] = field(default_factory=set)
     dark: set[str] = field(default_factory=set)
     glows: bool = False
+    filters: bool = False
     reads_place: bool = False
     features: set[str] = field(default_factory=set)
     # (type, expression) of each output of each node so far
@@ -72,6 +75,12 @@ class Writer:
         self.constants.append((*map(float, padded), 0.0))
         expression = f"material_buf.constants[{index}]"
         return expression + (".x" if wanted == "float" else ".xyz")
+
+    def filter(self, *colors):
+        """Note the colours that light takes on by passing: grey of at most 1 is none."""
+        even = (isinstance(c, Constant) and len(set(c.value[:3])) == 1 for c in colors)
+        limited = (isinstance(c, Constant) and max(c.value[:3]) <= 1.0 for c in colors)
+        self.filters = self.filters or not (all(even) and all(limited))
 
     def table(self, rows):
         """Add rows of 4 numbers to the constants and return the place of the first."""

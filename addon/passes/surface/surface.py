@@ -4,6 +4,7 @@ One shader a shape of node tree and set of mesh attributes; draws are sorted by 
 material, so that a frame changes state as rarely as it can.
 """
 
+import itertools
 import math
 from dataclasses import dataclass, replace
 
@@ -69,6 +70,8 @@ class Draw:
         The material slot of its mesh.
     slack : float
         How far its triangles may be from the true surface, in the mesh's units.
+    part : {None, 'GLOW', 'FILTER'}
+        What of the surface is drawn; see `build_veils`.
     """
 
     shader: object
@@ -85,9 +88,10 @@ class Draw:
     level: int = 0
     slot: int = 0
     slack: float = 0.0
+    part: str | None = None
 
 
-def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, glow=False):
+def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, part=None):
     """Return the declarations and sources of the shader of a surface on a mesh.
 
     Parameters
@@ -98,15 +102,15 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
     holdout : bool
     deforms : bool
         The mesh has positions in the neighbouring frames.
-    glow : bool
-        Only the light that the surface adds, for `draw_glows`.
+    part : {None, 'GLOW', 'FILTER'}
+        Only the light that the surface adds, or the colour that it filters light with.
 
     Returns
     -------
     ShaderInfo
     """
-    if holdout:
-        # A holdout has no light to split.
+    if holdout or part == "FILTER":
+        # No light to split.
         target = whole(target)
     attributes = [("VEC3", "pos")]
     varyings = [("VEC3", "world_position"), ("FLAT INT", "instance_row"), *target.varyings]
@@ -117,8 +121,8 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, gl
     defines = [*target.defines, *["HOLDOUT"] * holdout, *["TRANSPARENT"] * transparent]
     if target.shades and not holdout:
         defines += [*["SHADES"], *["LIT"] * code.lit, *code.features]
-        if code.glows:
-            defines.append("GLOW" if glow else "GLOW_APART")
+        if code.glows or part:
+            defines.append(part or "GLOW_APART")
     if "HAS_VECTOR" in defines and deforms:
         defines.append("HAS_DEFORMATION")
         attributes += [("VEC3", "pos_previous"), ("VEC3", "pos_next")]
@@ -204,15 +208,22 @@ def build_draws(content, buffers, target=COLOR, wanted=None):
     list of Draw
         At every level of detail that the device has of a mesh.
     """
-    return _list_draws(content, buffers, target, glow=False, wanted=wanted)
+    return _list_draws(content, buffers, target, wanted=wanted)
 
 
-def build_glow_draws(content, buffers, target=COLOR):
-    """List the draw calls of `draw_glows`: surfaces that add light to what they are in front of."""
-    return _list_draws(content, buffers, target, glow=True)
+def build_veils(content, buffers, target=COLOR):
+    """List the draw calls of `draw_veils`: what surfaces do to the picture of what is behind them.
+
+    Returns
+    -------
+    list of Draw
+        Those of the part ``'FILTER'`` multiply it by a colour, those of ``'GLOW'`` add light to it.
+    """
+    parts = ("FILTER", "GLOW")
+    return [d for part in parts for d in _list_draws(content, buffers, target, part)]
 
 
-def _list_draws(content, buffers, target, glow, wanted=None):
+def _list_draws(content, buffers, target, part=None, wanted=None):
     draws = []
     kinds, made = {}, {}
     # Where two surfaces lie at one depth, the first one drawn is seen: the order must be that of
@@ -233,7 +244,7 @@ def _list_draws(content, buffers, target, glow, wanted=None):
             alike = (material.uid, widths, group.holdout, mesh.motion is not None, split)
             if alike not in made:
                 code, shader, kind = _code_and_shader(
-                    material, mesh, group.holdout, target, glow, split
+                    material, mesh, group.holdout, target, part, split
                 )
                 # What is split must not change the order either.
                 made[alike] = code, shader, kinds.setdefault(kind, len(kinds))
@@ -257,7 +268,7 @@ def _list_draws(content, buffers, target, glow, wanted=None):
                 constants,
                 textures,
                 # The data passes decide by a threshold, not by chance.
-                transparent=transparent and shaded and not glow,
+                transparent=transparent and shaded and not part,
                 lighting=buffers.lighting if shaded and code.lit else (),
                 material_id=(
                     material.cryptomatte_id if target.names_material and not group.holdout else None
@@ -266,6 +277,7 @@ def _list_draws(content, buffers, target, glow, wanted=None):
                 level=level,
                 slot=slot,
                 slack=_slack(buffers, mesh, level),
+                part=part,
             )
             place = (order, materials[material.uid], meshes[group.mesh], slot, level)
             draws.append((place, draw))
@@ -280,15 +292,16 @@ def _slack(buffers, mesh, level):
     return math.sqrt(buffers.level_meshes(mesh)[level].triangle_area)
 
 
-def _code_and_shader(material, mesh, holdout, target, glow, split):
+def _code_and_shader(material, mesh, holdout, target, part, split):
     """Return a surface's code, its shader or None where it is not drawn, and the kind of shader.
 
     The kind is that of the target, the same whether and how the surface's own light is split.
     """
     code = surface_code.generate(material.graph, mesh.attributes)
-    if glow and (holdout or not code.glows):
+    has_part = {None: True, "GLOW": code.glows, "FILTER": code.filters}
+    if not has_part[part] or (part and holdout):
         return code, None, None
-    how = (mesh.attributes, holdout, mesh.motion is not None, glow)
+    how = (mesh.attributes, holdout, mesh.motion is not None, part)
     kind = surface_info(target, replace(code, mirrors=False, reflects=False), *how)
     shader = compile_shader(surface_info(target if split else whole(target), code, *how))
     return code, shader, kind
@@ -300,25 +313,25 @@ def _levels_of_groups(content, buffers):
             yield number, level, group, buffer
 
 
-def draw_glows(
-    draws, view_buffer, instances, lens_sample, highlights=None, optics=None, lights=None
-):
-    """Add the light of glowing transparent surfaces to what the frame buffer shows behind them.
+def draw_veils(draws, *given, **resources):
+    """Filter what the frame buffer shows by the colours of surfaces, and add their light to it.
 
-    Opacity is decided by a random number per sample; this light is added wherever no surface of
-    the sample is in front, so that its mean is exact even where the surface is fully transparent.
+    Opacity is decided by a random number per sample. A surface that was seen through filters what
+    the sample shows. Its light is added wherever no surface of the sample is in front, so that its
+    mean is exact even where the surface is fully transparent.
 
     Parameters
     ----------
     draws : list of Draw
-        Of `build_glow_draws`; the same depth buffer as `draw_sample`'s must be bound.
-    view_buffer, instances, lens_sample, highlights, optics, lights
+        Of `build_veils`, in the order in which they are drawn: those behind others first, where
+        some filter and some glow. The same depth buffer as `draw_sample`'s must be bound.
+    *given, **resources
         As for `draw_sample`.
     """
-    if draws:
-        state.glow()
-        resources = {"highlights": highlights, "optics": optics, "lights": lights}
-        draw_sample(draws, view_buffer, instances, lens_sample, 0, **resources)
+    states = {"FILTER": state.filter_light, "GLOW": state.glow}
+    for part, run in itertools.groupby(draws, key=lambda draw: draw.part):
+        states[part]()
+        draw_sample(list(run), *given, **resources)
 
 
 def draw_sample(

@@ -1,7 +1,5 @@
 """Readers of Blender's closures."""
 
-import numpy as np
-
 from ...snapshot.surface_graph import Constant, Link
 from .tree_reader import is_constant, reader_registry
 
@@ -138,16 +136,7 @@ def _translucent(reader, node, groups):
 
 @reads("BSDF_TRANSPARENT")
 def _transparent(reader, node, groups):
-    color = reader.value(node, "Color", groups)
-    if not (isinstance(color, Constant) and len(set(color.value)) == 1):
-        reader.note(
-            f"light that passes node '{node.bl_label}' keeps its colour, dimmed by the mean"
-        )
-    if isinstance(color, Constant) and not 0.0 <= np.mean(color.value) <= 1.0:
-        reader.note(
-            f"node '{node.bl_label}' has a colour that is not between 0 and 1; drawn as if it were"
-        )
-    return reader.add("transparent", [("Color", color)])
+    return reader.add("transparent", reader.values(node, ("Color",), groups))
 
 
 @reads("HOLDOUT")

@@ -68,7 +68,8 @@ Closure closure_cover(Closure a, float alpha)
       a.radiance * t, mix(vec3(1.0), a.transmittance, t), a.holdout * t, a.unsplit * t, a.shift * t);
 }
 
-// Probability that a lens sample sees through the surface.
+// Probability that a lens sample sees through the surface; what it sees is filtered by the
+// transmittance over it.
 float closure_through(Closure a)
 {
   return clamp(dot(a.transmittance, vec3(1.0 / 3.0)), 0.0, 1.0);

@@ -1,6 +1,8 @@
 // Shades a surface for one lens sample, with stochastic transparency: the average over the samples is
 // exact whatever the order of the surfaces. A transparent surface that emits is drawn twice: its random
 // opacity without its light (GLOW_APART), then its light on top (GLOW), wherever nothing is in front.
+// One that lets colours through unevenly is drawn again, too (FILTER): where it was seen through, what was
+// seen is multiplied by the colour over its mean.
 // Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads. HIGHLIGHTS:
 // highlight_buf; the light that is splatted as bokeh is left out; with CHROMATIC also chromatic_buf and
 // field_tx, so that the splatted share is the same at all wavelengths; with MIRRORING it is searched
@@ -59,6 +61,19 @@ vec3 without_highlights(Closure closure)
 }
 #endif
 
+#ifdef TRANSPARENT
+// Whether this lens sample sees through the surface. Each surface of a pixel has a sequence of its own over
+// the samples, evenly spread: far less noise than independent decisions.
+bool seen_through(float through)
+{
+  uvec2 pixel = uvec2(gl_FragCoord.xy) + uvec2(view_buf.film.zw);
+  uint seed = hash_combine(hash_uint(pixel.x), pixel.y);
+  seed = hash_combine(seed, uint(instance_row));
+  seed = hash_combine(seed, uint(gl_PrimitiveID));
+  return through > 0.0 && hash_spread(uint(sample_index), seed) < through;
+}
+#endif
+
 void main()
 {
 #ifdef OF_LAYER
@@ -73,7 +88,16 @@ void main()
 #endif
 #else
   Closure closure = surface_closure();
-#ifdef GLOW
+#ifdef FILTER
+  float through = closure_through(closure);
+  if (!seen_through(through)) {
+    discard;
+  }
+  out_color = vec4(closure.transmittance / through, 1.0);
+#ifdef MATTES
+  out_mattes = vec4(1.0);
+#endif
+#elif defined(GLOW)
 #ifdef HIGHLIGHTS
   closure.radiance = without_highlights(closure) + closure.shift;
 #endif
@@ -90,15 +114,10 @@ void main()
   closure.shift = vec3(0.0);
 #endif
   float through = closure_through(closure);
+  if (seen_through(through)) {
+    discard;
+  }
   if (through > 0.0) {
-    uvec2 pixel = uvec2(gl_FragCoord.xy) + uvec2(view_buf.film.zw);
-    uint seed = hash_combine(hash_uint(pixel.x), pixel.y);
-    seed = hash_combine(seed, uint(instance_row));
-    seed = hash_combine(seed, uint(gl_PrimitiveID));
-    seed = hash_combine(seed, uint(sample_index));
-    if (hash_unit(seed) < through) {
-      discard;
-    }
     // A sample that keeps the surface represents its whole light.
     float scale = 1.0 / max(1.0 - through, 1e-6);
     closure.radiance *= scale;

@@ -1,0 +1,1 @@
+"""Depth of field through and around transparent things, against Cycles."""
