@@ -232,6 +232,16 @@ def test_the_reference_draws_discs_where_the_scene_has_discs_of_a_look(
     assert asked == ({expected, separate} if method == "REFERENCE" else {expected})
 
 
+def test_the_reference_method_is_not_compared_with_itself(scene):
+    scene.aplanat.method = "REFERENCE"
+
+    def render(scene):
+        raise AssertionError("rendered again")
+
+    found = agreement.compare(scene, render, {})
+    assert (found.fault, found.measured["undecided"]) == ("", 0.0)
+
+
 def test_settings_are_put_back_after_a_comparison(scene):
     scene.aplanat.level_bias = -3.0
     scene.camera.data.aplanat.bokeh.model = "CLUSTERED"

@@ -8,8 +8,9 @@ from benchmarks.zoo.scenes.script import script
 
 SEED = 1
 COUNT = 40
-# Of a picture, and with a noise threshold; `scripts/zoo` draws up to three and four times as many.
-MOST_SAMPLES = {"aplanat.render_samples": 32, "aplanat.render_max_samples": 64}
+# Samples of a picture, and with a noise threshold, and depth layers; `scripts/zoo` draws up to
+# three, four and eight times as many.
+MOST = {"aplanat.render_samples": 32, "aplanat.render_max_samples": 64, "aplanat.layers": 8}
 
 
 @pytest.mark.parametrize("number", range(COUNT))
@@ -17,10 +18,10 @@ MOST_SAMPLES = {"aplanat.render_samples": 32, "aplanat.render_max_samples": 64}
 def test_a_random_scene_renders_and_agrees_with_the_reference(aplanat_bpy, number):
     recipe = make_recipe(aplanat_bpy, SEED, number)
     settings = recipe["settings"]
-    for key in MOST_SAMPLES.keys() & settings.keys():
-        settings[key] = min(settings[key], MOST_SAMPLES[key])
+    for key in MOST.keys() & settings.keys():
+        settings[key] = min(settings[key], MOST[key])
     # What noise decides after some pictures is left to `scripts/zoo`.
-    verdict = judge(recipe, most=3, patience=5.0)
+    verdict = judge(recipe, most=3, patience=2.0)
     if verdict.kind != "ok":
         text = script(recipe, f"Scene {SEED}:{number}: {verdict.kind}: {verdict.text}")
         pytest.fail(f"{verdict.kind}: {verdict.text}\n{verdict.detail}\n{text}", pytrace=False)
