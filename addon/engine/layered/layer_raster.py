@@ -8,9 +8,6 @@ import numpy as np
 # pixel filter makes it only where texels are finer than pixels.
 _MOST_TEXELS = 1 << 25
 _FINEST = 3
-# How far layers reach beyond the frame at most, as a share of its longer side: with more, texels of
-# what is in view would be coarser.
-_OVERSCAN = 0.25
 # Parts of a texel along each side that shapes are drawn in, and of all texels together: edges lie
 # between texels, and that of a horizon is one for a whole row of pixels.
 _PARTS, _MOST_PARTS = 3, 1 << 24
@@ -55,8 +52,7 @@ def layer_raster(plan, nearest, farthest):
     LayerRaster
     """
     reach = plan_reach(plan, nearest, farthest)
-    most = int(_OVERSCAN * max(plan.width, plan.height))
-    margin = tuple(int(min(np.ceil(side), most)) for side in reach)
+    margin = tuple(int(min(np.ceil(side), plan.layered.overscan)) for side in reach)
     width, height = plan.width + 2 * margin[0], plan.height + 2 * margin[1]
     slices = plan.layered.count * len(plan.layered.eyes)
     affordable = int(np.sqrt(_MOST_TEXELS / (width * height * slices)))

@@ -10,6 +10,9 @@ from .field_table import field_of_clip
 # Sets of places on the lens: the pixels of a square of 4 x 4 have one each, so that what few
 # samples leave is fine noise instead of bands.
 SETS = 16
+# How far layers reach beyond the frame at most, as a share of the whole picture's longer side: with
+# more, texels of what is in view would be coarser. A part of it is no place where less is seen.
+_OVERSCAN = 0.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +40,8 @@ class LayeredPlan:
         Of a captured picture: pixels of its layers on the left of and below what is drawn.
     in_step : bool
         All sets of places are the first one.
+    overscan : int
+        Pixels that the layers of a scene reach beyond the frame at most.
     """
 
     count: int
@@ -48,14 +53,16 @@ class LayeredPlan:
     eyes: np.ndarray = field(default_factory=lambda: np.zeros((1, 2)))
     origin: tuple[int, int] = (0, 0)
     in_step: bool = False
+    overscan: int = 0
 
 
-def plan_layered(sampling, source, stack=None, projection=None):
+def plan_layered(sampling, film, source, stack=None, projection=None):
     """Plan the depth layers of a frame.
 
     Parameters
     ----------
     sampling : Sampling
+    film : Film
     source : SampleSource
         Of the frame's lens samples.
     stack : LayerStack or None
@@ -83,7 +90,8 @@ def plan_layered(sampling, source, stack=None, projection=None):
     if sampling.layers_from_eyes and extent.min() > 0.0:
         eyes = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)]) * extent
     peeled = sampling.layer_source == "PEELING"
-    return LayeredPlan(sampling.layers, places, cell, peeled=peeled, eyes=eyes)
+    overscan = int(_OVERSCAN * max(film.width, film.height))
+    return LayeredPlan(sampling.layers, places, cell, peeled=peeled, eyes=eyes, overscan=overscan)
 
 
 def _origin(stack, projection):

@@ -264,7 +264,7 @@ def _plan(snapshot, sampling, automatic=None):
         automatic=automatic,
         time_limit=sampling.time_limit,
         shadows=sampling.shadows,
-        layered=plan_layered(sampling, source, snapshot.stack, projection),
+        layered=plan_layered(sampling, film, source, snapshot.stack, projection),
     )
 
 
