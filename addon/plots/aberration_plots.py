@@ -80,10 +80,9 @@ def draw_vignetting(axes, configuration):
     frame_diagram(axes, "Vignetting", "field, degrees", "area of the pupil, % of the axis'")
     half = configuration.half_field_deg
     fields = np.linspace(0.0, half, _FIELDS)
-    areas = np.array([_areas(configuration, field) for field in fields])
-    shares = 100.0 * areas / np.maximum(areas[0], 1e-12)
-    for order, step in enumerate(_STOPS_DOWN):
-        f_number = configuration.f_number * 2.0 ** (step / 2.0)
+    f_numbers = [configuration.f_number * 2.0 ** (step / 2.0) for step in _STOPS_DOWN]
+    shares = 100.0 * passing_shares(configuration, fields, f_numbers)
+    for order, f_number in enumerate(f_numbers):
         shade = order / len(_STOPS_DOWN)
         color = tuple((1.0 - shade) * dark + shade * 0.78 for dark in (0.13, 0.29, 0.45))
         axes.plot(fields, shares[:, order], color=color, linewidth=1.4, label=f"f/{f_number:.2g}")
@@ -92,11 +91,31 @@ def draw_vignetting(axes, configuration):
     legend(axes, loc="lower left")
 
 
-def _areas(configuration, field_deg):
-    """Areas of the beam that get through at each of the stops, mm^2."""
+def passing_shares(configuration, fields_deg, f_numbers):
+    """Areas of beams that get through the lens, over that of the first one.
+
+    Parameters
+    ----------
+    configuration : Configuration
+    fields_deg : sequence of F float
+        The first is the axis.
+    f_numbers : sequence of N float
+        Not below that of the lens.
+
+    Returns
+    -------
+    ndarray of shape (F, N)
+    """
+    areas = np.array([_areas(configuration, field, f_numbers) for field in fields_deg])
+    return areas / np.maximum(areas[0], 1e-12)
+
+
+def _areas(configuration, field_deg, f_numbers):
+    """Areas of the beam that get through at each of the f-numbers, mm^2."""
     found = pupil_rays(configuration, field_deg, _PUPIL_GRID)
     stop = configuration.stop
     traced = trace(configuration, found.rays, REFERENCE_WAVELENGTH_NM, last=stop)
     radius = np.hypot(traced.points[:, 0], traced.points[:, 1])
     wide_open = configuration.surfaces[stop - 1].semi_diameter
-    return [found.weights[radius <= wide_open * 2.0 ** (-0.5 * step)].sum() for step in _STOPS_DOWN]
+    openings = [wide_open * configuration.f_number / f_number for f_number in f_numbers]
+    return [found.weights[radius <= opening].sum() for opening in openings]

@@ -1,36 +1,37 @@
 """Thumbnails of a lens: cross-section and bokeh."""
 
-import contextlib
 import math
 
 import numpy as np
 
-from ..errors import OutputError, RenderCancelledError
-from ..files.whole_file import whole_file
+from ..errors import RenderCancelledError
 from ..lens_bokeh.look.deposit import pattern
 from ..lens_bokeh.tables.mapping import pattern_row
 from ..lens_bokeh.tables.profile import make_profile
 from ..lens_bokeh.tables.pupil_beam import beam_from_infinity, beam_from_point
-from ..lens_io.profile_cache import content_hash, profile_folder, pupil_tables
+from ..lens_io.profile_cache import content_hash, pupil_tables
 from ..optics.focus import focused
 from ..optics.glass import REFERENCE_WAVELENGTH_NM
 from ..optics.paraxial import first_order, image_distance
 from ..sampling.spectrum import rgb_weights
 from .bokeh_plots import disk_picture, displayed, held_radius, traced_disk
 from .cross_section import ON_BLACK, draw_cross_section
+from .kept_pictures import kept_picture, state_name
 
 # Pixels on a side.
 THUMBNAIL_SIZE = 256
-SHEET_TILE = 96
-# Version of the drawing, part of the names of cached pictures.
-_DRAWING_VERSION = 1
+SHEET_TILE = 64
+# Versions of the drawings, part of the names of cached pictures.
+_THUMBNAIL, _SHEET = "thumb-1", "sheet-1"
 _BACKGROUND = "#1b1d20"
 # Focus in focal lengths (2 m at 50 mm), and lights in front of it, behind it and far away.
 _FOCUS = 40.0
 _LIGHTS = (0.5, 2.0, math.inf)
-# Of the half field, and the colours in which a lens is shown away from its axis; the first is the
-# one for which rims are traced.
-_FIELDS = (0.0, 0.6, 1.0)
+# Of a sheet: focus distances, and shares of the half field.
+SHEET_LIGHTS = (0.5, 0.75, 2.0, math.inf)
+SHEET_FIELDS = (0.0, 0.35, 0.7, 1.0)
+# The colours in which a lens is shown away from its axis; the first is the one for which rims are
+# traced.
 _WAVELENGTHS_NM = (REFERENCE_WAVELENGTH_NM, 460.0, 530.0, 620.0)
 # Share of the energy inside a picture: nearly all, as a faint halo reaches far.
 _HELD = 0.98
@@ -63,23 +64,16 @@ def thumbnail(prescription, progress=None, cancelled=None, folder=None):
     PrescriptionError
         If the lens forms no image.
     """
-    folder = profile_folder() if folder is None else folder
-    path = folder / f"thumb-{content_hash(prescription)[:32]}-{_DRAWING_VERSION}.npy"
-    with contextlib.suppress(OSError, ValueError):
-        kept = np.load(path, allow_pickle=False)
-        if kept.shape == (THUMBNAIL_SIZE, THUMBNAIL_SIZE, 4) and kept.dtype == np.uint8:
-            return kept.astype(np.float32) / np.float32(255.0)
-    pixels = _draw_thumbnail(prescription, _watched(progress, cancelled))
-    # Without a cache it is drawn again next time, and that is all.
-    with contextlib.suppress(OSError, OutputError):
-        folder.mkdir(parents=True, exist_ok=True)
-        with whole_file(path) as place, open(place, "wb") as file:
-            np.save(file, pixels, allow_pickle=False)
-    return pixels.astype(np.float32) / np.float32(255.0)
+    return kept_picture(
+        f"{_THUMBNAIL}-{content_hash(prescription)[:32]}",
+        (THUMBNAIL_SIZE, THUMBNAIL_SIZE, 4),
+        folder,
+        lambda: _draw_thumbnail(prescription, watched(progress, cancelled)),
+    )
 
 
-def bokeh_sheet(prescription, label, f_number, iris, progress=None, cancelled=None):
-    """Draw what points of light look like: three depths side by side, axis to corner downwards.
+def bokeh_sheet(prescription, label, f_number, iris, progress=None, cancelled=None, folder=None):
+    """Draw what points of light look like: depths side by side, axis to corner downwards.
 
     Brightness is relative to the axis: what the lens vignettes is darker. The corner of the
     picture is up.
@@ -90,15 +84,18 @@ def bokeh_sheet(prescription, label, f_number, iris, progress=None, cancelled=No
     label : str or None
         Zoom position.
     f_number : float
-    iris : BladedIris
+    iris : BladedIris or PictureIris
     progress : callable or None
         Told the share done, 0 to 1.
     cancelled : callable or None
         Asked between steps; true ends the work.
+    folder : Path or None
+        Where pictures are kept; None: `profile_folder`.
 
     Returns
     -------
-    ndarray of shape (3 SHEET_TILE, 3 SHEET_TILE, 4)
+    ndarray of shape (F SHEET_TILE, L SHEET_TILE, 4)
+        Rows of `SHEET_FIELDS`, columns of `SHEET_LIGHTS`;
         float32, display colours, first row at the top.
 
     Raises
@@ -108,7 +105,17 @@ def bokeh_sheet(prescription, label, f_number, iris, progress=None, cancelled=No
     PrescriptionError
         If the lens forms no image, or is not one of revolution.
     """
-    step = _watched(progress, cancelled)
+    given = prescription, label, f_number, iris
+
+    def draw():
+        picture = _draw_sheet(*given, watched(progress, cancelled), cancelled)
+        return np.round(255.0 * picture).astype(np.uint8)
+
+    shape = len(SHEET_FIELDS) * SHEET_TILE, len(SHEET_LIGHTS) * SHEET_TILE, 4
+    return kept_picture(state_name(_SHEET, given), shape, folder, draw)
+
+
+def _draw_sheet(prescription, label, f_number, iris, step, cancelled):
     tables = pupil_tables(
         prescription,
         label,
@@ -124,13 +131,14 @@ def bokeh_sheet(prescription, label, f_number, iris, progress=None, cancelled=No
     shift = plane - configuration.sensor
     shares = rgb_weights(np.array(_WAVELENGTHS_NM))
     columns = []
-    for column, light in enumerate(_LIGHTS):
+    for column, light in enumerate(SHEET_LIGHTS):
         row = pattern_row(profile, light * focus, focus, f_number, 256)
         radius = held_radius(row, _HELD)
         on_axis = None
         tiles = []
-        for order, field in enumerate(_FIELDS):
-            step(0.7 + 0.3 * (3 * column + order) / 9.0)
+        for order, field in enumerate(SHEET_FIELDS):
+            done = (column + order / len(SHEET_FIELDS)) / len(SHEET_LIGHTS)
+            step(0.7 + 0.3 * done)
             angle = math.radians(field * configuration.half_field_deg)
             energy = sum(
                 _energy(tables, angle, light * focus, values.h, (f_number, iris, shift, radius), i)
@@ -143,11 +151,11 @@ def bokeh_sheet(prescription, label, f_number, iris, progress=None, cancelled=No
             tiles.append(displayed(energy / np.maximum(on_axis, 1e-30) * scale)[::-1])
         columns.append(np.concatenate(tiles))
     picture = np.concatenate(columns, axis=1)
-    return np.concatenate([picture, np.ones((*picture.shape[:2], 1))], axis=-1).astype(np.float32)
+    return np.concatenate([picture, np.ones((*picture.shape[:2], 1))], axis=-1)
 
 
 # Half the width of a tile, in radii of the axial disk.
-_MARGIN = 1.35
+_MARGIN = 1.6
 
 
 def _energy(tables, angle, distance, principal, setting, wavelength):
@@ -211,7 +219,20 @@ def _disks(configuration):
         yield disk_picture(row, 1.1 * held_radius(row, _HELD))
 
 
-def _watched(progress, cancelled):
+def watched(progress, cancelled):
+    """Return a function that tells the share done, and ends the work where it was cancelled.
+
+    Parameters
+    ----------
+    progress, cancelled : callable or None
+        As for `thumbnail`.
+
+    Returns
+    -------
+    callable
+        Raises RenderCancelledError.
+    """
+
     def step(share):
         if cancelled is not None and cancelled():
             raise RenderCancelledError("drawing a lens was stopped")

@@ -46,7 +46,7 @@ ROOMS = {
     # Drawings of lenses, with a plotting library that is imported inside functions.
     "plots": (
         *("files", "optics", "optics.rays", "sampling"),
-        *("lens_bokeh.look", "lens_bokeh.tables", "lens_io"),
+        *("lens_bokeh.look", "lens_bokeh.openings", "lens_bokeh.tables", "lens_io"),
     ),
     "layers": ("files",),
     "snapshot": ("layers", "optics", "sampling", "lens_bokeh.look", "lens_bokeh.tables"),

@@ -66,11 +66,11 @@ def test_a_sheet_shows_vignetting_towards_the_corner(tmp_path, monkeypatch):
     monkeypatch.setenv("APLANAT_CACHE", str(tmp_path))
     told = []
     sheet = bokeh_sheet(lens("double-gauss-50mm-f2"), None, 2.03, BladedIris(), told.append)
-    assert sheet.shape == (3 * SHEET_TILE, 3 * SHEET_TILE, 4)
+    assert sheet.shape == (4 * SHEET_TILE, 4 * SHEET_TILE, 4)
     assert told == sorted(told) and told[-1] > 0.9
     lit = (sheet[..., :3].mean(axis=-1) > 0.15).astype(float)
-    far = lit[:, 2 * SHEET_TILE :]
-    axis, middle, corner = (tile.sum() for tile in np.split(far, 3))
+    far = lit[:, 3 * SHEET_TILE :]
+    axis, _, middle, corner = (tile.sum() for tile in np.split(far, 4))
     assert axis > 1.3 * middle > middle > 1.1 * corner
     # A disk on the axis is round.
     tile = far[:SHEET_TILE]
@@ -78,3 +78,9 @@ def test_a_sheet_shows_vignetting_towards_the_corner(tmp_path, monkeypatch):
         abs(np.ptp(np.flatnonzero(tile.any(axis=0))) - np.ptp(np.flatnonzero(tile.any(axis=1))))
         <= 1
     )
+    # It is kept by lens, f-number and iris.
+    monkeypatch.setattr(lens_pictures, "_draw_sheet", None)
+    again = bokeh_sheet(lens("double-gauss-50mm-f2"), None, 2.03, BladedIris())
+    assert np.array_equal(again, sheet)
+    with pytest.raises(TypeError):
+        bokeh_sheet(lens("double-gauss-50mm-f2"), None, 2.03, BladedIris(5))

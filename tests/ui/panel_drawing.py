@@ -122,7 +122,7 @@ def states(context):
     own.bokeh.model, own.bokeh.vignetting = "CLUSTERED", "ANALYTIC"
     own.distortion, own.chromatic.dispersion = "DIVISION", "GLASS"
     yield
-    own.lens = "zoom-36-69mm-f3.5"
+    own.lens, own.compared_lens = "zoom-36-69mm-f3.5", "tessar-50mm-f2.8"
     settings.method = "REFERENCE"
     yield
     settings.method = "LAYERED"

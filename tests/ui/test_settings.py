@@ -48,7 +48,7 @@ IDS = [f"{group}.{setting.name}" for group, setting in ALL]
 UNDECLARED = {
     "AplanatSceneSettings": {"capture", "refocus"},
     "AplanatCameraSettings": {
-        *("lens_choice", "zoom", "bokeh", "chromatic"),
+        *("lens_choice", "compared_lens", "zoom", "bokeh", "chromatic"),
         *("bokeh_lens", "bokeh_memory", "chromatic_lens", "chromatic_memory"),
     },
     "AplanatBokehSettings": {"distortion_source", "distortion"},

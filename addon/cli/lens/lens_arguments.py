@@ -64,6 +64,8 @@ def check_lens(arguments):
     ------
     InputError
     """
+    if arguments.lens_command == "plot" and (arguments.lens is None) == (arguments.compare is None):
+        raise InputError("name one lens, or two with --compare A B")
     if arguments.lens_command != "trace":
         return
     if arguments.field_deg is None:
@@ -153,9 +155,20 @@ def _add_plot(words):
     parser = _command(
         words,
         "plot",
-        "Draws a data sheet: section, spots, aberrations, distortion, vignetting, bokeh",
+        "Draws a data sheet of a lens, or two lenses side by side",
+        "Draws a data sheet: section, spots, aberrations, distortion, vignetting, bokeh; or what"
+        " tells two lenses apart: section, bokeh over field and distance, sharpness, vignetting.",
     )
-    _add_lens_word(parser)
+    parser.add_argument(
+        "lens", metavar="LENS", nargs="?", help="name in the library, or a lens file"
+    )
+    parser.add_argument(
+        "--compare",
+        metavar=("A", "B"),
+        nargs=2,
+        help="two lenses in place of LENS, side by side, each wide open; --zoom is for those of"
+        " them that have the position",
+    )
     parser.add_argument(
         "-o", "--output", metavar="OUT", type=file_with_ending(*PLOT_ENDINGS), required=True
     )

@@ -1,4 +1,4 @@
-"""`aplanat lens plot`: the data sheet of a lens as a picture or a drawing."""
+"""`aplanat lens plot`: a lens' data sheet, or two lenses side by side, as picture or drawing."""
 
 from importlib.util import find_spec
 
@@ -17,14 +17,18 @@ def plot(arguments, console):
         )
     with removed_on_signals():
         check_writable(arguments.output)
-        read = open_lens(arguments.lens)
-        tell_warnings(read, console)
-        configuration = read.prescription.configuration(arguments.zoom)
-        profile = None
-        if configuration.of_revolution:
-            profile = lens_profile(read, arguments, console)
-        figure = _sheet(read.prescription, configuration, profile, console)
-        _save(figure, arguments)
+        return _compared(arguments, console) if arguments.compare else _one(arguments, console)
+
+
+def _one(arguments, console):
+    read = open_lens(arguments.lens)
+    tell_warnings(read, console)
+    configuration = read.prescription.configuration(arguments.zoom)
+    profile = None
+    if configuration.of_revolution:
+        profile = lens_profile(read, arguments, console)
+    figure = _sheet(read.prescription, configuration, profile, console)
+    _save(figure, arguments)
     console.say(f"{read.prescription.name}: {arguments.output}")
     return {
         "command": "lens plot",
@@ -32,6 +36,35 @@ def plot(arguments, console):
         "label": configuration.label,
         "files": [str(arguments.output)],
         "warnings": [found.as_json() for found in read.warnings],
+    }
+
+
+def _compared(arguments, console):
+    from matplotlib.figure import Figure
+
+    from ...plots.comparison import SHEET_INCHES, draw_comparison, own_state
+
+    lenses = [open_lens(word) for word in arguments.compare]
+    states, warnings = [], []
+    if arguments.zoom and not any(arguments.zoom in read.prescription.labels for read in lenses):
+        # Tells which positions there are.
+        lenses[0].prescription.configuration(arguments.zoom)
+    for read in lenses:
+        tell_warnings(read, console)
+        warnings.extend(found.as_json() for found in read.warnings)
+        has_it = arguments.zoom in read.prescription.labels
+        states.append(own_state(read.prescription, arguments.zoom if has_it else None))
+    figure = Figure(figsize=SHEET_INCHES)
+    draw_comparison(figure, states, lambda: console.progress("drawing the sheet"))
+    _save(figure, arguments)
+    names = [state.prescription.name for state in states]
+    console.say(f"{names[0]} and {names[1]}: {arguments.output}")
+    return {
+        "command": "lens plot",
+        "names": names,
+        "labels": [state.configuration.label for state in states],
+        "files": [str(arguments.output)],
+        "warnings": warnings,
     }
 
 

@@ -66,10 +66,36 @@ def read_real_lens(camera, shelf):
     if label not in (None, *prescription.labels):
         problems = (f"lens '{found.name}' has no zoom position '{label}'; it is at its first one",)
         label = None
+    return _at_camera(found, label, camera), problems
+
+
+def read_compared_lens(camera, shelf):
+    """Return the lens that a camera's lens is compared with, as it would be on the camera.
+
+    Parameters
+    ----------
+    camera : bpy.types.Camera
+    shelf : LensShelf
+
+    Returns
+    -------
+    LensSettings or None
+        None if the camera names none or it cannot be used.
+    """
+    found = shelf.find(camera.aplanat.compared_lens) if camera.aplanat.compared_lens else None
+    if found is None or found.lens is None:
+        return None
+    wanted = camera.aplanat.zoom_label
+    label = wanted if wanted in found.lens.prescription.labels else None
+    return _at_camera(found, label or None, camera)
+
+
+def _at_camera(found, label, camera):
+    prescription = found.lens.prescription
     configuration = prescription.configuration(label)
     f_number = max(camera.dof.aperture_fstop, configuration.f_number)
-    own = (found.id, configuration.label, f_number, prescription, wanted.exposure)
-    return LensSettings(*own), problems
+    own = (found.id, configuration.label, f_number, prescription, camera.aplanat.exposure)
+    return LensSettings(*own)
 
 
 def read_artist(camera, real_lens):

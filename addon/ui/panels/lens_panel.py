@@ -1,4 +1,4 @@
-"""Camera > Lens > Real Lens: the lens chooser, what the lens does, and what it is."""
+"""Camera > Lens: the chooser of a real lens, what it does and what it is; the iris."""
 
 import math
 
@@ -22,12 +22,11 @@ from ..operators.lens_operators import (
     APLANAT_OT_use_focal_length,
     APLANAT_OT_use_iris,
 )
-from ..previews import lens_thumbnails
 from .panel_bases import CameraPanel, EnginePanel
 from .sentences import draw_alert, draw_sentences, letters_across
 
 # In units of Blender's buttons.
-_CHOSEN_SCALE, _POPUP_SCALE, _BOKEH_SCALE = 9.0, 6.0, 10.0
+_CHOSEN_SCALE, _POPUP_SCALE = 9.0, 6.0
 # A smaller difference of focal lengths, as a share, is that of engraved and computed ones: nobody
 # sees it in the framing.
 _SAME_LENGTH = 0.02
@@ -51,7 +50,9 @@ class APLANAT_MT_lens(bpy.types.Menu):
         layout.operator(APLANAT_OT_remove_lens.bl_idname, icon="TRASH")
 
 
-class _KnownLensPanel(CameraPanel):
+class KnownLensPanel(CameraPanel):
+    """A panel below that of the real lens, of a camera that has one."""
+
     bl_parent_id = "APLANAT_CAMERA_PT_lens"
 
     @classmethod
@@ -194,34 +195,7 @@ class APLANAT_CAMERA_PT_lens_distortion(CameraPanel, bpy.types.Panel):
             draw_alert(column, f"{problem[0].upper()}{problem[1:]}.", letters_across(context))
 
 
-class APLANAT_CAMERA_PT_lens_bokeh(_KnownLensPanel, bpy.types.Panel):
-    """Picture of the lens' bokeh over depth and field."""
-
-    bl_label = "Bokeh"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context):
-        """Draw the picture, which is made in the background."""
-        camera = context.camera
-        lens = real_lens_of(camera)
-        column = self.layout.column(align=True)
-        letters = letters_across(context)
-        opening, _ = read_opening(camera, lens, resources().panels.sources.irises)
-        icon = lens_thumbnails.bokeh_icon_id(camera, lens, opening)
-        error = lens_thumbnails.bokeh_error(camera, lens, opening)
-        if error:
-            draw_alert(column, error, letters)
-            return
-        column.template_icon(icon_value=icon, scale=_BOKEH_SCALE)
-        text = (
-            f"f/{lens.f_number:.3g}, focused at 40 focal lengths. From left to right: a light in"
-            " front of the focus, behind it and far away; from top to bottom: in the middle of the"
-            " picture, at 60 % of the way to its corner and in the corner."
-        )
-        draw_sentences(column, text, letters)
-
-
-class APLANAT_CAMERA_PT_lens_facts(_KnownLensPanel, bpy.types.Panel):
+class APLANAT_CAMERA_PT_lens_facts(KnownLensPanel, bpy.types.Panel):
     """Facts of the lens: design, source, figures."""
 
     bl_label = "Facts"
@@ -309,6 +283,41 @@ def _draw_fact(column, name, value, letters):
     draw_sentences(split.column(align=True), value, int((1.0 - _FACT_NAMES) * letters) - 1)
 
 
+class APLANAT_CAMERA_PT_iris(CameraPanel, bpy.types.Panel):
+    """The iris: curvature of its blades, the round stop in front of them, or an image."""
+
+    bl_label = "Iris"
+    bl_parent_id = "DATA_PT_lens"
+    bl_options = {"DEFAULT_CLOSED"}
+    group = "bokeh"
+
+    def draw(self, context):
+        """Draw the settings, and what is wrong with an image."""
+        camera = context.camera
+        settings, column = self.owner(context), self.column()
+        column.use_property_decorate = True
+        lens, letters = real_lens_of(camera), letters_across(context)
+        blades = column.column()
+        blades.active = settings.iris_image is None and camera.dof.aperture_blades > 2
+        blades.prop(settings, "blade_curvature", text="Curvature", slider=True)
+        stop = blades.column()
+        stop.active = blades.active and lens is not None
+        stop.prop(settings, "use_round_stop")
+        image = column.column()
+        image.use_property_decorate = False
+        image.template_ID(settings, "iris_image", open="image.open", text="Image")
+        notes = column.column(align=True)
+        text = "Blades, rotation and ratio (anamorphic): Depth of Field > Aperture."
+        draw_sentences(notes, text, letters, icon="INFO")
+        if camera.dof.use_dof:
+            opening, problems = read_opening(camera, lens, resources().panels.sources.irises)
+            for problem in problems:
+                draw_alert(notes, f"{problem[0].upper()}{problem[1:]}.", letters)
+            if not problems and getattr(opening, "closing", None) and opening.is_round:
+                text = f"Round at f/{lens.f_number:.3g}: the blades show when it is stopped down."
+                draw_sentences(notes, text, letters, icon="INFO")
+
+
 def _draw_clamp(panel, context):
     """Show in Blender's Aperture panel that the lens limits the f-stop."""
     if context.engine not in EnginePanel.COMPAT_ENGINES:
@@ -324,8 +333,8 @@ CLASSES = (
     APLANAT_MT_lens,
     APLANAT_CAMERA_PT_lens,
     APLANAT_CAMERA_PT_lens_distortion,
-    APLANAT_CAMERA_PT_lens_bokeh,
     APLANAT_CAMERA_PT_lens_facts,
+    APLANAT_CAMERA_PT_iris,
 )
 
 _register, _unregister = bpy.utils.register_classes_factory(CLASSES)

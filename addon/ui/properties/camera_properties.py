@@ -160,6 +160,13 @@ class AplanatCameraSettings(bpy.types.PropertyGroup):
             set=_choose_lens,
             options=set(),
         ),
+        "compared_lens": StringProperty(
+            name="Compare With",
+            description="Another lens, whose pictures are shown beside those of the camera's;"
+            " nothing else is changed",
+            search=_found_lenses,
+            override=OVERRIDABLE,
+        ),
         "zoom": EnumProperty(
             name="Zoom",
             description="Position of the zoom ring. The camera's focal length stays as it is",
