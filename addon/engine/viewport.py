@@ -2,7 +2,8 @@
 
 Blender reports changes (`Viewport.note_updates`) and asks for a redraw (`Viewport.draw`). A redraw
 takes about as long as one lens sample; plan and passes are those of the final render. While the
-view moves, the bokeh is a draft; the final render's follows, step by step, when the view rests.
+view moves, the lens is a draft (`frame.first_picture`); the final render's samples follow, and when
+the view rests its bokeh, step by step.
 """
 
 import time
@@ -15,6 +16,7 @@ from ..scene.view import read_view
 from ..snapshot.changes import Change, compare
 from ..snapshot.scene import SceneSnapshot
 from .bokeh.marks import shows_marks
+from .frame.first_picture import FirstPicture, plan_first_picture
 from .frame.pacing import Pacer
 from .frame.pipeline import FrameRenderer
 from .planning.plan import plan_frame
@@ -46,7 +48,9 @@ class Viewport:
         self._session = None
         self._drawn_session = None
         self._snapshot = None
-        self._renderer = None
+        # Of the first pictures, and of the samples that follow; whether those have begun.
+        self._first = self._renderer = None
+        self._begun = False
         self._pacer = Pacer(DRAW_SECONDS)
         self._broken = False
         self._moved = 0.0
@@ -115,19 +119,20 @@ class Viewport:
             sampling=read_preview_sampling(depsgraph.scene),
         )
         with state.preserved():
-            self._begin_if_changed(snapshot)
-            renderer = self._renderer
-            if not renderer.finished():
-                self._refine(renderer)
+            changed = self._begin_if_changed(snapshot)
+            if not (changed and self._first.renderer):
+                # A view that moves goes on with its next picture: samples begin with the redraw
+                # after that of the first picture.
+                self._begin_samples(snapshot)
+                if not self._renderer.finished():
+                    self._refine(self._renderer)
+            renderer = self._shown()
+            if renderer is self._renderer:
                 session.note_picture(depsgraph.scene, renderer)
             x, y, width, height = view.rectangle
             with state.confined(x, y, width, height):
                 renderer.resolve((x, y), view.pixel_size)
-        self.text = f"Sample {renderer.samples_done}/{renderer.samples_expected}"
-        if renderer.sampling.text:
-            self.text += f" | {renderer.sampling.text}"
-        if renderer.bokeh_drafted:
-            self.text += " | Draft of the bokeh"
+        self.text = self._progress()
         if shows_marks(renderer.plan):
             self.text += " | Debug view of the bokeh"
         done, total = session.levels.progress
@@ -141,7 +146,26 @@ class Viewport:
         share = done / total if done < total else 1.0
         session.note_findings(depsgraph.scene, "viewport", warnings, levels=round(share, 2))
         # A picture without its levels of detail starts again when they are made.
-        return not renderer.finished() or done < total
+        return not (self._begun and self._renderer.finished()) or done < total
+
+    def _shown(self):
+        """Return the renderer whose picture shows more of the lens."""
+        if not self._begun or self._first.is_better_than(self._renderer):
+            return self._first.renderer
+        return self._renderer
+
+    def _progress(self):
+        words = []
+        if self._begun:
+            samples = self._renderer
+            words.append(f"Sample {samples.samples_done}/{samples.samples_expected}")
+            if samples.sampling.text:
+                words.append(samples.sampling.text)
+        if self._shown() is self._first.renderer:
+            words.append("Draft of the lens")
+        elif self._renderer.bokeh_drafted:
+            words.append("Draft of the bokeh")
+        return " | ".join(words)
 
     def _refine(self, renderer):
         if not renderer.sampled:
@@ -158,25 +182,45 @@ class Viewport:
             renderer.refine_bokeh()
 
     def _begin_if_changed(self, snapshot):
+        """Draw the first picture where anything has changed; return whether it has."""
         changed = compare(self._snapshot, snapshot)
         self._snapshot = snapshot
-        if self._renderer is None or self._drawn_session is not self._session:
+        if self._first is None or self._drawn_session is not self._session:
             self.release()
-            plan, buffers = self._plan(snapshot), self._session.scene_buffers
-            self._renderer = FrameRenderer(plan, snapshot, buffers, drafts=True)
+            self._first = FirstPicture(self._session.scene_buffers)
             self._drawn_session = self._session
-        elif changed & Change.PICTURE or self._session.levels_changed(self._levels_version):
-            self._renderer.restart(self._plan(snapshot), snapshot, drafts=True)
+        elif not (changed & Change.PICTURE or self._session.levels_changed(self._levels_version)):
+            return False
+        self._begun = False
+        plan = plan_first_picture(snapshot)
+        if plan is not None:
+            self._want_levels(snapshot, plan)
+        self._first.draw(snapshot, plan)
+        self._moved = time.perf_counter()
+        return True
 
-    def _plan(self, snapshot):
+    def _begin_samples(self, snapshot):
+        """Begin the lens samples of the frame, unless they have begun."""
+        if self._begun:
+            return
+        self._begun = True
         self._drawn_seconds = 0.0
         plan = plan_frame(snapshot)
+        self._want_levels(snapshot, plan)
+        # Without a first picture, a draft of the bokeh is the first of it.
+        bokeh = "LATER" if self._first.renderer else "DRAFT"
+        if self._renderer is None:
+            buffers = self._session.scene_buffers
+            self._renderer = FrameRenderer(plan, snapshot, buffers, bokeh)
+        else:
+            self._renderer.restart(plan, snapshot, bokeh)
+
+    def _want_levels(self, snapshot, plan):
         self._session.want_levels(snapshot.content, plan)
         self._levels_version = self._session.scene_buffers.levels_version
-        return plan
 
     def release(self):
         """Release the picture's resources on the device."""
-        if self._renderer is not None:
-            self._renderer.release()
-            self._renderer = None
+        for part in filter(None, (self._first, self._renderer)):
+            part.release()
+        self._first = self._renderer = None

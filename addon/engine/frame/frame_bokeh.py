@@ -1,4 +1,4 @@
-"""The bokeh of a frame over time: whole at once, or a draft that the whole replaces later."""
+"""The bokeh of a frame over time: whole at once, or later, with or without a draft till then."""
 
 import time
 from contextlib import nullcontext
@@ -29,7 +29,7 @@ class FrameBokeh:
         self.seconds = np.inf
         self._whole = self._draft = self._refining = None
 
-    def restart(self, plan, make_stage, drafts):
+    def restart(self, plan, make_stage, when):
         """Begin a frame anew.
 
         Parameters
@@ -37,18 +37,22 @@ class FrameBokeh:
         plan : FramePlan
         make_stage : callable
             Returns the `BokehStage` of a plan.
-        drafts : bool
-            Begin with a draft, unless the last whole bokeh was quick.
+        when : {'AT_ONCE', 'DRAFT', 'LATER'}
+            The whole is made before the first sample, or by `refine`; until then there is a draft,
+            or none. A whole that was quick the last time is made at once.
         """
         self.release()
+        self.drafted = False
         if plan.bokeh:
             self.stage = self._whole = make_stage(plan)
-            if drafts and self.seconds > _QUICK:
+            self.drafted = when != "AT_ONCE" and self.seconds > _QUICK
+            if self.drafted and when == "DRAFT":
                 self._draft = make_stage(replace(plan, bokeh=plan.bokeh.drafted()))
-        self.drafted = self._draft is not None
 
     def run(self, fullscreen, targets, view, stage=nullcontext):
-        """Make the draft, or the whole without one; as `BokehStage.run`."""
+        """Make what comes before the first sample, if anything does; as `BokehStage.run`."""
+        if self.drafted and self._draft is None:
+            return
         self.stage = self._draft or self._whole
         start = time.perf_counter()
         self.stage.run(fullscreen, targets, view, stage)

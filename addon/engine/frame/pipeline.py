@@ -46,7 +46,7 @@ class FrameRenderer(ReadableFrame):
     samples_done : int
     """
 
-    def __init__(self, plan, snapshot, buffers, drafts=False, leader=None):
+    def __init__(self, plan, snapshot, buffers, bokeh="AT_ONCE", leader=None):
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
         self._content = self._levels = self._drawing = self._blur = self._plain = None
@@ -54,9 +54,9 @@ class FrameRenderer(ReadableFrame):
         self._graded = {}
         self._bokeh = FrameBokeh()
         self._layers = None
-        self.restart(plan, snapshot, drafts, leader)
+        self.restart(plan, snapshot, bokeh, leader)
 
-    def restart(self, plan, snapshot, drafts=False, leader=None):
+    def restart(self, plan, snapshot, bokeh="AT_ONCE", leader=None):
         """Begin a frame with another view or content; buffers and targets that still fit are kept.
 
         Parameters
@@ -64,9 +64,8 @@ class FrameRenderer(ReadableFrame):
         plan : FramePlan
         snapshot : SceneSnapshot
             The buffers must be updated to its content.
-        drafts : bool
-            Begin with a draft of the bokeh, unless the last whole one was quick, and leave the
-            whole to `refine_bokeh`.
+        bokeh : {'AT_ONCE', 'DRAFT', 'LATER'}
+            When the whole bokeh is made; see `FrameBokeh.restart`.
         leader : TileSampling or None
             With `automatic` sampling: draw the tiles that another renderer has chosen (the frame
             with chromatic aberration, for the plain one of Fringe).
@@ -118,8 +117,8 @@ class FrameRenderer(ReadableFrame):
         if plan.blurs:
             self._blur = SubsampleBlur(plan, self._drawing.nearest, wavelengths, self._lens)
         # Whether a draft is shown depends on time: the noise threshold must not depend on it.
-        self._measures_bokeh = bool(plan.bokeh) and not drafts
-        self._bokeh.restart(plan, self._stage, drafts)
+        self._measures_bokeh = bool(plan.bokeh) and bokeh == "AT_ONCE"
+        self._bokeh.restart(plan, self._stage, bokeh)
         self._prepare_targets()
         self._pictures = FramePictures(
             plan,

@@ -133,8 +133,8 @@ class Refocusing:
         self._buffers = SceneBuffers(look_textures)
         self._buffers.update(self._content)
         self._buffers.captured = StackLayers(stack)
-        self._drafts = drafts
-        self._renderer = FrameRenderer(plan, snapshot, self._buffers, drafts)
+        self._bokeh = "DRAFT" if drafts else "AT_ONCE"
+        self._renderer = FrameRenderer(plan, snapshot, self._buffers, self._bokeh)
 
     def change(self, settings, planned=None):
         """Begin anew with other settings; the same ones go on where they are.
@@ -153,7 +153,7 @@ class Refocusing:
         if settings == self.settings:
             return
         snapshot, plan = planned or planned_frame(self.stack, settings, self._content)
-        self._renderer.restart(plan, snapshot, self._drafts)
+        self._renderer.restart(plan, snapshot, self._bokeh)
         self.settings = settings
 
     @property

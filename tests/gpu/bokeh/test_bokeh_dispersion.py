@@ -209,7 +209,7 @@ def test_a_draft_has_few_bands_and_the_same_light():
     renderer = make_renderer(snapshot)
     renderer._bokeh.seconds = np.inf
     plan = plan_frame(snapshot)
-    renderer.restart(plan, snapshot, drafts=True)
+    renderer.restart(plan, snapshot, bokeh="DRAFT")
     renderer.advance(plan.samples)
     assert renderer.bokeh_drafted
     assert len(plan.bokeh.colors.draft().bands) == 4 < len(plan.bokeh.colors.bands)

@@ -45,7 +45,7 @@ def moved(snapshot, distance):
 
 
 def begin(renderer, snapshot):
-    renderer.restart(plan_frame(snapshot), snapshot, drafts=True)
+    renderer.restart(plan_frame(snapshot), snapshot, bokeh="DRAFT")
 
 
 @pytest.fixture(scope="module")
