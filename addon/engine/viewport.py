@@ -16,10 +16,10 @@ from ..scene.view import read_view
 from ..snapshot.changes import Change, compare
 from ..snapshot.scene import SceneSnapshot
 from .bokeh.marks import shows_marks
-from .frame.first_picture import FirstPicture, plan_first_picture
+from .frame.first_picture import FirstPicture
 from .frame.pacing import Pacer
 from .frame.pipeline import FrameRenderer
-from .planning.plan import plan_frame
+from .planning.plan import plan_first_picture, plan_frame
 from .report import failure, frame_report, in_short, one_line
 from .shared_resources import resources
 from .viewport_session import session_of_view

@@ -1,9 +1,12 @@
 """Subsample blur: a lens sample blurred over the part of the lens it stands for (methods 6)."""
 
 from ..device import shader_source, state
+from ..device.shader_variants import variants
 from ..device.shaders import ShaderInfo, compile_shader
+from ..device.targets import TargetSpec
 from ..device.uniform_block import UniformStruct
 from ..device.uniforms import uniform_buffer
+from ..sampling.sequence import SETS
 from .surface import chromatic, real_lens
 
 _SAMPLERS = (
@@ -16,28 +19,53 @@ _SAMPLERS = (
 
 SUBSAMPLE_PARAMS = UniformStruct("shared/subsample_params.glsl", "SubsampleParams")
 
-_INFO = ShaderInfo(
-    name="aplanat_subsample",
-    vertex=shader_source.load("passes/fullscreen_vert.glsl"),
-    fragment=shader_source.load("passes/subsample_frag.glsl"),
-    typedefs=SUBSAMPLE_PARAMS.source,
-    attributes=(("VEC2", "pos"),),
-    outputs=(("VEC4", "out_color"),),
-    samplers=_SAMPLERS,
-    uniforms=(("SubsampleParams", "subsample_buf"),),
-    push_constants=(
-        ("VEC2", "jitter"),
-        ("VEC2", "apart"),
-        ("FLOAT", "weight"),
-        ("INT", "sample_index"),
-        ("INT", "count"),
-    ),
+# What a pixel sees with sets: blurred in front of the focus, all else, shares and blur.
+SORTED = ("near", "others", "shares")
+
+
+@variants(
+    lambda dispersed, through_lens, sets: not (sets and dispersed),
+    dispersed=(False, True),
+    through_lens=(False, True),
+    sets=(False, True),
 )
-_IN_WAVELENGTHS = chromatic.declared(_INFO, (("VEC4", "tint"),))
-_THROUGH_LENS, _THROUGH_LENS_IN_WAVELENGTHS = (
-    real_lens.declared(info, (("FLOAT_2D", "turns_tx"), *real_lens.LIGHT_SAMPLERS))
-    for info in (_INFO, _IN_WAVELENGTHS)
-)
+def _info(dispersed, through_lens, sets=False):
+    info = ShaderInfo(
+        name="aplanat_subsample",
+        vertex=shader_source.load("passes/fullscreen_vert.glsl"),
+        fragment=shader_source.load("passes/subsample_frag.glsl"),
+        typedefs=SUBSAMPLE_PARAMS.source,
+        attributes=(("VEC2", "pos"),),
+        outputs=(("VEC4", "out_color"),)
+        if not sets
+        else (("VEC4", "out_near"), ("VEC4", "out_color"), ("VEC2", "out_shares")),
+        samplers=_SAMPLERS,
+        uniforms=(("SubsampleParams", "subsample_buf"),),
+        push_constants=(
+            ("VEC2", "jitter"),
+            ("VEC2", "apart"),
+            ("FLOAT", "weight"),
+            ("INT", "sample_index"),
+            ("INT", "count"),
+        ),
+        defines=(("SETS", str(SETS)),) * sets,
+    )
+    if dispersed:
+        info = chromatic.declared(info, (("VEC4", "tint"),))
+    if through_lens:
+        samplers = (("FLOAT_2D", "turns_tx"), *real_lens.LIGHT_SAMPLERS)
+        info = real_lens.declared(info, samplers)
+    return info
+
+
+def sorted_specs():
+    """Return the render targets of a blur with sets."""
+    near, others, shares = SORTED
+    return (
+        TargetSpec(near, "RGBA32F"),
+        TargetSpec(others, "RGBA32F"),
+        TargetSpec(shares, "RG32F"),
+    )
 
 
 def params(*, sweep, spread, depths, cell, top, levels, gain=None):
@@ -81,6 +109,7 @@ def blur(
     count,
     wavelength=None,
     lens=None,
+    sets=False,
 ):
     """Blur a lens sample and add it to the bound frame buffer.
 
@@ -105,13 +134,15 @@ def blur(
         The sample's; its subsamples have the same.
     lens : passes.surface.real_lens.LensSample, optional
         The sample's, with ``turns``.
+    sets : bool
+        Pixels have different places on the lens: `SETS` x `SETS` rows of the subsamples a sample.
+        The frame buffer has the `SORTED` targets, and is overwritten. Not with wavelengths.
     """
-    state.additive()
-    if lens is None:
-        info = _INFO if wavelength is None else _IN_WAVELENGTHS
+    if sets:
+        state.overwrite()
     else:
-        info = _THROUGH_LENS if wavelength is None else _THROUGH_LENS_IN_WAVELENGTHS
-    shader = compile_shader(info)
+        state.additive()
+    shader = compile_shader(_info(wavelength is not None, lens is not None, sets))
     shader.bind()
     for (_, name), texture in zip(_SAMPLERS, textures, strict=True):
         shader.uniform_sampler(name, texture)

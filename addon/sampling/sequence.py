@@ -93,3 +93,41 @@ def subsample_places(counts, kind, size_px, seed=0):
     index = (np.cumsum(counts) - counts)[:, None] + np.arange(most)
     uniform = index[..., None] * np.array([1.0 / _PLASTIC, 1.0 / _PLASTIC**2])
     return texel_offsets(np.mod(uniform + _shift(seed, 2, 4), 1.0), kind, size_px)
+
+
+# Side of the square of neighbouring pixels that see through sets of places of their own.
+SETS = 4
+# Points of a square lattice on the torus: k (1, 5) / 13, whose shortest steps are at right angles.
+LATTICE_PLACES = 13
+_LATTICE_STEPS = np.array([[3.0, 2.0], [-2.0, 3.0]]) / LATTICE_PLACES
+
+
+def lattice_sets(iris):
+    """Return sets of places on the lens for `SETS` x `SETS` neighbouring pixels.
+
+    Each set is a lattice of its own, and all together are a finer one: they are as even as can be.
+
+    Parameters
+    ----------
+    iris : Iris
+
+    Returns
+    -------
+    ndarray of shape (SETS^2, LATTICE_PLACES, 2)
+        In units of the aperture radius; pixel by pixel, row by row.
+    """
+    count = np.arange(LATTICE_PLACES)[:, None]
+    lattice = count * np.array([1.0, 5.0]) / LATTICE_PLACES
+    # Neighbours in the picture are far apart in the cell, or their offsets would add up with it.
+    order = _dispersed(SETS).ravel()
+    parts = (np.stack([order % SETS, order // SETS], axis=-1) + 0.5) / SETS
+    shifts = parts @ _LATTICE_STEPS
+    return iris_points(np.mod(lattice + shifts[:, None], 1.0), iris)
+
+
+def _dispersed(side):
+    """Return the numbers of an ordered dither, shape (side, side); a power of two."""
+    order = np.zeros((1, 1), int)
+    while len(order) < side:
+        order = np.block([[4 * order, 4 * order + 2], [4 * order + 3, 4 * order + 1]])
+    return order

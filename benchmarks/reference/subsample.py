@@ -85,11 +85,14 @@ def subsample_sum(levels, top, offsets, sweep, cell, shifts, jitter=(0.0, 0.0)):
 
 def _cell_color(levels, top, texel, sweep, cell, alike=1.0, width_of_cell=0.85):
     """Return the mean of the colours round a texel that a cell brings to one pixel; the margin."""
-    depth = levels[0][1][texel][0]
-    width = width_of_cell * np.abs(sweep_px([cell, cell], sweep, depth)).min()
-    wanted = np.log2(max(width, 1.0)) + 0.5
-    sure = min(wanted % 1.0, -wanted % 1.0) if wanted > 0.5 else np.inf
-    for level in range(min(int(wanted), top), 0, -1):
+
+    def level_of(depth):
+        width = width_of_cell * np.abs(sweep_px([cell, cell], sweep, depth)).min()
+        wanted = np.log2(max(width, 1.0)) + 0.5
+        return int(wanted), min(wanted % 1.0, -wanted % 1.0) if wanted > 0.5 else np.inf
+
+    wanted, sure = level_of(levels[0][1][texel][0])
+    for level in range(min(wanted, top), 0, -1):
         means, ranges = levels[level]
         last = np.array(means.shape[:2]) - 1
         place = (np.array(texel) + 0.5) / 2**level - 0.5
@@ -99,8 +102,10 @@ def _cell_color(levels, top, texel, sweep, cell, alike=1.0, width_of_cell=0.85):
         corners = np.ix_(*([a, b] for a, b in zip(low, high, strict=True)))
         extent = np.ptp(ranges[corners])
         moves = cell * np.abs(sweep[2:]).max() * extent
-        sure = min(sure, abs(moves - alike))
-        if moves <= alike:
+        around = ranges[corners]
+        ends = [level_of(depth) for depth in (around[..., 0].min(), around[..., 1].max())]
+        sure = min(sure, abs(moves - alike), *(margin for _, margin in ends))
+        if moves <= alike and min(end for end, _ in ends) >= level:
             weights = np.outer(*([1.0 - p, p] for p in part))
             return np.einsum("ij,ijc->c", weights, means[corners]), sure
     return levels[0][0][texel], sure

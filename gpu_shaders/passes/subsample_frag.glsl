@@ -9,7 +9,10 @@
 // REAL_LENS: as in surface_vert; turns_tx (how the lens' displacements change with the place on it:
 // columns of a matrix in texels a metre, in the left half, and per unit of the depth buffer, in the right),
 // light_tx (what the lens lets through at the places of the picture).
-// Outputs: the weighted sum of the sample and its subsamples.
+// SETS: places on the lens differ from pixel to pixel, in squares of SETS x SETS pixels: there are so many
+// rows of offsets_tx a sample, from the lower left one on, of count + 1 places in all.
+// Outputs: the weighted sum of the sample and its subsamples. SETS: the sums of what is seen blurred in
+// front of the focus, and of all else; the share of the first, and the least blur of the others, texels.
 // Source: methods 6 (JKL13 section 6, algorithm 3).
 #include "lib/extremes_lib.glsl"
 #include "lib/bokeh/sweep_lib.glsl"
@@ -76,14 +79,21 @@ vec2 parted_px(vec2 move)
 // a half, since the cells do not tile the lens as squares.
 #define WIDTH_OF_CELL 0.85
 
+// Level of the pyramid with squares as wide as a surface of this depth moves across a cell of the lens.
+int level_of_cell(float depth)
+{
+  vec2 span = reach_px(vec2(subsample_buf.cell.x), depth);
+  float width = WIDTH_OF_CELL * min(span.x, span.y);
+  return int(floor(log2(max(width, 1.0)) + 0.5));
+}
+
 // Mean colour round a texel that a cell of the lens brings to one pixel: over as many texels as the
-// surface moves across the cell, but only where all surfaces there move alike.
+// surface moves across the cell, but only where all surfaces there move alike, and none of them less than
+// the means are wide: its light would be in the means beside it, and all of it in its own texels.
 vec4 cell_color(ivec2 texel, ivec2 size)
 {
   float depth = texelFetch(depth_tx, texel, 0).x;
-  vec2 span = reach_px(vec2(subsample_buf.cell.x), depth);
-  float width = WIDTH_OF_CELL * min(span.x, span.y);
-  int level = min(int(floor(log2(max(width, 1.0)) + 0.5)), int(subsample_buf.cell.y));
+  int level = min(level_of_cell(depth), int(subsample_buf.cell.y));
 #ifdef REAL_LENS
   vec2 by_depth = abs(vec2(own_turn_by_depth[0].x, own_turn_by_depth[1].y) + focused_sweep.zw);
 #else
@@ -100,7 +110,8 @@ vec4 cell_color(ivec2 texel, ivec2 size)
     vec2 range = extremes(
         extremes(texelFetch(ranges_tx, a, 0).xy, texelFetch(ranges_tx, b, 0).xy),
         extremes(texelFetch(ranges_tx, c, 0).xy, texelFetch(ranges_tx, d, 0).xy));
-    if (range.y - range.x <= alike) {
+    bool is_alike = range.y - range.x <= alike;
+    if (is_alike && min(level_of_cell(range.x), level_of_cell(range.y)) >= level) {
       vec2 part = clamp(place - vec2(low), 0.0, 1.0);
       return mix(mix(texelFetch(means_tx, a, 0), texelFetch(means_tx, b, 0), part.x),
                  mix(texelFetch(means_tx, c, 0), texelFetch(means_tx, d, 0), part.x), part.y);
@@ -249,6 +260,45 @@ vec2 depths_in_reach(ivec2 pixel, ivec2 size, out int reach)
   return found;
 }
 
+#ifdef SETS
+// Radius of the circle of confusion from which on a surface in front of the focus is blurred, texels.
+#define BLURRED 2.0
+// Blur where nothing is seen but surfaces that are blurred in front of the focus.
+#define UNSEEN 1e4
+
+vec4 near_sum = vec4(0.0);
+float near_count = 0.0, least_blur = UNSEEN;
+
+// The colour of a texel that is seen, in the sum that it belongs to.
+vec4 sorted_color(ivec2 texel, ivec2 size)
+{
+  float depth = texelFetch(depth_tx, texel, 0).x;
+  vec2 blurs = reach_px(subsample_buf.bounds.xy, depth);
+  float blur = min(blurs.x, blurs.y);
+  vec4 color = cell_color(texel, size);
+  // The movement changes its sign at the focus; the least depth is in front of it.
+  float nearest = focused_sweep.y + focused_sweep.w * subsample_buf.bounds.z;
+  float here = focused_sweep.y + focused_sweep.w * depth;
+  bool in_front = nearest * focused_sweep.w < 0.0 && nearest * here > 0.0;
+  if (in_front && blur >= BLURRED) {
+    near_sum += color;
+    near_count += 1.0;
+    return vec4(0.0);
+  }
+  least_blur = min(least_blur, blur);
+  return color;
+}
+
+int row_of_offsets(ivec2 pixel)
+{
+  ivec2 place = pixel % SETS;
+  return (sample_index * SETS + place.y) * SETS + place.x;
+}
+#else
+#define sorted_color cell_color
+#define row_of_offsets(pixel) sample_index
+#endif
+
 void main()
 {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -273,25 +323,39 @@ void main()
   vec4 total;
   if (reach == 0) {
     total = texelFetch(sample_tx, pixel, 0) * float(count + 1);
+#ifdef SETS
+    least_blur = 0.0;
+#endif
   }
   else {
+#ifdef SETS
+    total = vec4(0.0);
+    int places = count + 1;
+#else
     total = cell_color(pixel, size);
+    int places = count;
+#endif
     // What lies beyond the picture's edges cannot be looked at: there, the place in the pixel is the
     // sample's own, as far as it is not a matter of whole texels.
     vec2 to_edge = vec2(min(pixel, size - 1 - pixel)) + 0.5;
     bvec2 inside = greaterThan(to_edge, apart);
-    for (int i = 0; i < count; i++) {
-      vec4 subsample = texelFetch(offsets_tx, ivec2(i, sample_index), 0);
+    for (int i = 0; i < places; i++) {
+      vec4 subsample = texelFetch(offsets_tx, ivec2(i, row_of_offsets(pixel)), 0);
       vec2 center = vec2(pixel) + 0.5 + mix(jitter, subsample.zw, inside);
-      total += cell_color(seen_texel(center, size, subsample.xy, in_reach), size);
+      total += sorted_color(seen_texel(center, size, subsample.xy, in_reach), size);
     }
   }
 #ifdef CHROMATIC
   total *= tint;
 #endif
+  float light = weight;
 #ifdef REAL_LENS
   vec4 table = vec4(real_lens_buf.light.xy, real_lens_buf.table.z, float(lens_slot));
-  total *= light_at(light_tx, gl_FragCoord.xy / vec2(size), table).x;
+  light *= light_at(light_tx, gl_FragCoord.xy / vec2(size), table).x;
 #endif
-  out_color = total * weight;
+  out_color = total * light;
+#ifdef SETS
+  out_near = near_sum * light;
+  out_shares = vec2(near_count / float(count + 1), least_blur);
+#endif
 }

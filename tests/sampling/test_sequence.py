@@ -10,7 +10,7 @@ from addon.sampling.pixel_filter import (
     subpixel_centers,
     subpixel_weights,
 )
-from addon.sampling.sequence import lens_samples, pixel_offsets
+from addon.sampling.sequence import LATTICE_PLACES, lattice_sets, lens_samples, pixel_offsets
 
 
 def test_the_first_sample_is_the_pinhole_at_the_pixel_s_centre():
@@ -73,3 +73,23 @@ def test_weighted_subpixels_make_the_same_filter_as_single_samples(kind, size, s
 def test_a_box_of_one_pixel_needs_no_weights():
     moved = pixel_offsets(0, 512, "BOX", 1.0, subpixels=4)[:, 0]
     assert np.array_equal(subpixel_weights(moved, "BOX", 1.0, 4), np.full((512, 4), 0.25))
+
+
+def test_lattice_sets_are_even_each_and_more_so_together():
+    sets = lattice_sets(Iris())
+    assert sets.shape == (16, LATTICE_PLACES, 2)
+
+    def unevenness(places):
+        """Standard deviation of the numbers in eight sectors of half the area each way, of mean."""
+        turn = np.floor(np.mod(np.arctan2(places[:, 1], places[:, 0]) / (np.pi / 2), 4.0))
+        outer = np.hypot(*places.T) > np.sqrt(0.5)
+        counts = np.bincount((2 * turn + outer).astype(int), minlength=8)
+        return counts.std() / counts.mean()
+
+    each = np.mean([unevenness(places) for places in sets])
+    # Of places at random it would be 0.78 and 0.19.
+    assert each < 0.5
+    assert unevenness(sets.reshape(-1, 2)) < 0.08
+    # No two are the same.
+    gaps = np.linalg.norm(sets.reshape(-1, 1, 2) - sets.reshape(1, -1, 2), axis=-1)
+    assert gaps[gaps > 0].min() > 0.03 and (gaps == 0).sum() == gaps.shape[0]

@@ -6,48 +6,8 @@ missing: the surfaces beside it are continued there. It takes about as long as a
 of it remains in the samples' picture, which takes its place as soon as they cover the lens.
 """
 
-from dataclasses import replace
-
 from ...sampling.subsamples import FIRST_INTERVAL
-from ..planning.plan import plan_frame
-from ..planning.quality import largest_coc
 from .pipeline import FrameRenderer
-
-# Places on the lens besides its middle.
-_PLACES = 16
-# Radius of the circle of confusion below which a sample is as good as the lens, px.
-_LEAST_BLUR = 0.5
-
-
-def plan_first_picture(snapshot):
-    """Plan the first picture of a frame.
-
-    Parameters
-    ----------
-    snapshot : SceneSnapshot
-
-    Returns
-    -------
-    FramePlan or None
-        None where nothing is blurred.
-    """
-    # Of the colours of chromatic aberration one sample has but one; highlights that are not split
-    # off need no search.
-    camera = replace(snapshot.camera, bokeh=None, chromatic=None)
-    sampling = replace(
-        snapshot.sampling,
-        method="ADAPTIVE",
-        lens_samples=1,
-        subsamples=_PLACES,
-        target_error=None,
-        time_limit=None,
-        reuse_grid=0,
-        uses_levels=snapshot.sampling.uses_levels and snapshot.sampling.method == "ADAPTIVE",
-        progressive=False,
-    )
-    plan = plan_frame(replace(snapshot, camera=camera, sampling=sampling, passes=("Combined",)))
-    blurred = plan.blurs and largest_coc(snapshot.content, plan) >= _LEAST_BLUR
-    return plan if blurred else None
 
 
 class FirstPicture:
@@ -75,7 +35,7 @@ class FirstPicture:
         snapshot : SceneSnapshot
             The buffers must be updated to its content.
         plan : FramePlan or None
-            Of `plan_first_picture`.
+            Of `planning.plan.plan_first_picture`.
         """
         self.renderer = None
         if plan is None:

@@ -5,11 +5,14 @@ References
 Jeong, Kim and Lee, CGF 2013, section 6.
 """
 
+from contextlib import nullcontext
+
 import numpy as np
 
 from ...device.targets import TargetSpec
 from ...device.textures import texture_2d
-from ...passes import pyramid, subsample
+from ...passes import joined_sets, pyramid, subsample
+from ...sampling.sequence import SETS
 from ...sampling.spectral_samples import GROUP
 
 # Most levels of the pyramid's means: footprints wider than 64 texels are sampled too coarsely for
@@ -55,6 +58,8 @@ class SubsampleBlur:
         self._offsets = texture_2d(np.concatenate([plan.subsample_offsets, shifts], axis=-1))
         taken = np.arange(shifts.shape[1]) < plan.subsample_counts[:, None]
         self._apart = np.max(np.abs(shifts), axis=1, where=taken[..., None], initial=0.0)
+        if plan.subsample_sets:
+            self._apart = self._apart.max(axis=0, keepdims=True)
         # Whole texels of its place make a sample another picture of the same kind.
         self._jitter = np.clip(np.rint(own) - own, -_MOST_JITTER, _MOST_JITTER)
         self._spread = np.abs(plan.subsample_offsets[plan.first :]).max(axis=(0, 1))
@@ -63,6 +68,10 @@ class SubsampleBlur:
         if wavelengths:
             # Samples that share their place on the lens count once.
             places /= GROUP
+        if plan.subsample_sets:
+            # Between a pixel's own places, as if it were not joined with others, and those of all
+            # sets (`SETS` squared), as if it always were.
+            places *= SETS
         lens = plan.source and plan.source.lens
         area = lens.iris.shared_area if lens else np.pi
         self._cell = float(np.sqrt(area * plan.lens_extent.prod() / places))
@@ -136,6 +145,7 @@ class SubsampleBlur:
             # At least one level: the shader's textures must be bound.
             TargetSpec("sample_means", "RGBA32F", max(self._top, 1), 0.5),
             TargetSpec("sample_ranges", "RG32F", max(self._levels, 1), 0.5),
+            *(subsample.sorted_specs() if self._plan.subsample_sets else ()),
         )
 
     def add(self, fullscreen, targets, index):
@@ -151,18 +161,24 @@ class SubsampleBlur:
         sample = (targets["sample"], targets["sample_depth"])
         levels = (targets["sample_means"], targets["sample_ranges"])
         pyramid.build(*sample, *levels, self._top, self._levels)
-        subsample.blur(
-            fullscreen,
-            (*sample, self._offsets, *levels),
-            self._params(),
-            jitter=self._jitter[index],
-            apart=self._apart[index],
-            weight=float(plan.subpixel_weights[index].prod()),
-            index=index,
-            count=int(plan.subsample_counts[index]),
-            wavelength=self._wavelengths and self._wavelengths(index),
-            lens=self._lens and self._lens.sample(index),
-        )
+        sets = self._plan.subsample_sets
+        sums = targets.framebuffer(*subsample.SORTED).bind() if sets else nullcontext()
+        with sums:
+            subsample.blur(
+                fullscreen,
+                (*sample, self._offsets, *levels),
+                self._params(),
+                jitter=self._jitter[index],
+                apart=self._apart[index],
+                weight=float(plan.subpixel_weights[index].prod()),
+                index=index,
+                count=int(plan.subsample_counts[index]),
+                wavelength=self._wavelengths and self._wavelengths(index),
+                lens=self._lens and self._lens.sample(index),
+                sets=sets,
+            )
+        if sets:
+            joined_sets.join(fullscreen, targets)
 
     def _params(self):
         if self._block is None:

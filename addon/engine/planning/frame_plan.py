@@ -64,6 +64,9 @@ class FramePlan:
         int; number of subsamples of each sample.
     subsample_places : ndarray of shape (N, K, 2)
         From the pixel's centre to where each subsample looks in a sample's raster, px.
+    subsample_sets : bool
+        Of the one sample, which has no place of its own then: N are sets of places for neighbouring
+        pixels, see `sampling.sequence.lattice_sets`, and K is one more than its subsamples.
     level_bias : float or None
         Subtracted from the level of detail; None draws everything at full detail.
     least_triangles : int
@@ -148,6 +151,7 @@ class FramePlan:
     first: int = 0
     time_limit: float | None = None
     layered: LayeredPlan | None = None
+    subsample_sets: bool = False
     real_lens: RealLensPlan | None = None
     shadows: bool = False
     report: tuple[str, ...] = ()

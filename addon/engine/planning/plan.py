@@ -7,6 +7,7 @@ import numpy as np
 from ...errors import FocusError
 from ...sampling.pixel_filter import MOST_SUBPIXELS, filter_support
 from ...sampling.rounds import first_look
+from ...sampling.sequence import LATTICE_PLACES, lattice_sets, subsample_places
 from ...sampling.spectral_samples import GROUP
 from .bokeh_plan import plan_bokeh
 from .chromatic import plan_chromatic
@@ -16,7 +17,7 @@ from .frame_samples import SampleSource
 from .layered_plan import plan_layered
 from .lens_plan import plan_real_lens
 from .near_plane import with_near_plane
-from .quality import LEAST_ERROR, settle
+from .quality import LEAST_ERROR, largest_coc, settle
 from .stack_bokeh import plan_stack_bokeh
 
 # Diagonals of the picture over the diameter of the largest circle of confusion that counts as
@@ -30,6 +31,9 @@ _TYPICAL_SAMPLES = 64
 # room for that.
 _LARGEST_RASTER = 1 << 24
 _LONGEST_RASTER = 8192
+
+# Radius of the circle of confusion below which a sample is as good as a first picture, px.
+_LEAST_BLUR = 0.5
 
 
 def region_projection(projection, film):
@@ -145,6 +149,42 @@ def plan_frame(snapshot):
     sharp = sharp_radius(film.width, film.height) * distortion.fineness
     bent = {"distortion": distortion, "sharp_radius": sharp}
     return replace(plan, plain=plan.plain and replace(plan.plain, **bent), **bent)
+
+
+def plan_first_picture(snapshot):
+    """Plan the first picture of a frame.
+
+    Parameters
+    ----------
+    snapshot : SceneSnapshot
+
+    Returns
+    -------
+    FramePlan or None
+        None where nothing is blurred.
+    """
+    # Of the colours of chromatic aberration one sample has but one; highlights that are not split
+    # off need no search.
+    camera = replace(snapshot.camera, bokeh=None, chromatic=None)
+    sampling = replace(
+        snapshot.sampling,
+        method="ADAPTIVE",
+        lens_samples=1,
+        subsamples=LATTICE_PLACES - 1,
+        target_error=None,
+        time_limit=None,
+        reuse_grid=0,
+        uses_levels=snapshot.sampling.uses_levels and snapshot.sampling.method == "ADAPTIVE",
+        progressive=False,
+    )
+    plan = plan_frame(replace(snapshot, camera=camera, sampling=sampling, passes=("Combined",)))
+    if not plan.blurs or largest_coc(snapshot.content, plan) < _LEAST_BLUR:
+        return None
+    film, lens = snapshot.film, plan.source.lens
+    offsets = lattice_sets(lens.iris) * lens.aperture_radius
+    counts = np.full(len(offsets), LATTICE_PLACES)
+    places = subsample_places(counts, film.filter_kind, film.filter_size_px)
+    return replace(plan, subsample_offsets=offsets, subsample_places=places, subsample_sets=True)
 
 
 def _plan_raster(snapshot):

@@ -119,6 +119,18 @@ def test_a_movement_in_between_begins_anew(renderer, snapshot):
     plain.release()
 
 
+def test_a_bokeh_of_later_leaves_the_samples_alone_till_it_is_made(renderer, snapshot):
+    renderer.restart(plan_frame(snapshot), snapshot, bokeh="LATER")
+    renderer.advance(4)
+    assert renderer.sampled and not renderer.finished()
+    assert renderer.highlights.found == 0
+    refine(renderer)
+    plain = make_renderer(snapshot)
+    plain.advance(4)
+    assert renderer.read_image().tobytes() == plain.read_image().tobytes()
+    plain.release()
+
+
 def test_a_quick_bokeh_has_no_draft(renderer, snapshot):
     renderer._bokeh.seconds = 0.001
     begin(renderer, snapshot)
