@@ -12,7 +12,7 @@ _INFO = ShaderInfo(
     attributes=(("VEC2", "pos"),),
     outputs=(("VEC4", "out_color"),),
     samplers=tuple(("FLOAT_2D", f"{name}_tx") for name in SORTED),
-    defines=(("SETS", str(SETS)),),
+    defines=(("PIXEL_SETS", str(SETS)),),
 )
 
 

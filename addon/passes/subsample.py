@@ -48,7 +48,7 @@ def _info(dispersed, through_lens, sets=False):
             ("INT", "sample_index"),
             ("INT", "count"),
         ),
-        defines=(("SETS", str(SETS)),) * sets,
+        defines=(("PIXEL_SETS", str(SETS)),) * sets,
     )
     if dispersed:
         info = chromatic.declared(info, (("VEC4", "tint"),))

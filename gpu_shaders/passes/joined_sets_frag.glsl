@@ -1,10 +1,10 @@
 // The first picture: pixels that see through different places on the lens, joined where that changes
 // nothing but their noise: what is blurred in front of the focus with all neighbours, all else among
 // neighbours that see nothing sharp.
-// Inputs: near_tx, others_tx, shares_tx, as subsample_frag leaves them with SETS; all of them textures of
+// Inputs: near_tx, others_tx, shares_tx, as subsample_frag leaves them with PIXEL_SETS; all of them textures of
 // the picture's size.
 // Outputs: the sum of the places.
-// Blur of a pixel from which on it is joined with its neighbours, texels: a square of SETS pixels hardly
+// Blur of a pixel from which on it is joined with its neighbours, texels: a square of PIXEL_SETS pixels hardly
 // blurs it further.
 #define JOINED 2.0
 
@@ -12,7 +12,7 @@
 // edges.
 float part_of(int offset)
 {
-  return (abs(offset) == SETS / 2) ? 0.5 : 1.0;
+  return (abs(offset) == PIXEL_SETS / 2) ? 0.5 : 1.0;
 }
 
 void main()
@@ -23,8 +23,8 @@ void main()
   float near_share = 0.0, others_share = 0.0, parts = 0.0;
   vec2 own = texelFetch(shares_tx, pixel, 0).xy;
   bool joins = own.y >= JOINED;
-  for (int y = -SETS / 2; y <= SETS / 2; y++) {
-    for (int x = -SETS / 2; x <= SETS / 2; x++) {
+  for (int y = -PIXEL_SETS / 2; y <= PIXEL_SETS / 2; y++) {
+    for (int x = -PIXEL_SETS / 2; x <= PIXEL_SETS / 2; x++) {
       ivec2 texel = clamp(pixel + ivec2(x, y), ivec2(0), last);
       float part = part_of(x) * part_of(y);
       vec2 shares = texelFetch(shares_tx, texel, 0).xy;

@@ -9,9 +9,9 @@
 // REAL_LENS: as in surface_vert; turns_tx (how the lens' displacements change with the place on it:
 // columns of a matrix in texels a metre, in the left half, and per unit of the depth buffer, in the right),
 // light_tx (what the lens lets through at the places of the picture).
-// SETS: places on the lens differ from pixel to pixel, in squares of SETS x SETS pixels: there are so many
+// PIXEL_SETS: places on the lens differ from pixel to pixel, in squares of PIXEL_SETS x PIXEL_SETS pixels: there are so many
 // rows of offsets_tx a sample, from the lower left one on, of count + 1 places in all.
-// Outputs: the weighted sum of the sample and its subsamples. SETS: the sums of what is seen blurred in
+// Outputs: the weighted sum of the sample and its subsamples. PIXEL_SETS: the sums of what is seen blurred in
 // front of the focus, and of all else; the share of the first, and the least blur of the others, texels.
 // Source: methods 6 (JKL13 section 6, algorithm 3).
 #include "lib/extremes_lib.glsl"
@@ -260,7 +260,7 @@ vec2 depths_in_reach(ivec2 pixel, ivec2 size, out int reach)
   return found;
 }
 
-#ifdef SETS
+#ifdef PIXEL_SETS
 // Radius of the circle of confusion from which on a surface in front of the focus is blurred, texels.
 #define BLURRED 2.0
 // Blur where nothing is seen but surfaces that are blurred in front of the focus.
@@ -291,8 +291,8 @@ vec4 sorted_color(ivec2 texel, ivec2 size)
 
 int row_of_offsets(ivec2 pixel)
 {
-  ivec2 place = pixel % SETS;
-  return (sample_index * SETS + place.y) * SETS + place.x;
+  ivec2 place = pixel % PIXEL_SETS;
+  return (sample_index * PIXEL_SETS + place.y) * PIXEL_SETS + place.x;
 }
 #else
 #define sorted_color cell_color
@@ -323,12 +323,12 @@ void main()
   vec4 total;
   if (reach == 0) {
     total = texelFetch(sample_tx, pixel, 0) * float(count + 1);
-#ifdef SETS
+#ifdef PIXEL_SETS
     least_blur = 0.0;
 #endif
   }
   else {
-#ifdef SETS
+#ifdef PIXEL_SETS
     total = vec4(0.0);
     int places = count + 1;
 #else
@@ -354,7 +354,7 @@ void main()
   light *= light_at(light_tx, gl_FragCoord.xy / vec2(size), table).x;
 #endif
   out_color = total * light;
-#ifdef SETS
+#ifdef PIXEL_SETS
   out_near = near_sum * light;
   out_shares = vec2(near_count / float(count + 1), least_blur);
 #endif
