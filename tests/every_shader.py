@@ -17,7 +17,7 @@ from addon.device.targets import Targets, TargetSpec
 from addon.device.uniforms import uniform_buffer
 from addon.passes.bokeh import peel
 from addon.passes.nodes import surface_code
-from addon.passes.surface import data, environment_bake, surface, surface_target
+from addon.passes.surface import data, environment_bake, glass, surface, surface_target
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 
 _MODULES = [
@@ -56,6 +56,9 @@ def surface_targets():
         yield "layer splits", surface_target.of_layers(split)
         bent = surface_target.of_layers(surface_target.blurred_by_lens(target))
         yield "layer through a real lens", bent
+    bent = surface_target.through_lens(surface_target.in_wavelengths(surface_target.COLOR))
+    for target in (surface_target.COLOR, bent):
+        yield "backs of glass", glass.exits_of(target)
     for target in (peel.HIGHLIGHTS, peel.VEILS):
         yield "shadows searched", surface_target.lit(target, True)
     for number in range(3):

@@ -106,6 +106,14 @@ def hidden():
     gpu.state.depth_mask_set(False)
 
 
+def farthest():
+    """Farthest surface wins, in a depth buffer cleared to 0: depth test and write, no blending."""
+    import gpu
+
+    opaque()
+    gpu.state.depth_test_set("GREATER")
+
+
 def glow():
     """Add all four channels where the depth test passes; depth is kept."""
     import gpu

@@ -20,12 +20,12 @@ STATED = {
     "BsdfAnisotropic": (APPROXIMATE, "mirrors lights and the world; no anisotropy"),
     "BsdfPrincipled": (
         APPROXIMATE,
-        "all but anisotropy and thin film; glass does not bend, blur or tint; light below the"
-        " surface leaves where it enters",
+        "all but anisotropy and thin film; glass as of Glass BSDF; light below the surface leaves"
+        " where it enters",
     ),
     "BsdfMetallic": (APPROXIMATE, "edges of conductors by Schlick; no anisotropy, no thin film"),
-    "BsdfGlass": (APPROXIMATE, "what is behind is seen straight through, not blurred"),
-    "BsdfRefraction": (APPROXIMATE, "what is behind is seen straight through, not blurred"),
+    "BsdfGlass": (APPROXIMATE, "bends light at its front and its farthest back; see below"),
+    "BsdfRefraction": (APPROXIMATE, "bends light at its front and its farthest back; see below"),
     "BsdfTranslucent": (APPROXIMATE, "of lights and the world"),
     "SubsurfaceScattering": (APPROXIMATE, "light leaves where it enters: a diffuse surface"),
     "BsdfSheen": (APPROXIMATE, "fibres scatter the light of lamps as a diffuse surface does"),

@@ -79,9 +79,10 @@ ROOMS = {
         *("layers", "optics", "sampling", "lens_bokeh.samples", "lens_bokeh.tables"),
         *("snapshot", "levels"),
     ),
+    "engine.drawing.glass": ("device", "passes", "passes.surface"),
     "engine.drawing": (
         *("device", "sampling", "sampling.lights", "passes", "passes.surface", "passes.visibility"),
-        *("levels", "levels.making"),
+        *("levels", "levels.making", "engine.drawing.glass"),
     ),
     # The scene through depth layers, in place of a drawing for each lens sample.
     "engine.layered": ("device", "layers", "passes.bokeh", "passes.layered", "passes.surface"),

@@ -74,6 +74,40 @@ class GradedDrawings:
         self._candidates, self._shares, self._keys = {}, {}, {}
         self.rows = {}
 
+    def find_among(self, full, deepest_of, group_of, plan):
+        """Begin a frame: find them among the instances that may be graded.
+
+        Parameters
+        ----------
+        full : ndarray of shape (I,)
+            bool: rows of the instance table that are drawn at level 0 and not divided.
+        deepest_of : callable
+            From a row to the coarsest level that its parts may have.
+        group_of : ndarray of shape (I,)
+        plan : FramePlan
+        """
+        wanted = plan.level_bias is not None and plan.coc_scale != 0.0
+        rows = np.flatnonzero(full) if wanted else ()
+        if plan.bokeh:
+            # Not graded where the light varies over the surface: highlights are found at full
+            # detail.
+            rows = [row for row in rows if group_of[row] not in plan.bokeh.uneven]
+        self.find({int(row): deepest_of(row) for row in rows}, group_of, plan)
+
+    def slack(self, group, triangles):
+        """Return how far a graded mesh may be from the true surface, in its units.
+
+        Parameters
+        ----------
+        group : int
+        triangles : sequence of int
+            Of its level 0 as it is drawn, and of the others.
+        """
+        mesh = self._content.meshes[self._content.groups[group].mesh]
+        count = max(triangles[0], 1)
+        # Its coarsest parts are larger than the mean.
+        return 2.0 * float(np.sqrt(mesh.triangle_area * len(mesh.triangles) / count))
+
     def find(self, depths, group_of, plan):
         """Begin a frame: find the instances whose graded mesh would save triangles.
 

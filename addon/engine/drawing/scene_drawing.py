@@ -13,9 +13,12 @@ from ...device import state
 from ...device.textures import texture_2d
 from ...levels.choosing import extents, level_for_sample, world_corners
 from ...passes.surface import surface
+from ...passes.surface.draw import by_level
 from . import culling
 from .divided_drawings import DividedDrawings
 from .drawing_counts import DrawingCounts
+from .glass.glass_drawing import GlassDrawing
+from .glass.veils import Veils
 from .graded_drawings import GradedDrawings
 from .group_levels import GroupLevels
 from .light_maps import LightMaps
@@ -54,10 +57,11 @@ class SceneDrawing:
         self._content = content
         self._buffers = buffers
         self.target = target
-        self._draws = surface.build_draws(content, buffers, target)
-        self._veils = surface.build_veils(content, buffers, target)
+        draws = surface.build_draws(content, buffers, target)
+        self._draws = [draw for draw in draws if not draw.refracts]
+        self._veils = Veils(surface.build_veils(content, buffers, target))
         self.full_detail = sum(
-            d.triangles * d.count for d in (*self._draws, *self._veils) if d.level == 0
+            d.triangles * d.count for d in (*draws, *self._veils.draws) if d.level == 0
         )
         bounds = {uid: mesh.bounds for uid, mesh in buffers.meshes.items()}
         self._spheres = culling.BoundingSpheres(content, bounds)
@@ -66,11 +70,12 @@ class SceneDrawing:
         for number, group in enumerate(content.groups):
             self._group_of[group.first : group.first + group.count] = number
         self._group_levels = GroupLevels(content, buffers)
-        self._by_level = _by_level(self._draws)
-        self._veils_by_level = _by_level(self._veils)
+        self._by_level = by_level(self._draws)
+        glass = [draw for draw in draws if draw.refracts]
+        self._glass = GlassDrawing(content, buffers, target, glass, self._spheres)
         # Transparent and glowing surfaces differ from sample to sample: they share no drawing.
         self._unshared = {d.group for d in self._draws if d.transparent}
-        self._unshared |= {d.group for d in self._veils}
+        self._unshared |= {d.group for d in (*self._veils.draws, *glass)}
         self._shared = SharedDrawings("MATTES" in target.defines)
         self._graded = GradedDrawings(content, buffers, graded)
         self._divided = DividedDrawings(content)
@@ -103,10 +108,16 @@ class SceneDrawing:
         self.nearest = float(seen.nearest[self._seen].min(initial=np.inf))
         self.farthest = float(seen.farthest[self._seen].max(initial=0.0))
         self.levels = self._group_levels.choose(seen, plan)
+        self._glass.aim(plan, self._visible, part)
+        if self._glass.is_seen:
+            # What is blurred may be sharp where it is seen through glass.
+            self.levels[:] = 0.0
         self.lights.aim(plan, self._seen, seen)
         whole = np.flatnonzero(self._visible & (self.levels < 1.0))
         self._divided.find(whole, self._group_of, seen.nearest, plan)
-        self._find_graded()
+        full = self._visible & (self.levels == 0.0)
+        full[list(self._divided.rows)] = False
+        self._graded.find_among(full, self._group_levels.deepest, self._group_of, plan)
         self._shared.forget()
         if plan.reuse_grid:
             candidates = [
@@ -125,25 +136,6 @@ class SceneDrawing:
     def _triangles_of(self, row):
         counts = self._group_levels.triangles[self._group_of[row]]
         return self._graded.triangles(row, counts)
-
-    def _slack(self, row):
-        """Return how far a graded mesh may be from the true surface, in its units."""
-        mesh = self._content.meshes[self._content.groups[self._group_of[row]].mesh]
-        count = max(self._triangles_of(row)[0], 1)
-        # Its coarsest parts are larger than the mean.
-        return 2.0 * float(np.sqrt(mesh.triangle_area * len(mesh.triangles) / count))
-
-    def _find_graded(self):
-        plan = self._plan
-        wanted = plan.level_bias is not None and plan.coc_scale != 0.0
-        rows = np.flatnonzero(self._visible & (self.levels == 0.0)) if wanted else ()
-        if plan.bokeh:
-            # Not graded where the light varies over the surface: highlights are found at full
-            # detail.
-            rows = [row for row in rows if self._group_of[row] not in plan.bokeh.uneven]
-        depths = {int(row): self._group_levels.deepest(row) for row in rows}
-        depths = {row: deepest for row, deepest in depths.items() if row not in self._divided.rows}
-        self._graded.find(depths, self._group_of, plan)
 
     def _order_rows(self):
         """Sort the rows of each group by level of detail, so that equal levels are neighbours."""
@@ -180,9 +172,7 @@ class SceneDrawing:
             )
             self._table = texture_2d(instance_texels(ordered))
             self._place[order] = np.arange(count)
-        forwards = -self._plan.view[2]
-        # Of the middle of each row of the table, m.
-        self._depths = self._spheres.centers[order] @ forwards[:3] + forwards[3]
+        self._veils.aim(self._spheres.centers[order], self._plan.view)
 
     def _list(self, draws, index):
         """List the draw calls for a sample, without rows that share a drawing."""
@@ -220,11 +210,15 @@ class SceneDrawing:
         if graded is None:
             return [replace(draw, first=place, count=1) for draw in found]
         own = [(draw, *graded.batches[draw.slot]) for draw in found if draw.slot in graded.batches]
-        slack = self._slack(row) if graded is not self._divided.mesh(row) else 0.0
+        divided = graded is self._divided.mesh(row)
+        slack = 0.0 if divided else self._graded.slack(self._group_of[row], self._triangles_of(row))
         return [
             replace(draw, batch=batch, triangles=triangles, first=place, count=1, slack=slack)
             for draw, batch, triangles in own
         ]
+
+    def _level(self, row, index):
+        return level_for_sample(self.levels[row], *self._plan.in_round(index))
 
     def _of_single(self, draws, index):
         """List the draw calls for a sample of the rows that are drawn on their own."""
@@ -232,13 +226,15 @@ class SceneDrawing:
         listed = []
         for row in self._single:
             if row not in copied:
-                level = level_for_sample(self.levels[row], *self._plan.in_round(index))
-                listed += self._of_row(draws, row, level, index)
+                listed += self._of_row(draws, row, self._level(row, index), index)
         return listed
 
-    def _draw(self, listed, view, lens_sample, index, optics, lights):
+    def _count(self, listed):
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
+
+    def _draw(self, listed, view, lens_sample, index, optics, lights):
+        self._count(listed)
         state.opaque()
         resources = {"highlights": self._highlights, "optics": optics, "lights": lights}
         surface.draw_sample(listed, view, self._table, lens_sample, index, **resources)
@@ -246,6 +242,7 @@ class SceneDrawing:
     def confine(self, part):
         """Restrict the following samples to a part of the raster, inside that of `aim`."""
         self._part = part
+        self._glass.confine(part)
 
     def confined(self):
         """Return a context in which only the part of `confine` is drawn."""
@@ -288,25 +285,56 @@ class SceneDrawing:
         self.counts.sprites_drawn = shared.drawn
         self.counts.sprites_copied = shared.copied
 
-    def draw_veils(self, index, framebuffer, view):
+    def draw_through(self, index, framebuffer, view, targets):
+        """Draw glass and veils over a lens sample that `draw` has drawn; parameters as there."""
+        if self._glass.is_seen:
+            self._draw_glass(index, view, targets)
+        self._draw_veils(index, framebuffer, view)
+
+    def _draw_glass(self, index, view, targets):
+        # Before anything is bound, as in `draw`.
+        resources = self._resources(index)
+        given = (view, self._table, self._plan.lens_sample(index), index)
+
+        def of_row(draws, row):
+            return self._of_row(draws, row, self._level(row, index), index)
+
+        def draw(draws, bindings=()):
+            self._count(draws)
+            surface.draw_sample(draws, *given, bindings, **resources)
+
+        def draw_behind(framebuffer):
+            if self._highlights:
+                split = self._glass.split_light()
+                listed = self._list(split.draws, index) + self._of_single(split.by_level, index)
+                state.behind()
+                with framebuffer.bind(), self.confined():
+                    draw(listed)
+            self._draw_veils(index, framebuffer, view)
+
+        self._glass.draw(targets, self.lights, self.confined, of_row, draw, draw_behind)
+
+    def _resources(self, index):
+        lights = self.lights.of_samples(index, (index,))
+        return {"highlights": self._highlights, "optics": self._optics(index), "lights": lights}
+
+    def _draw_veils(self, index, framebuffer, view):
         """Filter a lens sample by coloured surfaces, and add the light of transparent ones."""
-        listed = self._list(self._veils, index) + self._of_single(self._veils_by_level, index)
-        if len({draw.part for draw in listed}) > 1:
-            # What is added is filtered by what is in front of it only.
-            listed.sort(key=lambda draw: -self._depths[draw.first : draw.first + draw.count].mean())
-        self.counts.draw_calls += len(listed)
-        self.counts.triangles += sum(d.triangles * d.count for d in listed)
-        lights = listed and self.lights.of_samples(index, (index,))
-        with framebuffer.bind(), self.confined():
-            lens_sample = self._plan.lens_sample(index)
-            resources = {"highlights": self._highlights, "optics": self._optics(index)}
-            resources["lights"] = lights
-            surface.draw_veils(listed, view, self._table, lens_sample, index, **resources)
+        listed = self._list(self._veils.draws, index)
+        listed = self._veils.in_order(listed + self._of_single(self._veils.by_level, index))
+        self._count(listed)
+        if listed:
+            resources = self._resources(index)
+            given = (listed, view, self._table, self._plan.lens_sample(index), index)
+            with framebuffer.bind(), self.confined():
+                surface.draw_veils(*given, **resources)
 
     @property
     def has_chance(self):
         """Whether any surface may let light through, or add some to what is behind it."""
-        return bool(self._veils) or any(draw.transparent for draw in self._draws)
+        return bool(self._veils.draws or self._glass.draws) or any(
+            draw.transparent for draw in self._draws
+        )
 
     @property
     def content(self):
@@ -315,11 +343,14 @@ class SceneDrawing:
 
     def specs(self):
         """Return the render targets that drawing needs besides the sample's."""
-        return self._shared.specs()
+        return (*self._shared.specs(), *self._glass.specs(self._plan))
 
     def surfaces(self):
         """Return group and slot of all surfaces."""
-        return frozenset((draw.group, draw.slot) for draw in (*self._draws, *self._veils))
+        return frozenset(
+            (draw.group, draw.slot)
+            for draw in (*self._draws, *self._veils.draws, *self._glass.draws)
+        )
 
     def see_through(self):
         """Return group and slot of the surfaces that may let light through."""
@@ -351,13 +382,7 @@ class SceneDrawing:
         ]
 
     def detail_table(self):
-        """Return an instance table that also has levels of detail and shares of shared drawings.
-
-        Returns
-        -------
-        GPUTexture
-            With rows of the content's own instance table.
-        """
+        """Return the content's instance table, with levels and shares of shared drawings."""
         detail = np.column_stack([self.levels, self._shared.shares(len(self.levels), self._plan)])
         return texture_2d(instance_texels(self._content.instances, detail))
 
@@ -367,15 +392,9 @@ class SceneDrawing:
 
     def texture_bytes(self):
         """Return how many bytes shared drawings take on the device."""
-        return self._shared.bytes() + self.lights.bytes
+        return self._shared.bytes() + self.lights.bytes + self._glass.bytes
 
     def release(self):
-        """Give light maps back to the device."""
+        """Give light maps and probes back to the device."""
         self.lights.release()
-
-
-def _by_level(draws):
-    found = {}
-    for draw in draws:
-        found.setdefault((draw.group, draw.level), []).append(draw)
-    return found
+        self._glass.release()

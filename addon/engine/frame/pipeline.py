@@ -330,7 +330,7 @@ class FrameRenderer(ReadableFrame):
             framebuffer_of_color = targets.framebuffer("sample", depth="sample_depth")
             with framebuffer_of_color.bind(), self._drawing.confined():
                 self._draw_background(index)
-        self._drawing.draw_veils(index, framebuffer, self._view)
+        self._drawing.draw_through(index, framebuffer, self._view, targets)
 
     def _draw_background(self, index):
         background.draw(

@@ -56,7 +56,7 @@ class LayeredDrawing:
         self._surroundings = surroundings
         self._made = None
         draws = drawing.full_detail_draws(drawing.target)
-        self._by_chance = [draw for draw in draws if draw.transparent]
+        self._by_chance = [draw for draw in draws if draw.transparent and not draw.refracts]
         self._places = texture_2d(_folded(plan.layered.places))
         self._nothing = texture_2d(np.array([[surroundings]], np.float32))
         # Sweeps in texels of the sample, which is as fine as the picture.
@@ -88,7 +88,7 @@ class LayeredDrawing:
             blur = optics.lens.blur_resources if bends else ()
             target = surface_target.of_layers(self._target)
             solid = self._drawing.full_detail_draws(target)
-            solid = [draw for draw in solid if not draw.transparent]
+            solid = [draw for draw in solid if not (draw.transparent or draw.refracts)]
             wanted = {(draw.group, draw.slot) for draw in solid}
             made = draw_scene_layers(
                 plan,
@@ -156,7 +156,7 @@ class LayeredDrawing:
         with framebuffer.bind(), self._drawing.confined():
             self.cast(index, fullscreen, targets["behind"] if background else None)
         self._draw_by_chance(index, framebuffer, view)
-        self._drawing.draw_veils(index, framebuffer, view)
+        self._drawing.draw_through(index, framebuffer, view, targets)
 
     def cast(self, index, fullscreen, behind=None, counts=False):
         """Cast the rays of a lens sample into the bound frame buffer.

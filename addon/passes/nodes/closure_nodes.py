@@ -195,10 +195,13 @@ def _glass(node, writer):
 
 
 def _see_through(writer, outputs, color):
-    writer.filter(color)
-    writer.transmitting.add(outputs["BSDF"][1])
-    # What it mirrors does not fade where it is clear.
-    writer.glows = True
+    writer.features.add("GLASS")
+    if writer.straight:
+        writer.filter(color)
+        writer.transmitting.add(outputs["BSDF"][1])
+    else:
+        # What it shows of what is behind it is its own light.
+        writer.refracts = True
 
 
 @generates("fog", "lib/nodes/fog_lib.glsl")

@@ -44,6 +44,8 @@ class SurfaceCode:
         sample and not only for those that find it opaque.
     filters : bool
         Light that passes the surface is multiplied by a colour.
+    refracts : bool
+        What is behind the surface is seen bent, as glass shows it.
     libraries : tuple of str
         Shader files below ``gpu_shaders/`` that the code calls, besides those of every surface.
     reads_place : bool
@@ -64,6 +66,7 @@ class SurfaceCode:
     lit: bool = False
     glows: bool = False
     filters: bool = False
+    refracts: bool = False
     libraries: tuple[str, ...] = ()
     reads_place: bool = False
     features: tuple[str, ...] = ()
@@ -71,7 +74,7 @@ class SurfaceCode:
     reflects: bool = False
 
 
-def generate(graph, available):
+def generate(graph, available, straight=False):
     """Generate the code of a surface.
 
     Parameters
@@ -79,6 +82,8 @@ def generate(graph, available):
     graph : SurfaceGraph
     available : iterable of str
         Attributes that the mesh has.
+    straight : bool
+        Glass lets light pass as if it were thin, instead of showing what is behind it.
 
     Returns
     -------
@@ -86,7 +91,7 @@ def generate(graph, available):
     """
     links = [value for node in graph.nodes for _, value in node.inputs if isinstance(value, Link)]
     used = frozenset((link.node, link.output) for link in links)
-    writer = Writer(frozenset(available), used, graph.luminance)
+    writer = Writer(frozenset(available), used, graph.luminance, straight)
     libraries = {}
     for node in graph.nodes:
         generator = _GENERATORS[node.kind]
@@ -104,6 +109,7 @@ def generate(graph, available):
         transparent=surface in writer.transmitting,
         lit=writer.bsdfs > 0,
         glows=writer.glows and surface in writer.transmitting,
+        refracts=writer.refracts,
         filters=writer.filters and surface in writer.transmitting,
         libraries=tuple(libraries),
         reads_place=writer.reads_place,

@@ -34,6 +34,10 @@ class Writer:
     glows : bool
     filters : bool
         Some closure lets colours pass unevenly, or more light than there is.
+    straight : bool
+        Glass lets light pass as if it were thin.
+    refracts : bool
+        Some closure shows what is behind it bent.
     reads_place : bool
         The code reads the position in object space.
     features : set of str
@@ -43,6 +47,7 @@ class Writer:
     available: frozenset[str]
     used: frozenset[tuple[int, str]]
     luminance: tuple[float, float, float]
+    straight: bool = False
     lines: list[str] = field(default_factory=list)
     closure_lines: list[str] = field(default_factory=list)
     bsdfs: int = 0
@@ -53,6 +58,7 @@ class Writer:
     dark: set[str] = field(default_factory=set)
     glows: bool = False
     filters: bool = False
+    refracts: bool = False
     reads_place: bool = False
     features: set[str] = field(default_factory=set)
     # (type, expression) of each output of each node so far

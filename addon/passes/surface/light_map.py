@@ -12,7 +12,11 @@ from . import surface, surface_target
 
 # Of what hides light: only its depth is drawn.
 TARGET = surface_target.SurfaceTarget(
-    "passes/surface/light_map_frag.glsl", (), defines=("OF_LIGHT",), shades=False
+    "passes/surface/light_map_frag.glsl",
+    (),
+    defines=("OF_LIGHT", "STRAIGHT"),
+    shades=False,
+    straight=True,
 )
 
 # Of a light sample's row: what it is, and its views of the scene.

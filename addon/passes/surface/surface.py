@@ -6,7 +6,7 @@ material, so that a frame changes state as rarely as it can.
 
 import itertools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ...device import shader_source, state
 from ...device.geometry import attribute_identifier, attribute_type
@@ -15,6 +15,7 @@ from ...device.uniform_block import UniformStruct
 from ...device.uniforms import bind_resource
 from ..nodes import surface_code
 from . import environment
+from .draw import Draw
 from .surface_target import COLOR, whole
 
 # Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and the
@@ -29,10 +30,18 @@ LIGHTING_TEXTURES = (
 SHADOW_TEXTURES = ("light_maps_tx", "lit_by_tx")
 # How far a coarser level of detail may be from the true surface, in the mesh's units.
 SHADOW_CONSTANTS = (("FLOAT", "slack"),)
+# What glass reads: the picture and depth of what is behind it, its backs, and a probe of the scene.
+GLASS_TEXTURES = ("behind_tx", "behind_depth_tx", "exits_tx", "probe_tx", "probe_depth_tx")
 
 VIEW_PARAMS = UniformStruct("shared/view_params.glsl", "ViewParams")
 HIGHLIGHT_PARAMS = UniformStruct("shared/highlight_params.glsl", "HighlightParams")
+GLASS_PARAMS = UniformStruct("shared/glass_params.glsl", "GlassParams")
 
+GLASS_LIBRARIES = ("lib/lens_lib.glsl", "lib/depth_lib.glsl", "lib/surface/probe_lib.glsl")
+LENS_LIBRARIES = (
+    ("CHROMATIC", "lib/chromatic_lib.glsl"),
+    ("REAL_LENS", "lib/real_lens_lib.glsl"),
+)
 _LIBRARIES = (
     "lib/hash_lib.glsl",
     "lib/surface/color_lib.glsl",
@@ -40,55 +49,6 @@ _LIBRARIES = (
     "lib/surface/vector_lib.glsl",
     "passes/surface/surface_lighting.glsl",
 )
-
-
-@dataclass(frozen=True)
-class Draw:
-    """One draw call.
-
-    Parameters
-    ----------
-    shader : GPUShader
-    batch : GPUBatch
-    triangles : int
-        Of one instance.
-    first, count : int
-        Rows of the instance table.
-    constants : GPUUniformBuf or None
-    textures : tuple of (str, GPUTexture)
-    transparent : bool
-        Its opacity is decided by a random number per sample, so lens samples share no drawing.
-    lighting : tuple of (str, GPUUniformBuf or GPUTexture)
-        What a lit surface reads of the lights and the world, the same for all of them.
-    material_id : float or None
-        Cryptomatte id, where the shader reads it.
-    group : int
-        Which of the content's groups is drawn.
-    level : int
-        Its level of detail.
-    slot : int
-        The material slot of its mesh.
-    slack : float
-        How far its triangles may be from the true surface, in the mesh's units.
-    part : {None, 'GLOW', 'FILTER'}
-        What of the surface is drawn; see `build_veils`.
-    """
-
-    shader: object
-    batch: object
-    triangles: int
-    first: int
-    count: int
-    constants: object
-    textures: tuple
-    transparent: bool
-    lighting: tuple = ()
-    material_id: float | None = None
-    group: int = 0
-    level: int = 0
-    slot: int = 0
-    slack: float = 0.0
-    part: str | None = None
 
 
 def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, part=None):
@@ -141,11 +101,10 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, pa
         forward.append("  v_object_position = pos;")
     vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
     vertex = shader_source.join((shader_source.Text(vertex), target.vertex))
+    libraries_of_parts = []
     if target.splits and target.shades and not holdout:
         # Lighting asks whether light may be splatted.
-        libraries_of_split = ("lib/lens_lib.glsl", "lib/bokeh/highlight_lib.glsl")
-    else:
-        libraries_of_split = ()
+        libraries_of_parts += ["lib/lens_lib.glsl", "lib/bokeh/highlight_lib.glsl"]
     structs, uniforms = target.structs, [*target.uniforms]
     samplers = [("FLOAT_2D", "instances_tx"), *target.samplers]
     push_constants = [("INT", "instance_base"), *target.push_constants]
@@ -172,9 +131,16 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, pa
         if "SHADOWS" in defines:
             samplers += [("FLOAT_2D", name) for name in SHADOW_TEXTURES]
             push_constants += SHADOW_CONSTANTS
+    if code.refracts and target.refracts and not (holdout or part):
+        defines["REFRACTS"] = "1"
+        libraries_of_parts += GLASS_LIBRARIES
+        libraries_of_parts += [path for name, path in LENS_LIBRARIES if name in defines]
+        structs += GLASS_PARAMS.source
+        uniforms.append(("GlassParams", "glass_buf"))
+        samplers += [("FLOAT_2D", name) for name in GLASS_TEXTURES]
     if target.names_material and not holdout:
         push_constants.append(("FLOAT", "material_id"))
-    libraries = (*libraries_of_split, *_LIBRARIES, *(code.libraries if shades else ()))
+    libraries = (*libraries_of_parts, *_LIBRARIES, *(code.libraries if shades else ()))
     fragment = shader_source.join((*libraries, shader_source.Text(generated), target.fragment))
     return ShaderInfo(
         name="aplanat_surface",
@@ -278,6 +244,7 @@ def _list_draws(content, buffers, target, part=None, wanted=None):
                 slot=slot,
                 slack=_slack(buffers, mesh, level),
                 part=part,
+                refracts=code.refracts and target.refracts and not (group.holdout or part),
             )
             place = (order, materials[material.uid], meshes[group.mesh], slot, level)
             draws.append((place, draw))
@@ -297,7 +264,7 @@ def _code_and_shader(material, mesh, holdout, target, part, split):
 
     The kind is that of the target, the same whether and how the surface's own light is split.
     """
-    code = surface_code.generate(material.graph, mesh.attributes)
+    code = surface_code.generate(material.graph, mesh.attributes, target.straight)
     has_part = {None: True, "GLOW": code.glows, "FILTER": code.filters}
     if not has_part[part] or (part and holdout):
         return code, None, None

@@ -38,6 +38,10 @@ class SurfaceTarget:
         It splits light at the highlight threshold; reads ``highlight_buf``.
     unsplit : frozenset of (int, int)
         Group and slot of surfaces whose light it does not split.
+    refracts : bool
+        Its glass shows the picture of what is behind it, and is drawn after that.
+    straight : bool
+        Its glass lets light pass as if it were thin.
     seen : bool
         It is drawn through the lens: reads ``view_buf``, `lens_sample` and `sample_index`.
     blurs : bool
@@ -61,18 +65,21 @@ class SurfaceTarget:
     shades: bool = True
     splits: bool = False
     unsplit: frozenset[tuple[int, int]] = frozenset()
+    refracts: bool = False
+    straight: bool = False
     seen: bool = True
     blurs: bool = False
     vertex: str = "passes/surface/surface_vert.glsl"
 
 
-COLOR = SurfaceTarget("passes/surface/surface_frag.glsl", (("VEC4", "out_color"),))
+COLOR = SurfaceTarget("passes/surface/surface_frag.glsl", (("VEC4", "out_color"),), refracts=True)
 # The same, with a second target from which Focus Matte and Cryptomattes are accumulated.
 COLOR_AND_MATTES = SurfaceTarget(
     "passes/surface/surface_frag.glsl",
     (("VEC4", "out_color"), ("VEC4", "out_mattes")),
     defines=("MATTES",),
     names_material=True,
+    refracts=True,
 )
 # The define of a target that splits light at the highlight threshold.
 SPLIT = "HIGHLIGHTS"

@@ -67,14 +67,11 @@ def _principled(reader, node, groups):
     transmission = reader.value(node, "Transmission Weight", groups)
     if not is_constant(transmission, 0.0):
         inputs.append(("Transmission Weight", transmission))
-        reader.note(_THROUGH_GLASS.format(node.bl_label))
     alpha = reader.value(node, "Alpha", groups)
     if not (isinstance(alpha, Constant) and alpha.value[0] >= 1.0):
         inputs.append(("Alpha", alpha))
     return reader.add("principled", inputs)
 
-
-_THROUGH_GLASS = "node '{}' does not bend, blur or tint what is seen through it"
 
 _AS_ENTERED = "subsurface light of node '{}' leaves where it enters: it is drawn as diffuse"
 
@@ -120,7 +117,6 @@ def _metallic(reader, node, groups):
 
 @reads("BSDF_GLASS", "BSDF_REFRACTION")
 def _glass(reader, node, groups):
-    reader.note(_THROUGH_GLASS.format(node.bl_label))
     _note_left_out(reader, node, groups)
     inputs = reader.values(node, ("Color", "Roughness", "IOR"), groups)
     inputs += reader.normal(node, groups)

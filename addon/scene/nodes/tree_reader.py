@@ -23,8 +23,17 @@ from .node_tree import source_of
 # Samplers beside the lights', their maps', the world's and the instance table's, of the 32 that a
 # shader has.
 MAX_IMAGES = 23
+# What glass reads of its surroundings takes the place of the others.
+MAX_IMAGES_OF_GLASS = 18
 # Rows of tables, of the 4096 that a uniform block holds at least: room is left for constants.
 MAX_TABLE_ROWS = 3584
+
+
+def _may_be_glass(node):
+    if node.type == "BSDF_PRINCIPLED":
+        weight = node.inputs["Transmission Weight"]
+        return weight.is_linked or weight.default_value > 0.0
+    return node.type in {"BSDF_GLASS", "BSDF_REFRACTION"}
 
 
 def reader_registry():
@@ -74,9 +83,12 @@ class TreeReader:
         self.report = []
         self._results = {}
         self._image_uids = set()
+        self._most_images = MAX_IMAGES
 
     def surface(self, output):
         """Return the graph of an output node's Surface socket."""
+        if any(_may_be_glass(node) for node in output.id_data.nodes):
+            self._most_images = MAX_IMAGES_OF_GLASS
         return self.graph(self.closure(output, "Surface", ()))
 
     def graph(self, link):
@@ -173,8 +185,8 @@ class TreeReader:
     def _within_limit(self, use):
         if use is None:
             return None
-        if use.uid not in self._image_uids and len(self._image_uids) == MAX_IMAGES:
-            self.note(f"uses more than {MAX_IMAGES} images; the rest is drawn in magenta")
+        if use.uid not in self._image_uids and len(self._image_uids) == self._most_images:
+            self.note(f"uses more than {self._most_images} images; the rest is drawn in magenta")
             return None
         self._image_uids.add(use.uid)
         return use

@@ -10,6 +10,14 @@ Closure reflecting(Reflected reflected)
                  finite_light(reflected.shift));
 }
 
+// What is seen through glass is never splatted: it has a circle of confusion of its own.
+Closure with_refracted(Closure closure, vec3 light)
+{
+  closure.radiance += finite_light(light);
+  closure.unsplit += finite_light(light);
+  return closure;
+}
+
 Lobe no_lobe()
 {
   return Lobe(vec3(0.0), vec3(0.0), 0.0, false, vec3(0.0));
@@ -123,7 +131,7 @@ Closure closure_principled(Shading s, Bsdf bsdf)
   Lobe metal_lobe = metal(vec3(share), base, tint);
   Lobe dielectric = Lobe(vec3(1.0 - share), clamp(f0 * tint, 0.0, 1.0), eta, true, vec3(0.0));
   Reflected reflected = glossy_light(s, r, metal_lobe, dielectric);
-  vec3 passed = vec3(0.0);
+  vec3 through = vec3(0.0);
   if (share < 1.0) {
     // The diffuse layer gets the light that the dielectric layer does not reflect.
     vec3 taken = lobe_albedo(dielectric, albedo, s.cos_view);
@@ -133,11 +141,14 @@ Closure closure_principled(Shading s, Bsdf bsdf)
     reflected.light += base * left * (1.0 - glass) * diffuse.light;
     reflected.unsplit += base * left * (1.0 - glass) * diffuse.unsplit;
     reflected.shift += base * left * (1.0 - glass) * diffuse.shift;
-    // Half of the tint at each of two faces.
-    passed = sqrt(base) * left * glass;
+#ifdef REFRACTS
+    if (glass > 0.0) {
+      // Half of the tint at each of two faces.
+      through = (1.0 - share) * glass * refracted_light(s, r, eta, sqrt(base), true);
+    }
+#endif
   }
-  Closure closure = reflecting(reflected);
-  closure.transmittance = passed;
+  Closure closure = with_refracted(reflecting(reflected), through);
 #ifdef COATED
   closure = coated(s, bsdf, closure);
 #endif
@@ -164,8 +175,7 @@ Closure closure_metallic(Shading s, Bsdf bsdf)
   return reflecting(glossy_light(s, r, lobe, no_lobe()));
 }
 
-// What is behind is seen straight through, less what the face reflects; a solid has two faces.
-// `specular_level` is 0 for what only refracts.
+// Reflects, and shows what is behind. `specular_level` is 0 for what only refracts.
 Closure closure_glass(Shading s, Bsdf bsdf)
 {
   float r = clamp(number_or_zero(bsdf.roughness), 0.0, 1.0);
@@ -173,8 +183,11 @@ Closure closure_glass(Shading s, Bsdf bsdf)
   float eta = clamp(number_or_zero(bsdf.ior), 1e-5, 1e5);
   Lobe lobe = Lobe(bsdf.specular_level * color, vec3(f0_from_ior(eta)), eta, bsdf.repeats, vec3(0.0));
   Closure closure = reflecting(glossy_light(s, r, lobe, no_lobe()));
-  closure.transmittance = glass_transmittance(bsdf, s.cos_view);
+#ifdef REFRACTS
+  return with_refracted(closure, refracted_light(s, r, eta, color, bsdf.specular_level > 0.0));
+#else
   return closure;
+#endif
 }
 
 #ifdef FOG

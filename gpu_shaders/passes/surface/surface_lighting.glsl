@@ -196,6 +196,10 @@ vec3 environment_radiance(vec3 direction, float roughness)
              level - lower);
 }
 
+#ifdef REFRACTS
+#include "passes/surface/surface_refraction.glsl"
+#endif
+
 float lobe_rise(Lobe lobe, float cosine)
 {
   return (lobe.eta > 0.0) ? fresnel_dielectric_rise(cosine, lobe.eta) : fresnel_schlick(cosine);
@@ -306,7 +310,12 @@ vec3 lamp_glossy(Shading s, Light light, Lobes lobes)
 Reflected arriving_glossy(Shading s, int list, Lobes lobes, vec3 of_sky, out vec3 lit)
 {
   lit = of_sky;
+#ifdef GLASS
+  // What glass mirrors of its surroundings is not splatted: the picture's are not those of the search.
+  Reflected sum = Reflected(of_sky, of_sky, vec3(0.0));
+#else
   Reflected sum = Reflected(of_sky * sky_share(s, list, lobes.mirrored), vec3(0.0), vec3(0.0));
+#endif
   for (int i = 0; i < light_count(lights_tx); i++) {
     Light light = light_fetch(lights_tx, i);
     if (light.kind == LIGHT_NONE) {
@@ -333,6 +342,12 @@ Reflected glossy_light(Shading s, float roughness, Lobe a, Lobe b)
   vec3 reflectance = a.weight * lobe_albedo(a, albedo, s.cos_view) +
                      b.weight * lobe_albedo(b, albedo, s.cos_view);
   vec3 sum = environment_buf.color.rgb * reflectance;
+#ifdef REFRACTS
+  if (roughness < SPLIT_ROUGHNESS) {
+    sum = scene_light(s.position, mirrored, false) * reflectance;
+  }
+  else
+#endif
   if (environment_buf.color.w > 0.5) {
     if (roughness < SPLIT_ROUGHNESS) {
       sum *= environment_radiance(mirrored, roughness);
@@ -363,11 +378,12 @@ Closure closure_lit(Bsdf bsdf)
   vec3 normal = (dot(bsdf.normal, bsdf.normal) > 0.0) ? normalize(bsdf.normal) : point_normal();
   float cos_view = clamp(dot(point_view(), normal), 1e-4, 1.0);
   Closure closure = closure_none();
-  if (bsdf.kind == BSDF_GLASS) {
-    closure.transmittance = glass_transmittance(bsdf, cos_view);
-  }
-  else if (bsdf.kind == BSDF_FOG) {
+  if (bsdf.kind == BSDF_FOG) {
     closure.transmittance = fog_transmittance(bsdf);
+  }
+#ifdef STRAIGHT
+  else if (bsdf.kind == BSDF_GLASS) {
+    closure.transmittance = glass_transmittance(bsdf, cos_view);
   }
   else if (bsdf.kind == BSDF_PRINCIPLED) {
     float share = clamp(number_or_zero(bsdf.transmission), 0.0, 1.0) *
@@ -375,6 +391,7 @@ Closure closure_lit(Bsdf bsdf)
     bsdf.color = sqrt(max(number_or_zero(bsdf.color), vec3(0.0)));
     closure.transmittance = share * glass_transmittance(bsdf, cos_view);
   }
+#endif
   return closure;
 }
 

@@ -250,8 +250,8 @@ def test_a_translucent_surface_is_lit_from_behind_as_in_cycles(bpy):
     assert np.abs(ours - cycles).max() < 0.01
 
 
-def test_glass_mirrors_the_world_and_shows_it_straight_through(bpy, tmp_path):
-    """In a world of one colour, where it makes no difference that glass bends light."""
+def test_glass_is_not_seen_in_a_world_of_one_colour(bpy, tmp_path):
+    """What it mirrors, lets through and keeps inside is all the light there is."""
     scene = sphere_scene(bpy, [("BsdfGlass", {"IOR": 1.45, "Roughness": 0.0})], 32)
     world_image(bpy, None)
     picture = render_aplanat(scene, 32)

@@ -1,0 +1,1 @@
+"""Glass: what a lens sample sees through it."""
