@@ -38,7 +38,7 @@ def _info(dispersed, through_lens, sets=False):
         attributes=(("VEC2", "pos"),),
         outputs=(("VEC4", "out_color"),)
         if not sets
-        else (("VEC4", "out_near"), ("VEC4", "out_color"), ("VEC2", "out_shares")),
+        else (("VEC4", "out_near"), ("VEC4", "out_color"), ("VEC4", "out_shares")),
         samplers=_SAMPLERS,
         uniforms=(("SubsampleParams", "subsample_buf"),),
         push_constants=(
@@ -64,7 +64,7 @@ def sorted_specs():
     return (
         TargetSpec(near, "RGBA32F"),
         TargetSpec(others, "RGBA32F"),
-        TargetSpec(shares, "RG32F"),
+        TargetSpec(shares, "RGBA32F"),
     )
 
 

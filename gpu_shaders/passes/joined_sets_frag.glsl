@@ -3,7 +3,7 @@
 // neighbours that see nothing sharp.
 // Inputs: near_tx, others_tx, shares_tx, as subsample_frag leaves them with PIXEL_SETS; all of them textures of
 // the picture's size.
-// Outputs: the sum of the places.
+// Outputs: the weighted sum of the places.
 // Blur of a pixel from which on it is joined with its neighbours, texels: a square of PIXEL_SETS pixels hardly
 // blurs it further.
 #define JOINED 2.0
@@ -21,7 +21,7 @@ void main()
   ivec2 last = textureSize(shares_tx, 0) - 1;
   vec4 near = vec4(0.0), others = vec4(0.0);
   float near_share = 0.0, others_share = 0.0, parts = 0.0;
-  vec2 own = texelFetch(shares_tx, pixel, 0).xy;
+  vec4 own = texelFetch(shares_tx, pixel, 0);
   bool joins = own.y >= JOINED;
   for (int y = -PIXEL_SETS / 2; y <= PIXEL_SETS / 2; y++) {
     for (int x = -PIXEL_SETS / 2; x <= PIXEL_SETS / 2; x++) {
@@ -46,4 +46,6 @@ void main()
     // Nothing else is seen from any place.
     out_color = near / max(near_share, 1e-6);
   }
+  // What a real lens lets through changes from pixel to pixel, as the weights do that it is divided by.
+  out_color *= own.z;
 }

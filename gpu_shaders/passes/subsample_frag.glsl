@@ -9,10 +9,11 @@
 // REAL_LENS: as in surface_vert; turns_tx (how the lens' displacements change with the place on it:
 // columns of a matrix in texels a metre, in the left half, and per unit of the depth buffer, in the right),
 // light_tx (what the lens lets through at the places of the picture).
-// PIXEL_SETS: places on the lens differ from pixel to pixel, in squares of PIXEL_SETS x PIXEL_SETS pixels: there are so many
-// rows of offsets_tx a sample, from the lower left one on, of count + 1 places in all.
+// PIXEL_SETS: places on the lens differ from pixel to pixel, in squares of PIXEL_SETS x PIXEL_SETS pixels:
+// there are so many rows of offsets_tx a sample, from the lower left one on, of count + 1 places in all.
 // Outputs: the weighted sum of the sample and its subsamples. PIXEL_SETS: the sums of what is seen blurred in
-// front of the focus, and of all else; the share of the first, and the least blur of the others, texels.
+// front of the focus, and of all else; the share of the first, the least blur of the others, texels, and
+// the weight that both are without.
 // Source: methods 6 (JKL13 section 6, algorithm 3).
 #include "lib/extremes_lib.glsl"
 #include "lib/bokeh/sweep_lib.glsl"
@@ -353,9 +354,11 @@ void main()
   vec4 table = vec4(real_lens_buf.light.xy, real_lens_buf.table.z, float(lens_slot));
   light *= light_at(light_tx, gl_FragCoord.xy / vec2(size), table).x;
 #endif
-  out_color = total * light;
 #ifdef PIXEL_SETS
-  out_near = near_sum * light;
-  out_shares = vec2(near_count / float(count + 1), least_blur);
+  out_color = total;
+  out_near = near_sum;
+  out_shares = vec4(near_count / float(count + 1), least_blur, light, 0.0);
+#else
+  out_color = total * light;
 #endif
 }

@@ -13,6 +13,7 @@ from addon.sampling.iris import Iris
 from addon.sampling.sequence import SETS
 from addon.sampling.thin_lens import ThinLens
 from tests.pictures import srgb
+from tests.splat_pictures import library_lens
 
 from .conftest import make_renderer, render_snapshot, some_triangles, triangles_snapshot
 
@@ -26,8 +27,12 @@ def scene(lens=LENS, **options):
     return triangles_snapshot(*some_triangles(), WIDTH, HEIGHT, lens, 128, **options)
 
 
+def camera_of(snapshot, **values):
+    return replace(snapshot, camera=replace(snapshot.camera, **values))
+
+
 def with_lens(snapshot, lens):
-    return replace(snapshot, camera=replace(snapshot.camera, lens=lens))
+    return camera_of(snapshot, lens=lens)
 
 
 @pytest.fixture
@@ -90,6 +95,23 @@ def test_a_lamp_becomes_a_disc_in_the_shape_of_the_iris_with_all_its_light(first
     assert alike > turned + 0.1
 
 
+def test_it_is_seen_through_a_real_lens(first_of):
+    lens = ThinLens(0.4, 3.0, Iris())
+    corners, colors = some_triangles()
+    snapshot = triangles_snapshot(corners, colors, WIDTH, HEIGHT, lens, 128)
+    real = library_lens("double-gauss-50mm-f2")
+    snapshot = replace(snapshot, camera=replace(snapshot.camera, real_lens=real))
+    plan = plan_first_picture(snapshot)
+    assert plan.real_lens is not None
+    samples = render_snapshot(snapshot)["Combined"]
+    pinhole = camera_of(snapshot, lens=None, real_lens=None)
+    pinhole = render_snapshot(pinhole)["Combined"]
+    first = first_of(snapshot)
+    assert np.abs(first[..., 3] - 1.0).max() < 1e-5
+    assert first[..., :3].sum() == pytest.approx(samples[..., :3].sum(), rel=0.02)
+    assert np.abs(first - samples).mean() < 0.5 * np.abs(pinhole - samples).mean()
+
+
 def test_there_is_none_where_nothing_is_blurred():
     assert plan_first_picture(scene(None)) is None
     assert plan_first_picture(scene(ThinLens(1e-6, 3.0))) is None
@@ -136,11 +158,12 @@ def test_joined_pixels_keep_what_is_sharp_and_lose_the_noise_of_what_is_not():
     # On the left sharp, on the right blurred: the noise of the sets, which repeats.
     others = np.ones((16, 24, 4), np.float32)
     others[..., 0] = np.tile(noise / noise.mean(), (4, 6))
-    shares = np.zeros((16, 24, 2), np.float32)
+    shares = np.zeros((16, 24, 4), np.float32)
+    shares[..., 2] = 1.0
     shares[:, 12:, 1] = 50.0
     near = np.zeros((16, 24, 4), np.float32)
     textures = {"near": texture_2d(near), "others": texture_2d(others)}
-    textures["shares"] = texture_2d(shares, "RG32F")
+    textures["shares"] = texture_2d(shares)
     with Targets(24, 16, [TargetSpec("sum", "RGBA32F")]) as targets:
         targets.clear("sum", (0.0, 0.0, 0.0, 0.0))
         with targets.framebuffer("sum").bind():
