@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/reference/panels.md: which of EEVEE's panels are shown, and why not the others.
+"""Writes docs/reference/panels.md: our panels, which of EEVEE's are shown, and why not the others.
 
 Usage: scripts/pages/panels_page.py
 
@@ -76,10 +76,16 @@ and what stands there with Aplanat. A panel is shown where its settings are foll
 set things right; what is not followed is not shown. Panels of particles, physics and textures are
 Blender's own for every engine.
 
-Aplanat's own panels are described where they belong: [quality](../quality.md),
+Aplanat's own panels stand first; what their settings do is told in [quality](../quality.md),
 [lenses](../lenses.md), [bokeh](../bokeh.md), [chromatic aberration](../chromatic-aberration.md),
-[passes](../passes.md), [layers](../layers.md), [compositor](../compositor.md).
+[passes](../passes.md), [layers](../layers.md), [compositor](../compositor.md), and of each setting
+in [settings](settings.md).
+
+## Aplanat's own
+
 """
+# Editors by their type, and what Blender calls the tabs of its properties.
+EDITORS = {"IMAGE_EDITOR": "Image editor", "NODE_EDITOR": "Compositor", "VIEW_3D": "3D view"}
 
 
 def reason(name):
@@ -104,9 +110,33 @@ def panels():
     return found
 
 
+def own_panels():
+    """Return Aplanat's panels: where each is found, and what it holds."""
+    from addon.registration import _MODULES
+
+    classes = [cls for module in _MODULES for cls in getattr(module, "CLASSES", ())]
+    found = []
+    for cls in classes:
+        if "_PT_" not in cls.__name__ or cls.__name__.endswith("_presets"):
+            continue
+        editor = EDITORS.get(cls.bl_space_type) or TABS[cls.bl_context]
+        found.append((" > ".join([editor, *path_of(cls)]), cls.__doc__.partition("\n")[0]))
+    return found
+
+
+def path_of(cls):
+    """Return the names of a panel and of those that it stands in, the outermost first."""
+    import bpy
+
+    parent = getattr(cls, "bl_parent_id", "")
+    above = path_of(getattr(bpy.types, parent)) if parent else []
+    return [*above, cls.bl_label] if cls.bl_label else above
+
+
 def write():
     """Return the text of the page; Aplanat must be registered."""
-    parts = [HEAD]
+    rows = [f"| {place} | {text} |" for place, text in own_panels()]
+    parts = [HEAD + "\n".join(["| panel | what it holds |", "| --- | --- |", *rows]) + "\n"]
     for tab, listed in panels().items():
         if not listed:
             continue

@@ -1,13 +1,14 @@
 """Texts of panels fit into the properties editor; panels of the camera stand where they belong."""
 
-from types import SimpleNamespace
+from types import MethodType, SimpleNamespace
 
 import pytest
 
+from addon.engine.shared_resources import shelf
 from addon.registration import _MODULES
 from addon.ui.panels import panel_order
 
-from .panel_drawing import draw, panels_of, states
+from .panel_drawing import Layout, draw, panels_of, states
 
 # In pixels at a scale of 1: the tabs, both margins of a panel with its scroll bar, an icon, the box
 # of a switch.
@@ -80,3 +81,25 @@ def test_lines_are_filled_by_the_width_of_what_is_drawn(aplanat_bpy):
     # Narrow letters: more than 24 of them.
     assert max(map(len, lines)) > 30
     assert "".join(wrapped("W" * 60, 24)) == "W" * 60 and len(wrapped("W" * 60, 24)) > 3
+
+
+def test_every_lens_has_a_cell_in_the_popup_with_texts_that_fit(aplanat_bpy, empty_scene):
+    import blf
+
+    from addon.ui.panels.lens_browser_panel import APLANAT_OT_browse_lenses
+
+    camera = aplanat_bpy.data.cameras.new("camera")
+    camera.aplanat.lens = "tessar-50mm-f2.8"
+    popup = SimpleNamespace(layout=Layout())
+    MethodType(APLANAT_OT_browse_lenses.draw, popup)(SimpleNamespace(camera=camera))
+    lenses = [button.lens for button in popup.layout.operators]
+    assert lenses == ["", *shelf().ids()] and len(lenses) > 30
+    texts = [text for text, _, _ in popup.layout.texts]
+    buttons = [button.text for button in popup.layout.operators]
+    blf.size(0, aplanat_bpy.context.preferences.ui_styles[0].widget.points)
+    # Seven columns in 920 pixels, and what Blender keeps free beside a text.
+    for text in (*texts, *buttons):
+        assert 0 < blf.dimensions(0, text)[0] < 920 / 7 - 12, text
+    # What tells lenses of one name apart.
+    assert len(set(zip(texts, buttons, strict=True))) == len(lenses)
+    assert "50 mm f/2.8" in buttons and "Tessar type" in texts

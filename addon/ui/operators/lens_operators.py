@@ -92,6 +92,12 @@ class APLANAT_OT_choose_lens(CameraOperator, bpy.types.Operator):
         name="Lens", description="Name in the library; empty for a thin lens", options=set()
     )
 
+    @classmethod
+    def description(cls, _context, properties):
+        """Return the whole name of the lens, with what a click does."""
+        found = shelf().find(properties.lens) if properties.lens else None
+        return f"{found.title if found else 'Thin lens'}. {cls.bl_description}"
+
     def execute(self, context):
         """Set the name."""
         camera_of(context).aplanat.lens = self.lens

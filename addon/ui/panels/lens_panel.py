@@ -82,6 +82,7 @@ class APLANAT_CAMERA_PT_lens(CameraPanel, bpy.types.Panel):
         row = column.row(align=True)
         row.use_property_split = False
         row.prop(settings, "lens", text="", placeholder="Thin Lens")
+        row.operator("camera.aplanat_browse_lenses", text="", icon="IMGDISPLAY")
         row.operator(APLANAT_OT_import_lens.bl_idname, text="", icon="FILE_FOLDER")
         row.menu("APLANAT_MT_lens", text="", icon="DOWNARROW_HLT")
         letters = letters_across(context)

@@ -34,6 +34,13 @@ def icon_id(found):
     )
 
 
+def reserved_icon_id(found):
+    """Return the icon of a lens as `icon_id`, but of a number that stays while it is being made."""
+    if bpy.app.background or found.lens is None:
+        return 0
+    return icon_id(found) or icons.reserved_id(f"lens:{found.id}")
+
+
 def bokeh_icon_id(camera, state, place):
     """Return the icon that shows the bokeh of a lens; asked for if there is none yet.
 

@@ -22,6 +22,19 @@ class PictureIcons:
         icon = self._collection.get(name) if self._collection else None
         return icon.icon_id if icon else 0
 
+    def reserved_id(self, name):
+        """Return the number of an icon that stays; it is empty while there is no picture.
+
+        A popup asks for numbers once, and shows pictures that come while it is open.
+        """
+        self._made(name)
+        return self.icon_id(name)
+
+    def _made(self, name):
+        if self._collection is None:
+            self._collection = bpy.utils.previews.new()
+        return self._collection.get(name) or self._collection.new(name)
+
     def show(self, name, inputs, picture):
         """Give an icon its picture.
 
@@ -33,9 +46,7 @@ class PictureIcons:
         picture : ndarray of shape (height, width, 4)
             float32, display referred with alpha, bottom row first.
         """
-        if self._collection is None:
-            self._collection = bpy.utils.previews.new()
-        icon = self._collection.get(name) or self._collection.new(name)
+        icon = self._made(name)
         height, width, _ = picture.shape
         icon.image_size = width, height
         icon.image_pixels_float.foreach_set(np.ascontiguousarray(picture).ravel())
