@@ -39,5 +39,5 @@ def test_pictures_of_the_tutorial_are_those_that_its_script_draws():
     drawn = {f"{name}.jpg" for name in re.findall(r'^    "(\d-\w+)": ', script, re.MULTILINE)}
     folder = REPO / "docs" / "images" / "tutorial"
     assert {path.name for path in folder.iterdir()} == drawn and len(drawn) > 3
-    shown = LINK.findall((REPO / "docs" / "tutorial.md").read_text(encoding="utf-8"))
+    shown = LINK.findall((REPO / "docs" / "guide" / "tutorial.md").read_text(encoding="utf-8"))
     assert {Path(target).name for target, _ in shown if "tutorial/" in target} == drawn
