@@ -2,8 +2,8 @@
 
 .venv/bin/python scripts/pictures/tutorial.py [STEP ...]
 
-The scene is that of scripts/demo. Each step is a chapter of docs/guide/tutorial.md and changes what the
-chapter says, by the same settings.
+The scene is that of scripts/demo. Each step is a chapter of docs/guide/tutorial.md and changes
+what the chapter says, by the same settings.
 """
 
 import sys
