@@ -51,9 +51,11 @@ vec3 world_light(vec3 direction, float roughness)
   return (environment_buf.color.w > 0.5) ? color * environment_radiance(direction, roughness) : color;
 }
 
+// Where nothing is, farther than any ray.
 float window_depth_at(vec2 place)
 {
-  return texelFetch(behind_depth_tx, ivec2(place), 0).x;
+  float depth = texelFetch(behind_depth_tx, ivec2(place), 0).x;
+  return (depth < 1.0) ? depth : 1e9;
 }
 
 float linear_depth(float window_depth)
