@@ -7,6 +7,7 @@ the view rests its bokeh, step by step.
 """
 
 import time
+from dataclasses import replace
 
 from ..device import context as device_context
 from ..device import state
@@ -17,7 +18,7 @@ from ..snapshot.changes import Change, compare
 from ..snapshot.scene import SceneSnapshot
 from .bokeh.marks import shows_marks
 from .frame.first_picture import FirstPicture
-from .frame.pacing import Pacer
+from .frame.pacing import Pacer, StageTimes
 from .frame.pipeline import FrameRenderer
 from .planning.plan import plan_first_picture, plan_frame
 from .report import failure, frame_report, in_short, one_line
@@ -49,8 +50,9 @@ class Viewport:
         self._drawn_session = None
         self._snapshot = None
         # Of the first pictures, and of the samples that follow; whether those have begun.
-        self._first = self._renderer = None
+        self._first = self._renderer = self._first_view = None
         self._begun = False
+        self._frame_time, self._stage = 0.0, ()
         self._pacer = Pacer(DRAW_SECONDS)
         self._broken = False
         self._moved = 0.0
@@ -108,7 +110,15 @@ class Viewport:
     def _draw(self, depsgraph, space, region, region_3d, pixel_size):
         device_context.ensure_context()
         session = self._session = session_of_view(resources(), depsgraph, space)
-        view = read_view(depsgraph, space, region, region_3d, pixel_size, session.sources)
+
+        def read(size):
+            return read_view(depsgraph, space, region, region_3d, size, session.sources)
+
+        settings = depsgraph.scene.original.aplanat
+        times = StageTimes(self._wait) if settings.show_preview_times else None
+        self._stage = (times.stage,) if times else ()
+        self._frame_time = settings.preview_frame_time
+        view = read(pixel_size)
         if view is None:
             self.text = "the render region is outside the view"
             return False
@@ -119,7 +129,7 @@ class Viewport:
             sampling=read_preview_sampling(depsgraph.scene),
         )
         with state.preserved():
-            changed = self._begin_if_changed(snapshot)
+            changed = self._begin_if_changed(snapshot, view, read)
             if not (changed and self._first.renderer):
                 # A view that moves goes on with its next picture: samples begin with the redraw
                 # after that of the first picture.
@@ -129,10 +139,14 @@ class Viewport:
             renderer = self._shown()
             if renderer is self._renderer:
                 session.note_picture(depsgraph.scene, renderer)
+            if renderer is self._first.renderer:
+                view = self._first_view
             x, y, width, height = view.rectangle
             with state.confined(x, y, width, height):
                 renderer.resolve((x, y), view.pixel_size)
         self.text = self._progress()
+        if times:
+            self.text += f" | {times.text}"
         if shows_marks(renderer.plan):
             self.text += " | Debug view of the bokeh"
         done, total = session.levels.progress
@@ -171,7 +185,8 @@ class Viewport:
         if not renderer.sampled:
             first = renderer.samples_done == 0
             start = time.perf_counter()
-            self._pacer.advance(renderer)
+            self._pacer.seconds = self._frame_time or DRAW_SECONDS
+            self._pacer.advance(renderer, *self._stage)
             self._drawn_seconds += time.perf_counter() - start
             if renderer.is_late(self._drawn_seconds):
                 renderer.stop()
@@ -181,7 +196,12 @@ class Viewport:
         if time.perf_counter() - self._moved >= REST_SECONDS:
             renderer.refine_bokeh()
 
-    def _begin_if_changed(self, snapshot):
+    def _wait(self):
+        """Wait for the device, as far as anything was drawn."""
+        for renderer in filter(None, (self._first and self._first.renderer, self._renderer)):
+            renderer.wait()
+
+    def _begin_if_changed(self, snapshot, view, read):
         """Draw the first picture where anything has changed; return whether it has."""
         changed = compare(self._snapshot, snapshot)
         self._snapshot = snapshot
@@ -192,10 +212,13 @@ class Viewport:
         elif not (changed & Change.PICTURE or self._session.levels_changed(self._levels_version)):
             return False
         self._begun = False
-        plan = plan_first_picture(snapshot)
+        side = self._first.pixels.side
+        self._first_view = (side > 1 and read(side * view.pixel_size)) or view
+        first = replace(snapshot, camera=self._first_view.camera, film=self._first_view.film)
+        plan = plan_first_picture(first)
         if plan is not None:
             self._want_levels(snapshot, plan)
-        self._first.draw(snapshot, plan)
+        self._first.draw(first, plan, self._frame_time, *self._stage)
         self._moved = time.perf_counter()
         return True
 

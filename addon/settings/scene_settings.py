@@ -62,6 +62,12 @@ PREVIEW = Section("Samples of the viewport", "Render Properties > Sampling > Vie
     Setting("preview_time_limit", 0.0, "Viewport Time Limit", "Seconds of drawing at which it"
             " rests, but not before Min Samples; 0 is no limit", limits=(0.0, None),
             soft=(None, 60.0), subtype="TIME_ABSOLUTE"),
+    Setting("preview_frame_time", 0.0, "Viewport Frame Time", "Seconds that a picture may take"
+            " while the view moves: where it takes longer, its pixels are drawn 2 or 4 times as"
+            " large. At rest the picture is as fine as ever. 0 never draws larger pixels",
+            limits=(0.0, None), soft=(None, 1.0), step=1, precision=3, subtype="TIME_ABSOLUTE"),
+    Setting("show_preview_times", False, "Timings", "Tell in the 3D view how many times a second"
+            " it is redrawn, and what the time goes into"),
 ))
 
 ADVANCED = Section("Sampling of both", "Render Properties > Sampling > Advanced", (

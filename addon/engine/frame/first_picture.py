@@ -6,7 +6,10 @@ missing: the surfaces beside it are continued there. It takes about as long as a
 of it remains in the samples' picture, which takes its place as soon as they cover the lens.
 """
 
+import time
+
 from ...sampling.subsamples import FIRST_INTERVAL
+from .pacing import Coarseness
 from .pipeline import FrameRenderer
 
 
@@ -21,13 +24,16 @@ class FirstPicture:
     ----------
     renderer : FrameRenderer or None
         Of the picture of this frame; None where it has none.
+    pixels : Coarseness
+        The size of its pixels.
     """
 
     def __init__(self, buffers):
         self._buffers = buffers
         self._renderer = self.renderer = None
+        self.pixels = Coarseness()
 
-    def draw(self, snapshot, plan):
+    def draw(self, snapshot, plan, seconds=0.0, *stage):
         """Draw the first picture of a frame.
 
         Parameters
@@ -36,17 +42,25 @@ class FirstPicture:
             The buffers must be updated to its content.
         plan : FramePlan or None
             Of `planning.plan.plan_first_picture`.
+        seconds : float
+            That it may take; `pixels` follow. 0 is any time.
+        *stage : callable
+            As that of `FrameRenderer.advance`.
         """
         self.renderer = None
         if plan is None:
             return
-        if self._renderer is None:
+        start, is_new = time.perf_counter(), self._renderer is None
+        if is_new:
             self._renderer = FrameRenderer(plan, snapshot, self._buffers)
         else:
             self._renderer.restart(plan, snapshot)
         self.renderer = self._renderer
-        self.renderer.advance(1)
+        self.renderer.advance(1, *stage)
         self.renderer.wait()
+        if not is_new:
+            # The first of all compiles and uploads.
+            self.pixels.measured(time.perf_counter() - start, seconds)
 
     def is_better_than(self, samples):
         """Whether it shows more of the lens than the samples of a frame so far.

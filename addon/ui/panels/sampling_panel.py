@@ -46,6 +46,9 @@ class _SamplesPanel(EnginePanel):
         else:
             column.prop(settings, f"{self.prefix}_samples", text="Samples")
         column.prop(settings, f"{self.prefix}_time_limit", text="Time Limit")
+        if self.prefix == "preview":
+            column.prop(settings, "preview_frame_time", text="Frame Time")
+            column.prop(settings, "show_preview_times")
 
 
 class APLANAT_RENDER_PT_sampling_viewport(_SamplesPanel, bpy.types.Panel):
