@@ -4,7 +4,7 @@ Usage: scripts/docs_pictures.py [-o FOLDER] [STEP ...]
 
 Run it with the checkout's Python (.venv/bin/python) after scripts/demo. It installs the extension
 into a user folder of its own, opens Blender on a virtual screen, carries out each step as a
-newcomer would, and writes docs/images/step-*.jpg.
+newcomer would, and writes docs/images/step-*.jpg and lens-panel.jpg.
 """
 
 import argparse
@@ -157,6 +157,39 @@ class Steps:
         self.picture("step-camera", "PROPERTIES")
         self.window.run("join()")
 
+    def lenses(self):
+        """Show the popup with all lenses, over the panel that it belongs to."""
+        self.window.run(f"bpy.ops.wm.open_mainfile(filepath={str(self.demo)!r}, load_ui=False)")
+        self.window.run(STAGE)
+        self.window.run(
+            """
+            camera = bpy.context.scene.camera
+            bpy.context.view_layer.objects.active = camera
+            camera.select_set(True)
+
+            def browse():
+                with over("PROPERTIES"):
+                    bpy.ops.camera.aplanat_browse_lenses("INVOKE_DEFAULT")
+            """
+        )
+        self.pause(0.5)
+        self.window.run("split()")
+        self.window.run('show("DATA")')
+        self.pause(1.0)
+        x, y, width, _ = self.window.run("result = box('PROPERTIES')")
+        # Where no tooltip comes: over the 3D view.
+        self.window.xdotool("mousemove", x + width + 100, y + 400)
+        self.window.run("bpy.app.timers.register(browse, first_interval=0.1)")
+        self.pause(1.0)
+        self.window.wait_for("not busy()", timeout=600)
+        # The popup shows what has come when the mouse moves over it.
+        for step in (300, 400, 100):
+            self.window.xdotool("mousemove", SCREEN[0] - step, SCREEN[1] - 80)
+            time.sleep(0.5)
+        self.picture("lens-panel")
+        self.window.xdotool("key", "Escape")
+        self.window.run("join()")
+
     def viewport(self):
         """Show the Rendered viewport through the camera."""
         self.window.run("rendered()")
@@ -172,7 +205,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("-o", "--folder", type=Path, default=REPO / "docs/images")
     parser.add_argument("--demo", type=Path, default=REPO / "build/demo/demo.blend")
-    parser.add_argument("steps", nargs="*", default=["install", "engine", "camera", "viewport"])
+    parser.add_argument(
+        "steps", nargs="*", default=["install", "engine", "camera", "lenses", "viewport"]
+    )
     options = parser.parse_args()
     if not options.demo.is_file():
         parser.error(f"{options.demo} is not there; run scripts/demo first")
