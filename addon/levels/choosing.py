@@ -52,35 +52,12 @@ class Extents:
     inverse_focus: np.ndarray | None = None
 
 
-def world_corners(content, bounds):
-    """Return the corners of the instances' bounding boxes in world space.
-
-    Parameters
-    ----------
-    content : SceneContent
-    bounds : dict of int to ndarray of shape (2, 3)
-        Bounding box of each mesh, by uid, in object space.
-
-    Returns
-    -------
-    ndarray of shape (I, 8, 3)
-    """
-    world = content.instances.world.astype(np.float64)
-    ends = np.zeros((len(world), 2, 3))
-    for group in content.groups:
-        ends[group.first : group.first + group.count] = bounds[group.mesh]
-    choice = np.array(np.meshgrid((0, 1), (0, 1), (0, 1), indexing="ij")).reshape(3, 8).T
-    boxes = np.where(choice == 0, ends[:, None, 0], ends[:, None, 1])
-    return boxes @ world[:, :3, :3].transpose(0, 2, 1) + world[:, None, :3, 3]
-
-
-def extents(corners, view, chromatic=None):
+def extents(boxes, view, chromatic=None):
     """Return depth ranges and bounding spheres of the instances for a camera.
 
     Parameters
     ----------
-    corners : ndarray of shape (I, 8, 3)
-        See `world_corners`.
+    boxes : InstanceBoxes
     view : ndarray of shape (4, 4)
         World to camera space.
     chromatic : ChromaticPlan or None
@@ -89,16 +66,17 @@ def extents(corners, view, chromatic=None):
     -------
     Extents
     """
-    depth = -(corners @ view[2, :3] + view[2, 3])
-    center = corners.mean(axis=1)
+    ahead, reach = boxes.range_along(-view[2, :3])
+    depth = ahead - view[2, 3]
     focus = None
     if chromatic is not None:
-        focus = chromatic.ranges(corners @ view[:3, :3].T + view[:3, 3]).inverse_focus
+        eye = boxes.corners() @ view[:3, :3].T + view[:3, 3]
+        focus = chromatic.ranges(eye).inverse_focus
     return Extents(
-        nearest=depth.min(axis=1),
-        farthest=depth.max(axis=1),
-        center_depth=-(center @ view[2, :3] + view[2, 3]),
-        radius=np.linalg.norm(corners - center[:, None], axis=2).max(axis=1),
+        nearest=depth - reach,
+        farthest=depth + reach,
+        center_depth=depth,
+        radius=boxes.radii,
         inverse_focus=focus,
     )
 
@@ -344,18 +322,14 @@ def meshes_with_levels(content, plan):
     # The plain frame of Fringe is drawn with the same levels.
     beside = set(meshes_with_levels(content, plan.plain)) if plan.plain else set()
     meshes = [content.meshes[group.mesh] for group in content.groups]
-    bounds = {mesh.uid: mesh.bounds for mesh in meshes}
-    seen = extents(world_corners(content, bounds), plan.view, plan.chromatic)
-    full = np.zeros(len(seen.radius))
-    for group, mesh in zip(content.groups, meshes, strict=True):
-        full[group.first : group.first + group.count] = len(mesh.triangles)
+    large = [len(mesh.triangles) >= 2 * plan.least_triangles for mesh in meshes]
+    if not any(large):
+        return [uid for uid in content.meshes if uid in beside]
+    seen = extents(content.boxes, plan.view, plan.chromatic)
+    full = np.array([len(mesh.triangles) for mesh in meshes], float)[content.group_of]
     bias = plan.level_bias + LEAST_ALLOWANCE + allowances(content, plan)
     chosen = choose_levels(seen, full, plan, bias)
     coarser = (chosen > 0.0) | may_grade(seen, full, plan)
-    wanted = {
-        mesh.uid
-        for group, mesh in zip(content.groups, meshes, strict=True)
-        if len(mesh.triangles) >= 2 * plan.least_triangles
-        and coarser[group.first : group.first + group.count].any()
-    }
+    of_groups = np.bincount(content.group_of, weights=coarser, minlength=len(meshes)) > 0
+    wanted = {meshes[number].uid for number in np.flatnonzero(large & of_groups)}
     return [uid for uid in content.meshes if uid in wanted | beside]

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .boxes import instance_boxes
 from .surface_graph import REC709_LUMINANCE, SurfaceGraph
 
 _uids = itertools.count(1)
@@ -311,3 +312,17 @@ class SceneContent:
     world: World = field(default_factory=World)
     report: tuple[str, ...] = ()
     unseen: "SceneContent | None" = None
+
+    @cached_property
+    def boxes(self):
+        """The `InstanceBoxes` of the rows of the instance table."""
+        world = self.instances.world
+        return instance_boxes(world, self.groups, lambda uid: self.meshes[uid].bounds)
+
+    @cached_property
+    def group_of(self):
+        """Which group each row of the instance table belongs to, shape (I,)."""
+        found = np.zeros(len(self.instances.world), np.int64)
+        for number, group in enumerate(self.groups):
+            found[group.first : group.first + group.count] = number
+        return found

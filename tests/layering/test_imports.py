@@ -79,10 +79,12 @@ ROOMS = {
         *("layers", "optics", "sampling", "lens_bokeh.samples", "lens_bokeh.tables"),
         *("snapshot", "levels"),
     ),
+    # Drawings that several lens samples share.
+    "engine.sharing": ("device", "sampling", "passes", "levels"),
     "engine.drawing.glass": ("device", "passes", "passes.surface"),
     "engine.drawing": (
-        *("device", "sampling", "sampling.lights", "passes", "passes.surface", "passes.visibility"),
-        *("levels", "levels.making", "engine.drawing.glass"),
+        *("device", "sampling", "sampling.lights", "passes.surface", "passes.visibility"),
+        *("levels", "levels.making", "engine.sharing", "engine.drawing.glass"),
     ),
     # The scene through depth layers, in place of a drawing for each lens sample.
     "engine.layered": ("device", "layers", "passes.bokeh", "passes.layered", "passes.surface"),

@@ -11,6 +11,7 @@ WAY = (
     ("engine.bokeh", "engine.layered"),
     ("engine.visibility",),
     ("engine.drawing",),
+    ("engine.sharing",),
     ("passes",),
     ("device",),
 )

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...device import context
 from ...device.geometry import MeshBuffers
-from ...levels.choosing import LEAST_ALLOWANCE, LEAST_GRADED_TRIANGLES, blurred_area
+from ...levels.choosing import LEAST_ALLOWANCE, blurred_area
 
 # Seconds for each triangle of full detail: to make and upload a graded mesh, on a core at 2 to
 # 3 GHz; to draw one, on a graphics device that draws 2 triangles a nanosecond, and with software
@@ -80,18 +80,19 @@ class GradedDrawings:
         Parameters
         ----------
         full : ndarray of shape (I,)
-            bool: rows of the instance table that are drawn at level 0 and not divided.
+            bool: rows of the instance table that are drawn at level 0 and not divided, and that
+            `GroupLevels.gradable` allows.
         deepest_of : callable
             From a row to the coarsest level that its parts may have.
         group_of : ndarray of shape (I,)
         plan : FramePlan
         """
         wanted = plan.level_bias is not None and plan.coc_scale != 0.0
-        rows = np.flatnonzero(full) if wanted else ()
+        rows = np.flatnonzero(full & wanted)
         if plan.bokeh:
             # Not graded where the light varies over the surface: highlights are found at full
             # detail.
-            rows = [row for row in rows if group_of[row] not in plan.bokeh.uneven]
+            rows = rows[~np.isin(group_of[rows], list(plan.bokeh.uneven))]
         self.find({int(row): deepest_of(row) for row in rows}, group_of, plan)
 
     def slack(self, group, triangles):
@@ -114,8 +115,8 @@ class GradedDrawings:
         Parameters
         ----------
         depths : dict of int to int
-            By row of the instance table that is drawn at level 0, the coarsest level that its
-            parts may have.
+            By row of the instance table that is drawn at level 0, and that `GroupLevels.gradable`
+            allows, the coarsest level that its parts may have.
         group_of : ndarray of shape (I,)
         plan : FramePlan
         """
@@ -126,12 +127,7 @@ class GradedDrawings:
             mesh = self._content.meshes[self._content.groups[group_of[row]].mesh]
             levels = self._buffers.levels.get(mesh.uid)
             count = len(mesh.triangles)
-            if (
-                count < LEAST_GRADED_TRIANGLES
-                or not levels
-                or deepest == 0
-                or not self._pays(count, 0.0, plan.samples)
-            ):
+            if not levels or deepest == 0 or not self._pays(count, 0.0, plan.samples):
                 continue
             world = self._content.instances.world[row].astype(np.float64)
             found = _Candidate(mesh, world, deepest, -(plan.view[2] @ world))
@@ -140,6 +136,11 @@ class GradedDrawings:
                 self._candidates[row] = found
                 self._shares[row] = share
                 self._keys[row] = self._key(found, levels)
+
+    @property
+    def candidates(self):
+        """Rows that may be drawn graded, in a list."""
+        return list(self._shares)
 
     def triangles(self, row, counts):
         """Return about how many triangles an instance is drawn with, by level of detail."""

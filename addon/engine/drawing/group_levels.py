@@ -3,7 +3,13 @@
 import numpy as np
 
 from ...levels.bent_attributes import bent_attributes
-from ...levels.choosing import allowances, allowed_levels, blur_for_levels, choose_levels
+from ...levels.choosing import (
+    LEAST_GRADED_TRIANGLES,
+    allowances,
+    allowed_levels,
+    blur_for_levels,
+    choose_levels,
+)
 
 
 class GroupLevels:
@@ -19,15 +25,15 @@ class GroupLevels:
     ----------
     triangles : list of list of int
         Of each group, the triangles of its levels, from full detail on.
+    table : ndarray of shape (G, L)
+        The same.
     """
 
     def __init__(self, content, buffers):
         self._content = content
         self.triangles, self._blurs = [], []
-        self._group_of = np.zeros(len(content.instances.world), np.int64)
         bent = {}
-        for number, group in enumerate(content.groups):
-            self._group_of[group.first : group.first + group.count] = number
+        for group in content.groups:
             meshes = buffers.level_meshes(content.meshes[group.mesh])
             if len(meshes) > 1:
                 for uid in group.materials:
@@ -37,10 +43,19 @@ class GroupLevels:
                 meshes = meshes[: 1 + buffers.unbent_levels(group.mesh, keys)]
             self.triangles.append([len(mesh.triangles) for mesh in meshes])
             self._blurs.append(blur_for_levels(*meshes))
+        # Beyond a group's own levels it is never asked.
+        self.table = np.zeros((len(self.triangles), max(map(len, self.triangles), default=1)), int)
+        for row, counts in zip(self.table, self.triangles, strict=True):
+            row[: len(counts)] = counts
+
+    def gradable(self):
+        """Return which groups have so many triangles that graded meshes may pay, shape (G,)."""
+        several = np.array([len(counts) > 1 for counts in self.triangles], bool)
+        return several & (self.table[:, 0] >= LEAST_GRADED_TRIANGLES)
 
     def deepest(self, row):
         """Return the coarsest level of the instance in a row of the table."""
-        return len(self.triangles[self._group_of[row]]) - 1
+        return len(self.triangles[self._content.group_of[row]]) - 1
 
     def choose(self, seen, plan):
         """Return the level of each instance in a frame.
@@ -54,13 +69,14 @@ class GroupLevels:
         -------
         ndarray of shape (I,)
         """
-        deepest = np.array([len(counts) - 1 for counts in self.triangles], int)[self._group_of]
+        group_of = self._content.group_of
+        deepest = np.array([len(counts) - 1 for counts in self.triangles], int)
         if plan.level_bias is None or not deepest.any():
-            return np.zeros(len(deepest))
-        full = np.array([counts[0] for counts in self.triangles], float)[self._group_of]
+            return np.zeros(len(group_of))
+        full = self.table[:, 0].astype(float)[group_of]
         bias = plan.level_bias + allowances(self._content, plan)
         chosen = choose_levels(seen, full, plan, bias)
         for number, group in enumerate(self._content.groups):
             rows = slice(group.first, group.first + group.count)
             chosen[rows] = allowed_levels(chosen[rows], self._blurs[number])
-        return np.minimum(chosen, deepest)
+        return np.minimum(chosen, deepest[group_of])

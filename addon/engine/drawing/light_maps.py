@@ -102,8 +102,6 @@ class LightMaps:
     content : SceneContent
     buffers : SceneBuffers
     spheres : culling.BoundingSpheres
-    corners : ndarray of shape (I, 8, 3)
-        Of the instances' bounding boxes, in world space.
 
     Attributes
     ----------
@@ -111,7 +109,7 @@ class LightMaps:
         Of the maps, since `aim`.
     """
 
-    def __init__(self, content, buffers, spheres, corners):
+    def __init__(self, content, buffers, spheres):
         self._content = content
         self._buffers = buffers
         self._casters = [_Casters(content, buffers, spheres)]
@@ -124,7 +122,6 @@ class LightMaps:
             np.concatenate([part.spheres.centers for part in self._casters]),
             np.concatenate([part.spheres.radii for part in self._casters]),
         ]
-        self._corners = corners
         self._targets = None
         self._plan = self._turns = None
         self.draw_calls = self.triangles = 0
@@ -151,7 +148,9 @@ class LightMaps:
         shares = np.zeros(len(self._content.lights) + 1)
         if plan.shadows and seen.any() and (len(shares) > 1 or self._buffers.sky.irradiance):
             ends = (extents.nearest[seen], extents.farthest[seen])
-            self._receivers = light_views.receivers_of(plan, self._corners[seen], *ends)
+            self._receivers = light_views.receivers_of(
+                plan, self._content.boxes.corners(seen), *ends
+            )
             lights, sky = self._content.lights, self._buffers.sky
             shares = light_shares(lights, sky, self._receivers, self._spheres, seen)
         if shares.any():

@@ -11,9 +11,10 @@ import numpy as np
 
 from ...device import state
 from ...device.textures import texture_2d
-from ...levels.choosing import extents, level_for_sample, world_corners
+from ...levels.choosing import extents, level_for_sample
 from ...passes.surface import surface
 from ...passes.surface.draw import by_level
+from ..sharing.shared_drawings import SharedDrawings
 from . import culling
 from .divided_drawings import DividedDrawings
 from .drawing_counts import DrawingCounts
@@ -23,7 +24,6 @@ from .graded_drawings import GradedDrawings
 from .group_levels import GroupLevels
 from .light_maps import LightMaps
 from .scene_buffers import instance_texels
-from .shared_drawings import SharedDrawings
 
 
 class SceneDrawing:
@@ -65,21 +65,19 @@ class SceneDrawing:
         )
         bounds = {uid: mesh.bounds for uid, mesh in buffers.meshes.items()}
         self._spheres = culling.BoundingSpheres(content, bounds)
-        self._corners = world_corners(content, bounds)
-        self._group_of = np.zeros(len(self._corners), np.int64)
-        for number, group in enumerate(content.groups):
-            self._group_of[group.first : group.first + group.count] = number
+        self._group_of = content.group_of
         self._group_levels = GroupLevels(content, buffers)
         self._by_level = by_level(self._draws)
         glass = [draw for draw in draws if draw.refracts]
         self._glass = GlassDrawing(content, buffers, target, glass, self._spheres)
         # Transparent and glowing surfaces differ from sample to sample: they share no drawing.
-        self._unshared = {d.group for d in self._draws if d.transparent}
-        self._unshared |= {d.group for d in (*self._veils.draws, *glass)}
+        self._shares = np.ones(len(content.groups), bool)
+        self._shares[[d.group for d in self._draws if d.transparent]] = False
+        self._shares[[d.group for d in (*self._veils.draws, *glass)]] = False
         self._shared = SharedDrawings("MATTES" in target.defines)
         self._graded = GradedDrawings(content, buffers, graded)
         self._divided = DividedDrawings(content)
-        self.lights = LightMaps(content, buffers, self._spheres, self._corners)
+        self.lights = LightMaps(content, buffers, self._spheres)
 
     def aim(self, plan, optics=None, highlights=None, part=None):
         """Prepare a frame or a round of it: levels, shared drawings, order of the instances.
@@ -104,7 +102,7 @@ class SceneDrawing:
         self._seen = self._visible = culling.seen(self._spheres, plan)
         if part is not None:
             self._visible = self._seen & culling.seen(self._spheres, plan, part)
-        seen = extents(self._corners, plan.view, plan.chromatic)
+        seen = extents(self._content.boxes, plan.view, plan.chromatic)
         self.nearest = float(seen.nearest[self._seen].min(initial=np.inf))
         self.farthest = float(seen.farthest[self._seen].max(initial=0.0))
         self.levels = self._group_levels.choose(seen, plan)
@@ -117,21 +115,23 @@ class SceneDrawing:
         self._divided.find(whole, self._group_of, seen.nearest, plan)
         full = self._visible & (self.levels == 0.0)
         full[list(self._divided.rows)] = False
+        full &= self._group_levels.gradable()[self._group_of]
         self._graded.find_among(full, self._group_levels.deepest, self._group_of, plan)
         self._shared.forget()
         if plan.reuse_grid:
-            candidates = [
-                int(row)
-                for row in np.flatnonzero(self._visible)
-                if self._group_of[row] not in self._unshared
-            ]
-            self._shared.find(
-                candidates, self._corners, seen, self.levels, self._triangles_of, plan
-            )
+            candidates = np.flatnonzero(self._visible & self._shares[self._group_of])
+            boxes = self._content.boxes
+            self._shared.find(candidates, boxes, seen, self.levels, self._triangles_of_rows, plan)
         self._graded.settle(self._shared.drawings_of)
         # Rows that are drawn on their own, not with their neighbours in the table.
         self._single = sorted({*self._shared.rows, *self._graded.rows, *self._divided.rows})
         self._order_rows()
+
+    def _triangles_of_rows(self, rows):
+        found = self._group_levels.table[self._group_of[rows]]
+        for place in np.flatnonzero(np.isin(rows, self._graded.candidates)).tolist():
+            found[place, 0] = self._triangles_of(int(rows[place]))[0]
+        return found
 
     def _triangles_of(self, row):
         counts = self._group_levels.triangles[self._group_of[row]]

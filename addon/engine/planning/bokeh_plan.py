@@ -21,7 +21,6 @@ from ...snapshot.surface_graph import Constant
 from .bokeh_colors import BokehColors, colors_of_frame
 from .bokeh_search import (
     LEAST_SUBPIXELS,
-    corners_of,
     deep_projection,
     emitting,
     graph_of,
@@ -225,7 +224,7 @@ def plan_bokeh(snapshot, plan):
     unsplit = seen_from_edge(snapshot.content, bright, plan)
     shining = bright - unsplit
     rows, _ = rows_of(snapshot.content, shining)
-    seen = extents(corners_of(snapshot.content, rows), plan.view)
+    seen = extents(snapshot.content.boxes.of_rows(rows), plan.view)
     farthest = float(seen.farthest.max(initial=plan.focus_distance))
     colors = colors_of_frame(snapshot.camera.chromatic, plan, farthest)
     largest = _largest_coc(snapshot.content, plan, seen, colors)

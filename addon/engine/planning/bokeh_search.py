@@ -6,7 +6,7 @@ highlight threshold is drawn, tile by tile (`engine.bokeh.search_tiles`).
 
 import numpy as np
 
-from ...levels.choosing import extents, world_corners
+from ...levels.choosing import extents
 from ...snapshot.brightness import emits
 
 # Of the raster that highlights are searched in, in sub-pixels.
@@ -52,12 +52,6 @@ def rows_of(content, shining):
     return np.concatenate(empty + rows), np.concatenate(empty + of_group)
 
 
-def corners_of(content, rows):
-    """Return the corners of the boxes of instances in the world, shape (R, 8, 3)."""
-    bounds = {group.mesh: content.meshes[group.mesh].bounds for group in content.groups}
-    return world_corners(content, bounds)[rows]
-
-
 def rectangles_of(content, rows, plan, projection, size):
     """Return the rectangles of the raster that the bounding boxes of instances cover.
 
@@ -78,7 +72,7 @@ def rectangles_of(content, rows, plan, projection, size):
         Of the visible boxes, px; of those that reach behind the camera, the whole raster's.
     size : tuple of 2 int
     """
-    corners = corners_of(content, rows) @ plan.view[:3, :3].T + plan.view[:3, 3]
+    corners = content.boxes.corners(rows) @ plan.view[:3, :3].T + plan.view[:3, 3]
     clip = np.concatenate([corners, np.ones((*corners.shape[:2], 1))], axis=2) @ projection.T
     w = clip[..., 3:]
     ahead = (w > 1e-6).all(axis=(1, 2))
@@ -107,7 +101,7 @@ def deep_projection(content, rows, plan, projection):
     if len(rows) == 0:
         return projection
     planes = _clip_planes(projection, plan.orthographic)
-    depth = -(corners_of(content, rows) @ plan.view[2, :3] + plan.view[2, 3])
+    depth = -(content.boxes.corners(rows) @ plan.view[2, :3] + plan.view[2, 3])
     nearest, farthest = depth.min(), depth.max()
     move = _HIDING_PARALLAX / max(plan.coc_scale, 1e-30)
     if plan.orthographic:
@@ -164,7 +158,7 @@ def subpixels_of_triangles(content, plan, rows, of_group, size):
     int
     """
     width, height = size
-    seen = extents(corners_of(content, rows), plan.view)
+    seen = extents(content.boxes.of_rows(rows), plan.view)
     affordable = int(np.sqrt(_LARGEST_RASTER / (width * height)))
     area = np.array([content.meshes[g.mesh].triangle_area for g in content.groups])[of_group]
     stretch = np.abs(np.linalg.det(content.instances.world[rows, :3, :3].astype(float)))

@@ -9,7 +9,7 @@ depth.
 
 import numpy as np
 
-from ...levels.choosing import world_corners
+from ...levels.choosing import extents
 from ...sampling.pixel_filter import filter_support
 
 # Of the depth of the nearest bounding box in view: coarser levels of detail may reach a little
@@ -66,19 +66,27 @@ def nearest_in_view(snapshot, near):
         In m, `near` at least; inf if nothing is in view.
     """
     content, view = snapshot.content, snapshot.camera.view
-    bounds = {group.mesh: content.meshes[group.mesh].bounds for group in content.groups}
-    corners = world_corners(content, bounds) @ view[:3, :3].T + view[:3, 3]
-    corners = corners[(-corners[..., 2] > near).any(axis=1)]
-    nearest = np.maximum(-corners[..., 2].max(axis=1, initial=-np.inf), near)
+    seen = extents(content.boxes, view)
+    ahead = seen.farthest > near
+    nearest = np.maximum(seen.nearest, near)
     if not _sees_straight(snapshot.camera):
-        return float(nearest.min(initial=np.inf))
+        return float(nearest[ahead].min(initial=np.inf))
     lens, planes, found = snapshot.camera.lens, list(_sides(snapshot)), np.inf
+    for plane in planes:
+        # Most boxes of a large scene are beside the picture in whole.
+        across = plane @ view
+        middle, reach = content.boxes.range_along(across[:3])
+        moved = np.max(_moved(plane, lens, np.stack([nearest, seen.farthest])), axis=0)
+        ahead &= middle + across[3] + reach + moved >= 0.0
+    ahead = np.flatnonzero(ahead)
+    nearest = nearest[ahead]
     order = np.argsort(nearest)
     for first in range(0, len(order), _AT_ONCE):
         rows = order[first : first + _AT_ONCE]
         if nearest[rows[0]] >= found:
             break
-        inside = [_nearest_inside(corners[rows], near, plane, lens) for plane in planes]
+        corners = content.boxes.corners(ahead[rows]) @ view[:3, :3].T + view[:3, 3]
+        inside = [_nearest_inside(corners, near, plane, lens) for plane in planes]
         found = min(found, float(np.max(inside, axis=0).min()))
     return max(found, near)
 
@@ -98,6 +106,14 @@ def _sides(snapshot):
         yield reach * rows[3] - rows[axis]
 
 
+def _moved(plane, lens, depths):
+    """Return how far the lens moves points of given depths across a plane, at most."""
+    if lens is None or not lens.aperture_radius:
+        return np.zeros_like(depths)
+    extent = lens.aperture_radius * np.array([1.0 / lens.iris.ratio, 1.0])
+    return np.abs(plane[:2]) @ extent * np.abs(1.0 - depths / lens.focus_distance)
+
+
 def _nearest_inside(corners, near, plane, lens):
     """Return the least depth of boxes on the inner side of a plane, shape (I,); inf where none is.
 
@@ -113,11 +129,10 @@ def _nearest_inside(corners, near, plane, lens):
     depth = -corners[..., 2]
     inside = corners @ plane[:3] + plane[3]
     if lens is not None and lens.aperture_radius:
-        extent = lens.aperture_radius * np.array([1.0 / lens.iris.ratio, 1.0])
         # How far the lens moves a point is convex in its depth, so that what is between the ends of
         # a box moves less than the straight line between theirs.
         ends = np.stack([np.maximum(depth.min(axis=1), near), depth.max(axis=1)])
-        moved = np.abs(plane[:2]) @ extent * np.abs(1.0 - ends / lens.focus_distance)
+        moved = _moved(plane, lens, ends)
         share = (depth - ends[0, :, None]) / np.maximum(np.ptp(ends, axis=0), 1e-30)[:, None]
         inside = inside + moved[0, :, None] + (moved[1] - moved[0])[:, None] * share
     nearest = np.where(inside >= 0.0, depth, np.inf).min(axis=1, initial=np.inf)

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...levels.choosing import coc_ends, extents, world_corners
+from ...levels.choosing import coc_ends, extents
 from ...sampling.subsamples import FIRST_INTERVAL
 
 LEAST_ERROR = 1e-4
@@ -20,6 +20,8 @@ _SUBSAMPLES = 4
 # ``passes/subsample_frag.glsl``.
 _LEAST_MOVE_PX = 0.5
 
+# Boxes that are looked at at once.
+_AT_ONCE = 1 << 10
 # Threshold below which levels of detail get finer, as levels blur vertex colours.
 _BIAS_AT = 0.02
 # Threshold up to which shared drawings have four cells along a pixel instead of two; with two,
@@ -75,25 +77,37 @@ def largest_coc(content, plan):
     """
     if plan.coc_scale == 0.0 or not content.groups:
         return 0.0
-    bounds = {group.mesh: content.meshes[group.mesh].bounds for group in content.groups}
-    corners = world_corners(content, bounds)
-    seen = extents(corners, plan.view, plan.chromatic)
-    eye = corners @ plan.view[:3, :3].T + plan.view[:3, 3]
+    seen = extents(content.boxes, plan.view, plan.chromatic)
     depths = (np.maximum(depth, 1e-6) for depth in (seen.nearest, seen.farthest))
     bound = np.abs(coc_ends(*depths, plan, seen.inverse_focus)).max(axis=0)
     # With a parallel projection all pixels show the same point of the world: nothing to blur.
     shows_world = bool(content.world.image) and not plan.orthographic
     largest = abs(plan.empty_coc) if shows_world else 0.0
     # By falling upper bound, until no other can be larger.
-    for row in np.argsort(-bound, kind="stable"):
-        if bound[row] <= largest:
+    order = np.argsort(-bound, kind="stable")
+    for first in range(0, len(order), _AT_ONCE):
+        rows = order[first : first + _AT_ONCE]
+        if bound[rows[0]] <= largest:
             break
-        depths = _depths_inside(eye[row], plan.projection)
-        if depths is not None:
-            focus = None if seen.inverse_focus is None else seen.inverse_focus[:, row]
-            ends = np.abs(coc_ends(*depths, plan, focus))
-            largest = max(largest, float(ends.max()))
+        corners = content.boxes.corners(rows) @ plan.view[:3, :3].T + plan.view[:3, 3]
+        for place in np.flatnonzero(_may_be_inside(corners, plan.projection)).tolist():
+            row = rows[place]
+            if bound[row] <= largest:
+                break
+            depths = _depths_inside(corners[place], plan.projection)
+            if depths is not None:
+                focus = None if seen.inverse_focus is None else seen.inverse_focus[:, row]
+                ends = np.abs(coc_ends(*depths, plan, focus))
+                largest = max(largest, float(ends.max()))
     return largest
+
+
+def _may_be_inside(corners, projection):
+    """Return which boxes, shape (R, 8, 3), lie on the outer side of no plane of the frustum."""
+    clip = corners @ projection[:, :3].T + projection[:, 3]
+    outside = (clip[..., 3:] + clip[..., :3] < 0.0).all(axis=1)
+    outside |= (clip[..., 3:] - clip[..., :3] < 0.0).all(axis=1)
+    return ~outside.any(axis=1)
 
 
 def _depths_inside(corners, projection):

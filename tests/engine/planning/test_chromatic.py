@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 from addon.engine.drawing import culling
-from addon.engine.drawing.shared_drawings import raster_rectangle
 from addon.engine.layered.layer_raster import plan_reach
 from addon.engine.planning.field_table import diamond_angles, diamond_turn, field_of_raster
 from addon.engine.planning.plan import plan_frame
+from addon.engine.sharing.raster_boxes import raster_rectangles
 from addon.levels.choosing import choose_levels, coc_ends, extents
 from addon.sampling.chromatic import ChromaticAberration, Dispersion
 from addon.sampling.field_maps import FIELD_PRESETS, FieldMap, field_corner
 from addon.sampling.thin_lens import ThinLens
+from addon.snapshot.boxes import InstanceBoxes
 from addon.snapshot.film import Sampling
 from benchmarks.reference.chromatic import displaced
 
@@ -126,7 +127,7 @@ def test_no_sample_draws_a_box_outside_its_rectangle(maps, parallel):
     signs = np.stack(np.meshgrid(*[(-1, 1)] * 3, indexing="ij"), axis=-1).reshape(8, 3)
     for center in random_points(40, 8, parallel):
         corners = center + 0.1 * signs
-        rectangle = raster_rectangle(corners, plan)
+        (rectangle,), _ = raster_rectangles(corners[None], plan)
         places = raster(plan.chromatic.displaced(corners, plan.lens_positions), plan)
         inside = (places > 0.0) & (places < (plan.width, plan.height))
         places = places[inside.all(axis=-1)]
@@ -152,8 +153,7 @@ def test_nothing_that_a_sample_sees_is_culled(maps):
 
 
 def box(depth, half=0.1):
-    signs = np.stack(np.meshgrid(*[(-1, 1)] * 3, indexing="ij"), axis=-1).reshape(8, 3)
-    return (np.array([0.0, 0.0, -depth]) + half * signs)[None]
+    return InstanceBoxes(np.array([[0.0, 0.0, -depth]]), half * np.eye(3)[:, None])
 
 
 def test_an_object_that_any_wavelength_has_in_focus_keeps_its_full_detail():
@@ -178,13 +178,14 @@ def test_an_object_that_any_wavelength_has_in_focus_keeps_its_full_detail():
 @pytest.mark.parametrize("parallel", [False, True])
 def test_circles_of_confusion_lie_between_those_of_the_extreme_wavelengths(parallel):
     plan = plan_frame(chromatic_snapshot(parallel))
-    corners = box(7.0, 0.3)
-    seen = extents(corners, plan.view, plan.chromatic)
+    boxes = box(7.0, 0.3)
+    corners = boxes.corners()[0]
+    seen = extents(boxes, plan.view, plan.chromatic)
     low, high = coc_ends(seen.nearest, seen.farthest, plan, seen.inverse_focus)
     for i in range(plan.samples):
-        axial = plan.chromatic.strengths(corners[0])[:, 0]
+        axial = plan.chromatic.strengths(corners)[:, 0]
         focus = plan.chromatic.inverse_focus_at(plan.chromatic.focal_errors[i], axial)
-        depth = -corners[0, :, 2]
+        depth = -corners[:, 2]
         radius = plan.coc_scale * (depth * focus - 1.0)
         radius = radius if parallel else radius / depth
         assert (radius >= low - 1e-6).all() and (radius <= high + 1e-6).all()

@@ -8,6 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from .raster_boxes import whole_rectangles
+
 
 class LensMoves:
     """Movements through the real lens of a frame.
@@ -17,6 +19,9 @@ class LensMoves:
     plan : FramePlan
         With a `real_lens`; samples from its `first` on are those of the round.
     """
+
+    # Of a box.
+    POINTS = 27
 
     def __init__(self, plan):
         self._plan = plan
@@ -30,23 +35,23 @@ class LensMoves:
         moves = plan.real_lens.tables.moves(places, colors)
         return moves.reshape(len(moves), -1, *moves.shape[3:])
 
-    def of_box(self, corners):
-        """Return how samples move the points of a box from where a pinhole has them.
+    def of_boxes(self, corners):
+        """Return how samples move the points of boxes from where a pinhole has them.
 
         Parameters
         ----------
-        corners : ndarray of shape (8, 3)
-            In camera space, in front of the camera, as `levels.choosing.world_corners` orders them.
+        corners : ndarray of shape (R, 8, 3)
+            In camera space, in front of the camera, as `InstanceBoxes.corners` orders them.
 
         Returns
         -------
-        places : ndarray of shape (27, 2)
+        places : ndarray of shape (R, 27, 2)
             Of the pinhole's, px.
-        moves : ndarray of shape (N, 27, 2)
+        moves : ndarray of shape (R, N, 27, 2)
             In px, without the jitter.
         """
         plan, lens = self._plan, self._plan.real_lens
-        eye = _between(corners)
+        eye = _between(corners).reshape(-1, 3)
         depth = -eye[:, 2]
         positions = plan.lens_positions[self._round]
         if plan.chromatic is None:
@@ -59,41 +64,38 @@ class LensMoves:
         clip = np.column_stack([eye, np.ones(len(eye))]) @ plan.projection.T
         size = np.array([plan.width, plan.height])
         places = (clip[:, :2] / clip[:, 3:] + 1.0) / 2.0 * size
-        return places, moved * scale / depth[:, None]
+        moves = (moved * scale / depth[:, None]).reshape(len(positions), -1, self.POINTS, 2)
+        return places.reshape(-1, self.POINTS, 2), moves.swapaxes(0, 1)
 
-    def rectangle(self, places, moves):
-        """Return the rectangle that a box may cover in the raster of any lens sample.
+    def rectangles(self, places, moves):
+        """Return the rectangles that boxes may cover in the raster of any lens sample.
 
         Parameters
         ----------
         places, moves : ndarray
-            Of `of_box`.
+            Of `of_boxes`.
 
         Returns
         -------
-        tuple of 4 int or None
-            x, y, width, height; None if it is outside.
+        rectangles : ndarray of shape (R, 4)
+            int: x, y, width, height.
+        inside : ndarray of shape (R,)
+            bool; whether it is in the raster.
         """
         plan = self._plan
         size = np.array([plan.width, plan.height])
         # Points between those that were looked at, rounding, and the jitter to whole pixels.
-        margin = np.ptp(moves, axis=1).max(axis=0) + 2.0
+        margin = np.ptp(moves, axis=2).max(axis=1) + 2.0
         margin += np.abs(plan.jitter).max(axis=0, initial=0.0) * size / 2.0
-        low, high = (
-            (places + moves.min(axis=0)).min(axis=0),
-            (places + moves.max(axis=0)).max(axis=0),
-        )
-        low = np.clip(np.floor(low - margin), 0, size).astype(int)
-        high = np.clip(np.ceil(high + margin), 0, size).astype(int)
-        if (high <= low).any():
-            return None
-        return (*low.tolist(), *(high - low).tolist())
+        low = (places + moves.min(axis=1)).min(axis=1) - margin
+        high = (places + moves.max(axis=1)).max(axis=1) + margin
+        return whole_rectangles(low, high, size)
 
 
 def _between(corners):
-    """Return the corners of a box, the middles of its edges and faces, and its own."""
-    box = corners.reshape(2, 2, 2, 3)
-    for axis in range(3):
-        first, last = np.split(box, 2, axis=axis)
-        box = np.concatenate([first, 0.5 * (first + last), last], axis=axis)
-    return box.reshape(-1, 3)
+    """Return the corners of boxes, the middles of their edges and faces, and their own."""
+    boxes = corners.reshape(-1, 2, 2, 2, 3)
+    for axis in (1, 2, 3):
+        first, last = np.split(boxes, 2, axis=axis)
+        boxes = np.concatenate([first, 0.5 * (first + last), last], axis=axis)
+    return boxes.reshape(len(corners), -1, 3)

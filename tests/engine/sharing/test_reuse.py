@@ -5,12 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from addon.engine.drawing.reuse import find_sprites
+from addon.engine.sharing.reuse import find_sprites
 from addon.sampling.halton import halton
 
 SIZE = 64
 # Where the object may be, in the middle of the raster; many triangles, so that sharing pays.
-RECTANGLE, TRIANGLES = (24, 24, 16, 16), [10**6]
+RECTANGLE, TRIANGLES = np.array([[24, 24, 16, 16]]), np.array([[10**6]])
 
 
 def plan_of(samples, seed, coc=0.0, first=0):
@@ -33,8 +33,9 @@ def plan_of(samples, seed, coc=0.0, first=0):
 def parents(plan):
     """Return the sample that each is drawn as."""
     found = np.arange(len(plan.jitter))
-    levels = np.zeros(len(found) - plan.first, int)
-    for sprite in find_sprites(3, plan.coc, levels, TRIANGLES, RECTANGLE, plan):
+    levels = np.zeros((1, len(found) - plan.first), int)
+    row, coc = np.array([3]), np.array([plan.coc])
+    for sprite in find_sprites(row, coc, levels, TRIANGLES, RECTANGLE, plan):
         found[list(sprite.members)] = sprite.parent
     return found
 

@@ -7,12 +7,18 @@ from ...device.targets import Targets, TargetSpec
 from ...levels.choosing import coc_ends, level_for_sample
 from ...passes import sprite
 from .lens_moves import LensMoves
-from .reuse import find_sprites
+from .raster_boxes import raster_rectangles
+from .reuse import find_sprites, sharing_pays
 
 # Most bytes on the device of sprites that wait for their next lens sample.
 _BYTES = 256 << 20
 # Largest side of what shares drawings through a real lens, over the picture's longer one.
 _LARGEST = 1.0 / 3.0
+# Places of corners in samples that are looked at at once; through a real lens each takes so many
+# times the memory.
+_AT_ONCE, _LENS_TAKES = 1 << 20, 32
+# A rectangle is never smaller, px.
+_LEAST_PIXELS = 1
 # Bytes of a sprite's pixel: colour, mattes, depth.
 _TEXEL_BYTES = 36
 
@@ -46,19 +52,18 @@ class SharedDrawings:
         self.rows = []
         self.drawn = self.copied = 0
 
-    def find(self, candidates, corners, seen, levels, triangles, plan):
+    def find(self, candidates, boxes, seen, levels, triangles, plan):
         """Find the sprites of a frame.
 
         Parameters
         ----------
-        candidates : iterable of int
+        candidates : ndarray of shape (C,)
             Rows that may share drawings.
-        corners : ndarray of shape (I, 8, 3)
-            Of the instances' bounding boxes, in world space.
+        boxes : InstanceBoxes
         seen : Extents
         levels : ndarray of shape (I,)
         triangles : callable
-            From a row to its numbers of triangles by level.
+            From rows to their numbers of triangles by level, shape (R, L).
         plan : FramePlan
         """
         self.forget()
@@ -67,33 +72,49 @@ class SharedDrawings:
         # With many more cells than samples, hardly any two samples share one.
         _, count = plan.in_round(plan.samples)
         limit = np.sqrt(count) + 1.0
+        # A real lens' blur is looked at below.
+        blurred = np.abs(largest[candidates]) - plan.blur_doubt > limit
+        rows = candidates[(seen.nearest[candidates] > 0.0) & ~blurred]
+        counts = triangles(rows)
+        # Most rows of a large scene are too small to pay, wherever they are.
+        pays = sharing_pays(counts.max(axis=1, initial=0), _LEAST_PIXELS)
+        rows, counts = rows[pays], counts[pays]
         lens = LensMoves(plan) if plan.real_lens else None
+        of_row = _LENS_TAKES * LensMoves.POINTS if lens else 8
+        at_once = max(1, _AT_ONCE // (count * of_row))
         budget = _BYTES
-        for row in candidates:
-            # A real lens' blur is looked at below.
-            if seen.nearest[row] <= 0.0 or abs(largest[row]) - plan.blur_doubt > limit:
-                continue
-            rectangle, coc, moved = raster_rectangle(corners[row], plan), float(largest[row]), None
-            if rectangle is None:
-                continue
-            eye = corners[row] @ plan.view[:3, :3].T + plan.view[:3, 3]
-            if lens:
-                if max(rectangle[2:]) > _LARGEST * max(plan.width, plan.height):
-                    continue
-                places, moved = lens.of_box(eye)
-                rectangle, coc = lens.rectangle(places, moved), float(np.abs(moved).max())
-                if rectangle is None or coc > limit:
-                    continue
-            chosen = level_for_sample(np.full(count, levels[row]), np.arange(count), count)
-            given = (row, coc, chosen, triangles(row), rectangle, plan, eye, moved)
-            for found in find_sprites(*given):
+        for first in range(0, len(rows), at_once):
+            part = slice(first, first + at_once)
+            for found in self._find(rows[part], boxes, largest, levels, counts[part], plan, lens):
                 size = found.pixels * _TEXEL_BYTES
                 if size > budget:
                     continue
                 budget -= size
                 for sample in found.members:
-                    self._members.setdefault(sample, {})[row] = found
+                    self._members.setdefault(sample, {})[found.row] = found
         self.rows = sorted({row for found in self._members.values() for row in found})
+
+    def _find(self, rows, boxes, largest, levels, triangles, plan, lens):
+        """Return the `Sprite`s of some rows."""
+        _, count = plan.in_round(plan.samples)
+        corners = boxes.corners(rows)
+        rectangles, kept = raster_rectangles(corners, plan)
+        coc, moved = largest[rows], None
+        eye = corners @ plan.view[:3, :3].T + plan.view[:3, 3]
+        if lens:
+            small = rectangles[:, 2:].max(axis=1) <= _LARGEST * max(plan.width, plan.height)
+            chosen = np.flatnonzero(kept & small)
+            rows, triangles, eye = rows[chosen], triangles[chosen], eye[chosen]
+            places, moved = lens.of_boxes(eye)
+            rectangles, kept = lens.rectangles(places, moved)
+            coc = np.abs(moved).max(axis=(1, 2, 3), initial=0.0)
+            kept &= coc <= np.sqrt(count) + 1.0
+        pixels = rectangles[:, 2] * rectangles[:, 3]
+        kept &= sharing_pays(triangles.max(axis=1, initial=0), pixels)
+        rows, coc, triangles, eye = rows[kept], coc[kept], triangles[kept], eye[kept]
+        chosen = level_for_sample(levels[rows][:, None], np.arange(count), count)
+        moved = None if moved is None else moved[kept]
+        return find_sprites(rows, coc, chosen, triangles, rectangles[kept], plan, eye, moved)
 
     def rows_of(self, sample):
         """Return the rows that are not drawn for a lens sample but copied."""
@@ -185,43 +206,3 @@ class SharedDrawings:
 def _kept_specs(mattes):
     specs = [TargetSpec("color", "RGBA32F"), TargetSpec("depth", "R32F")]
     return [*specs, *[TargetSpec("mattes", "RGBA32F")] * mattes]
-
-
-def raster_rectangle(corners, plan):
-    """Return the rectangle that a box may cover in the raster of any lens sample.
-
-    Parameters
-    ----------
-    corners : ndarray of shape (8, 3)
-        In world space.
-    plan : FramePlan
-
-    Returns
-    -------
-    tuple of 4 int or None
-        x, y, width, height; None if it is outside or reaches behind the camera.
-    """
-    eye = corners @ plan.view[:3, :3].T + plan.view[:3, 3]
-    clip = np.column_stack([eye, np.ones(8)]) @ plan.projection.T
-    if (clip[:, 3] <= 0.0).any():
-        return None
-    size = np.array([plan.width, plan.height])
-    places = (clip[:, :2] / clip[:, 3:] + 1.0) / 2.0 * size
-    narrowing = plan.lens_extent / max(plan.lens_extent[1], 1e-30)
-    focus = None
-    if plan.chromatic is not None:
-        ranges = plan.chromatic.ranges(eye[None])
-        focus = np.repeat(ranges.inverse_focus, 8, axis=1)
-        grown = np.repeat(eye[None], 2, axis=0)
-        grown[..., :2] *= ranges.scale[:, :, None]
-        clip = np.concatenate([grown, np.ones((2, 8, 1))], axis=-1) @ plan.projection.T
-        places = (clip[..., :2] / clip[..., 3:] + 1.0) / 2.0 * size
-    blur = np.abs(coc_ends(-eye[:, 2], -eye[:, 2], plan, focus)).max(axis=0)
-    blur = blur[:, None] * narrowing
-    # Margin for rounding by the rasteriser, and of the jitter to whole pixels.
-    margin = np.abs(plan.jitter).max(axis=0, initial=0.0) * size / 2.0 + 2.0
-    low = np.clip(np.floor((places - blur).reshape(-1, 2).min(axis=0) - margin), 0, size)
-    high = np.clip(np.ceil((places + blur).reshape(-1, 2).max(axis=0) + margin), 0, size)
-    if (high <= low).any():
-        return None
-    return (*low.astype(int).tolist(), *(high - low).astype(int).tolist())

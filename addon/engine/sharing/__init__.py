@@ -1,0 +1,1 @@
+"""Drawings of objects that several lens samples share."""

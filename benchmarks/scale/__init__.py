@@ -1,0 +1,1 @@
+"""What large scenes, long animations and worst cases cost."""
