@@ -23,14 +23,28 @@ def preserved():
 @contextmanager
 def confined(x, y, width, height):
     """Set the viewport to a rectangle of the bound frame buffer, in pixels, for a `with` block."""
+    with viewport_kept():
+        set_viewport(x, y, width, height)
+        yield
+
+
+@contextmanager
+def viewport_kept():
+    """Restore the viewport after a `with` block."""
     import gpu
 
     viewport = gpu.state.viewport_get()
-    gpu.state.viewport_set(x, y, width, height)
     try:
         yield
     finally:
         gpu.state.viewport_set(*viewport)
+
+
+def set_viewport(x, y, width, height):
+    """Set the viewport to a rectangle of the bound frame buffer, in pixels; see `viewport_kept`."""
+    import gpu
+
+    gpu.state.viewport_set(x, y, width, height)
 
 
 @contextmanager

@@ -29,7 +29,7 @@ _SHOW_SECONDS = 0.5
 _SHOW_SHARE = 0.1
 
 
-def render_view_layer(engine, depsgraph, session):
+def render_view_layer(engine, depsgraph, session, kept, evaluated_anew):
     """Render the view layer of a dependency graph into its render result.
 
     Parameters
@@ -38,6 +38,10 @@ def render_view_layer(engine, depsgraph, session):
     depsgraph : bpy.types.Depsgraph
     session : RenderSession
         Its outcome gets the result: error, warnings, statistics, pictures.
+    kept : KeptScenes
+        Of earlier frames; empty where nothing is kept.
+    evaluated_anew : bool
+        As for `KeptScenes.rendering`.
 
     Raises
     ------
@@ -47,20 +51,19 @@ def render_view_layer(engine, depsgraph, session):
     if bpy.app.background:
         # The extractor asks for the device's limits before anything has opened a context.
         context.ensure_context()
-    extractor = session.extractor(
-        largest_image=context.max_texture_size(), in_main_thread=partial(_in_main_thread, engine)
-    )
-    for view in views_of(engine, depsgraph.scene):
-        if view is not None:
-            view.activate()
-        _render_view(engine, depsgraph, session, extractor, view)
+    with kept.rendering(depsgraph, evaluated_anew, partial(_in_main_thread, engine)):
+        layer = kept.layer(depsgraph.view_layer.name)
+        for view in views_of(engine, depsgraph.scene):
+            if view is not None:
+                view.activate()
+            _render_view(engine, depsgraph, session, layer, view)
 
 
-def _render_view(engine, depsgraph, session, extractor, view):
+def _render_view(engine, depsgraph, session, layer, view):
     heard = session.outcome
     statistics = heard.statistics
     with statistics.timed("extract"):
-        snapshot = extractor.extract(depsgraph, engine.frame_set, view)
+        snapshot = layer.extractor.extract(depsgraph, engine.frame_set, view)
     _show_report(engine, session, depsgraph.scene, frame_report(snapshot))
     heard.check_strict()
     with statistics.timed("plan"):
@@ -71,7 +74,7 @@ def _render_view(engine, depsgraph, session, extractor, view):
     with gpu_of_render(engine.test_break, slice_seconds, bpy.app.background) as gpu:
         statistics.device = gpu.call(_open_device)
         with statistics.timed("upload"):
-            renderer = gpu.run(_prepare(plan, snapshot, session, levels))
+            renderer = gpu.run(_prepare(plan, snapshot, session, levels, layer.buffers))
         try:
             with _result(engine, snapshot, view) as result:
                 _draw(engine, gpu, renderer, result, heard)
@@ -139,15 +142,14 @@ def _make_levels(engine, plan, snapshot, session):
                 statistics.replays += levels.work.replays
 
 
-def _prepare(plan, snapshot, session, levels):
-    statistics, buffers = session.outcome.statistics, session.buffers()
+def _prepare(plan, snapshot, session, levels, buffers):
+    statistics, before = session.outcome.statistics, dict(buffers.uploads)
     yield from buffers.update_steps(snapshot.content)
-    for uid, meshes in levels.items():
-        buffers.add_levels(uid, meshes)
-        yield
+    yield from buffers.set_levels(levels)
     renderer = FrameRenderer(plan, snapshot, buffers)
     for kind, count in buffers.uploads.items():
-        statistics.uploads[kind] = statistics.uploads.get(kind, 0) + count
+        sent = count - before[kind]
+        statistics.uploads[kind] = statistics.uploads.get(kind, 0) + sent
     return renderer
 
 

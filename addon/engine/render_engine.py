@@ -30,6 +30,8 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
         super().__init__(*args, **kwargs)
         # Made by the first 3D view that asks; a final render has none.
         self._viewport = None
+        # Of the last frame, where Blender keeps this instance and its evaluated scene.
+        self._kept = None
 
     def render(self, depsgraph):
         """Render one view layer."""
@@ -39,8 +41,12 @@ class AplanatRenderEngine(bpy.types.RenderEngine):
 
     def _render(self, depsgraph, session):
         heard = session.outcome
+        persistent = depsgraph.scene.render.use_persistent_data
+        earlier, self._kept = self._kept if persistent else None, None
+        kept = earlier or session.kept_scenes(depsgraph.scene)
         try:
-            final_render.render_view_layer(self, depsgraph, session)
+            final_render.render_view_layer(self, depsgraph, session, kept, earlier is None)
+            self._kept = kept if persistent else None
         except RenderCancelledError:
             heard.cancelled = True
         except AplanatError as error:

@@ -9,7 +9,7 @@ import threading
 import weakref
 from contextlib import contextmanager
 
-from ..device import keeping
+from ..device import context, keeping
 from ..device.textures import TextureCache
 from ..scene.camera.camera import CameraSources
 from ..scene.camera.irises import IrisReader
@@ -47,6 +47,7 @@ class RenderSession:
         self.sources = CameraSources(shared.lenses, IrisReader())
         self.look_textures = TextureCache()
         self._levels, self._notes = shared.levels, shared.notes
+        self._kept = {}
         self._reported = set()
         self.warnings = []
         self._handles = weakref.WeakSet()
@@ -68,6 +69,12 @@ class RenderSession:
     def buffers(self):
         """Return new `SceneBuffers`, for the content of one extractor."""
         return SceneBuffers(self.look_textures)
+
+    def kept_scenes(self, scene):
+        """Return the `KeptScenes` of a scene; empty ones without *Persistent Data*."""
+        if not scene.render.use_persistent_data:
+            return KeptScenes(self)
+        return self._kept.setdefault(scene.original.session_uid, KeptScenes(self))
 
     def open_levels(self):
         """Return a new `LevelHandle`; the session closes it if nobody else does."""
@@ -144,6 +151,80 @@ class RenderSession:
     def _release(self):
         for handle in list(self._handles):
             handle.close()
+        self._kept.clear()
         self.look_textures.clear()
         # Works in the thread that draws only; Blender's main thread does it again when it is idle.
         keeping.let_go()
+
+
+class KeptScenes:
+    """What a final render keeps of its scene from frame to frame, with *Persistent Data*.
+
+    Of each view layer that is what was read of it and its copy on the device. Where Blender keeps
+    its evaluated scene, too, meshes that it names no update of are not even read; in the background
+    it evaluates each frame from nothing, and what is read is compared.
+
+    Parameters
+    ----------
+    session : RenderSession
+        Opens extractors and buffers.
+    """
+
+    def __init__(self, session):
+        self._session = session
+        self._layers = {}
+        self._runs_in_main_thread = None
+
+    @contextmanager
+    def rendering(self, depsgraph, evaluated_anew, in_main_thread):
+        """Render a frame's view layer in a `with` block.
+
+        Parameters
+        ----------
+        depsgraph : bpy.types.Depsgraph
+        evaluated_anew : bool
+            It is another evaluated scene than that of the last time.
+        in_main_thread : callable
+            As for `SceneExtractor`, while the block runs.
+        """
+        for layer in self._layers.values():
+            # All are told of all updates: their meshes are of the same evaluated scene.
+            layer.extractor.note_updates(depsgraph)
+            # Nothing tells of files that have changed.
+            layer.extractor.look_again(meshes=evaluated_anew)
+        self._runs_in_main_thread = in_main_thread
+        try:
+            yield
+        finally:
+            self._runs_in_main_thread = None
+
+    def layer(self, name):
+        """Return the `KeptLayer` of a view layer."""
+        if name not in self._layers:
+            self._layers[name] = KeptLayer(self._session, self._in_main_thread)
+        return self._layers[name]
+
+    def _in_main_thread(self, work):
+        return self._runs_in_main_thread(work)
+
+
+class KeptLayer:
+    """What is kept of a view layer.
+
+    Parameters
+    ----------
+    session : RenderSession
+    in_main_thread : callable
+        As for `SceneExtractor`.
+
+    Attributes
+    ----------
+    extractor : SceneExtractor
+    buffers : SceneBuffers
+    """
+
+    def __init__(self, session, in_main_thread):
+        self.extractor = session.extractor(
+            largest_image=context.max_texture_size(), in_main_thread=in_main_thread
+        )
+        self.buffers = session.buffers()

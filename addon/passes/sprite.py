@@ -41,25 +41,35 @@ def store(fullscreen, color, depth, mattes, origin):
     _draw(fullscreen, True, color, depth, mattes, origin)
 
 
-def copy(fullscreen, color, depth, mattes, origin):
-    """Copy a sprite into the bound frame buffer of a lens sample, nearest surface first.
+def copy(fullscreen, sprites, mattes):
+    """Copy sprites into the bound frame buffer of a lens sample, nearest surface first.
 
     Parameters
     ----------
     fullscreen : GPUBatch
-    color, depth : GPUTexture
-        Of the sprite; depth lies in a colour texture, not in a depth buffer.
-    mattes : GPUTexture or None
-    origin : tuple of 2 int
-        Texel of the sprite that comes to lie at texel 0, 0.
+    sprites : iterable of (Targets, tuple of 4 int)
+        Targets ``color``, ``depth`` (which lies in a colour texture, not in a depth buffer) and
+        ``mattes`` of each; x, y, width, height of where it comes to lie.
+    mattes : bool
+        They have mattes.
     """
     state.opaque()
-    _draw(fullscreen, False, color, depth, mattes, origin)
+    shader = compile_shader(_info(False, mattes))
+    shader.bind()
+    with state.viewport_kept():
+        for kept, (x, y, width, height) in sprites:
+            state.set_viewport(x, y, width, height)
+            textures = kept["color"], kept["depth"], kept["mattes"] if mattes else None
+            _fill(shader, fullscreen, *textures, (-x, -y))
 
 
 def _draw(fullscreen, stores, color, depth, mattes, origin):
     shader = compile_shader(_info(stores, mattes is not None))
     shader.bind()
+    _fill(shader, fullscreen, color, depth, mattes, origin)
+
+
+def _fill(shader, fullscreen, color, depth, mattes, origin):
     shader.uniform_sampler("color_tx", color)
     shader.uniform_sampler("depth_tx", depth)
     if mattes is not None:

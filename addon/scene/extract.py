@@ -12,7 +12,7 @@ from ..snapshot.surface_graph import attributes_read
 from .camera.camera import CameraSources, read_camera
 from .camera.drawn_curves import is_curve_group
 from .geometry.instances import read_instances
-from .geometry.meshes import MeshReading, read_mesh, same_content, used_slots
+from .geometry.meshes import EarlierMeshes, MeshReading, read_mesh, used_slots
 from .geometry.motion import RowSources, add_motion
 from .settings import read_film, read_passes, read_sampling
 from .shading.materials import MaterialReader
@@ -81,8 +81,16 @@ class SceneExtractor:
                 self._materials.image_reader.note_change(block.session_uid)
             if update.is_updated_geometry:
                 changed.add(block.session_uid)
-        for key in [key for key, known in self._known.items() if known.owners & changed]:
-            self._doubtful.append(self._known.pop(key).reading)
+        self._doubt([key for key, known in self._known.items() if known.owners & changed])
+
+    def _doubt(self, keys):
+        self._doubtful += [self._known.pop(key).reading for key in keys]
+
+    def look_again(self, meshes=False):
+        """Have the next extraction read all again, the meshes only if `meshes`."""
+        self._stale = True
+        if meshes:
+            self._doubt(list(self._known))
 
     def extract(self, depsgraph, frame_set=None, view=None):
         """Return the snapshot of an evaluated scene for its view layer.
@@ -238,6 +246,7 @@ class SceneExtractor:
         current = {}
         earlier = [*self._doubtful]
         earlier += [k.reading for key, k in self._known.items() if key not in needed]
+        earlier = EarlierMeshes(reading.snapshot for reading in earlier)
         for key, keys in needed.items():
             source, known = found.sources[key], self._known.get(key)
             if (
@@ -247,7 +256,7 @@ class SceneExtractor:
             ):
                 with source.opened(depsgraph) as mesh:
                     reading = read_mesh(mesh, keys, source.owner, source.base, source.carried)
-                equal = _take_equal(earlier, reading.snapshot)
+                equal = earlier.take_equal(reading.snapshot)
                 split = reading.split if for_motion else None
                 reading = replace(reading, snapshot=equal, split=split)
                 known = _KnownMesh(reading, keys, frozenset(found.owners[key]))
@@ -292,14 +301,6 @@ def _sort_rows(row_looks, looks):
     counts = np.bincount(number + 1, minlength=len(looks) + 1)
     order = np.argsort(number, kind="stable")[counts[0] :]
     return order.tolist(), counts[1:].tolist()
-
-
-def _take_equal(earlier, mesh):
-    """Return an equal mesh read before (and take it from `earlier`), or the new one."""
-    for i, candidate in enumerate(earlier):
-        if same_content(candidate.snapshot, mesh):
-            return earlier.pop(i).snapshot
-    return mesh
 
 
 def _slot_uids(slots, used, materials):

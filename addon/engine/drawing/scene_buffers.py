@@ -61,8 +61,8 @@ class SceneBuffers:
     captured : engine.layered.stack_layers.StackLayers or None
         A captured picture, where one takes the place of the content.
     uploads : dict of str to int
-        Numbers of meshes, images, materials and instance tables that were uploaded, and of
-        environments that were prefiltered so far.
+        Numbers of meshes, images, materials and instance tables that were uploaded, of
+        environments that were prefiltered, and of meshes whose levels were uploaded so far.
     """
 
     def __init__(self, look_textures=None):
@@ -80,7 +80,7 @@ class SceneBuffers:
         self._shown = _Environment()
         self._lit_by = _Environment()
         self.uploads = dict.fromkeys(
-            ("meshes", "images", "materials", "instance_tables", "environments"), 0
+            ("meshes", "images", "materials", "instance_tables", "environments", "levels"), 0
         )
         self._level_meshes = {}
         self._merge_trees = {}
@@ -102,7 +102,7 @@ class SceneBuffers:
         self._content = None
         for uid in self.meshes.keys() - content.meshes.keys():
             del self.meshes[uid]
-            for kept in (self.levels, self._level_meshes, self._merge_trees, self._unbent):
+            for kept in self._made_of_levels():
                 kept.pop(uid, None)
         levels = (level.uid for levels in self._level_meshes.values() for level in levels)
         self.shapes.keep({*content.meshes, *levels})
@@ -180,10 +180,31 @@ class SceneBuffers:
             From level 1 up.
         """
         self.levels[uid] = tuple(MeshBuffers(level) for level in levels)
+        self.uploads["levels"] += 1
         self._level_meshes[uid] = tuple(levels)
         for made_of_them in (self._merge_trees, self._unbent):
             made_of_them.pop(uid, None)
         self.levels_version += 1
+
+    def set_levels(self, levels):
+        """Have the levels of detail of some meshes and of no other, in steps.
+
+        Parameters
+        ----------
+        levels : dict of int to sequence of MeshLevel
+            By the mesh's uid.
+        """
+        for uid in self.levels.keys() - levels.keys():
+            for kept in self._made_of_levels():
+                kept.pop(uid, None)
+            self.levels_version += 1
+        for uid, meshes in levels.items():
+            if self._level_meshes.get(uid) != tuple(meshes):
+                self.add_levels(uid, meshes)
+                yield
+
+    def _made_of_levels(self):
+        return self.levels, self._level_meshes, self._merge_trees, self._unbent
 
     def unbent_levels(self, uid, keys):
         """Return how many uploaded levels of a mesh keep the distributions of some attributes.
@@ -213,7 +234,7 @@ class SceneBuffers:
 
     def drop_levels(self):
         """Release the levels of detail; full detail is drawn until new ones are added."""
-        for kept in (self.levels, self._level_meshes, self._merge_trees, self._unbent):
+        for kept in self._made_of_levels():
             kept.clear()
         self.levels_version += 1
 

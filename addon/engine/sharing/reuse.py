@@ -11,6 +11,7 @@ Jeong, Kim and Lee, CGF 2013, section 5.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -19,8 +20,8 @@ from ...sampling.halton import radical_inverse
 # Cost of copying a pixel of a sprite, in triangles. A copy tests and writes depth and colour: some
 # 0.07 us on software OpenGL, where a triangle of a scanned mesh takes 0.17 us.
 _COPY_COST = 0.4
-# Cost of a copy whatever its size, in triangles: its draw call and what is set for it, 60 us.
-_CALL_COST = 300.0
+# Cost of a copy whatever its size, in triangles: its draw call and what is set for it, 25 us.
+_CALL_COST = 150.0
 # From this radius of the circle of confusion on, px, cells may be twice as large: the blur hides
 # their steps, and each parent keeps its own jitter of the pixel filter, which smooths sharp edges.
 _BLUR_HIDES_PX = 1.5
@@ -67,6 +68,11 @@ class Sprite:
     def pixels(self):
         """Number of pixels of the rectangle."""
         return self.rectangle[2] * self.rectangle[3]
+
+    @cached_property
+    def last(self):
+        """The last lens sample that it is copied for."""
+        return max(self.members)
 
 
 def find_sprites(rows, coc, levels, triangles, rectangles, plan, corners=None, moved=None):

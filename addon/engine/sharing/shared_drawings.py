@@ -153,25 +153,25 @@ class SharedDrawings:
         light_parent : callable
             Returns what a `Sprite` is lit by; called before anything is bound.
         """
-        for found in self._members.get(sample, {}).values():
+        members = self._members.get(sample, {}).values()
+        if not members:
+            return
+        copies = []
+        for found in members:
             kept = self._kept.get(id(found))
             if kept is None:
-                kept = self._kept[id(found)] = self._make(
-                    found, targets, draw_parent, light_parent(found)
-                )
+                lights = light_parent(found)
+                kept = self._kept[id(found)] = self._make(found, targets, draw_parent, lights)
             x, y, width, height = found.rectangle
             across, up = found.members[sample]
-            with framebuffer.bind(), state.confined(x + across, y + up, width, height):
-                sprite.copy(
-                    self._fullscreen,
-                    kept["color"],
-                    kept["depth"],
-                    kept["mattes"] if self._mattes else None,
-                    (-x - across, -y - up),
-                )
-            self.copied += 1
-            if sample == max(found.members):
-                self._pool.setdefault((width, height), []).append(self._kept.pop(id(found)))
+            copies.append((kept, (x + across, y + up, width, height)))
+        with framebuffer.bind():
+            sprite.copy(self._fullscreen, copies, self._mattes)
+        self.copied += len(copies)
+        for found in members:
+            if sample == found.last:
+                kept = self._kept.pop(id(found))
+                self._pool.setdefault(found.rectangle[2:], []).append(kept)
 
     def _make(self, found, targets, draw_parent, lights):
         x, y, width, height = found.rectangle

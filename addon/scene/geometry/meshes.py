@@ -213,6 +213,34 @@ def read_moved_positions(mesh, reading):
     return split.of_vertices(positions)
 
 
+class EarlierMeshes:
+    """Meshes read before, to be found again among those read now: in linear time.
+
+    Parameters
+    ----------
+    meshes : iterable of MeshSnapshot
+    """
+
+    # Vertices by which meshes are told apart before all of them are compared.
+    _FIRST = 16
+
+    def __init__(self, meshes):
+        self._like = {}
+        for mesh in meshes:
+            self._like.setdefault(self._key(mesh), []).append(mesh)
+
+    def take_equal(self, mesh):
+        """Return an equal mesh read before, each only once, or the mesh itself."""
+        alike = self._like.get(self._key(mesh), [])
+        for place, candidate in enumerate(alike):
+            if same_content(candidate, mesh):
+                return alike.pop(place)
+        return mesh
+
+    def _key(self, mesh):
+        return mesh.name, mesh.slots, len(mesh.positions), mesh.positions[: self._FIRST].tobytes()
+
+
 def same_content(a, b):
     """Whether two `MeshSnapshot` would draw the same, bit by bit."""
     if (
