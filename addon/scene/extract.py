@@ -89,6 +89,7 @@ class SceneExtractor:
     def look_again(self, meshes=False):
         """Have the next extraction read all again, the meshes only if `meshes`."""
         self._stale = True
+        self._materials.image_reader.is_told = False
         if meshes:
             self._doubt(list(self._known))
 

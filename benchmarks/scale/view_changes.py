@@ -145,9 +145,9 @@ class ViewChanges:
         meshes_with_levels(snapshot.content, plan)
         note("levels")
         if self._renderer is None:
-            self._renderer = FrameRenderer(plan, snapshot, self._bench._buffers, drafts=True)
+            self._renderer = FrameRenderer(plan, snapshot, self._bench._buffers, "LATER")
         else:
-            self._renderer.restart(plan, snapshot, drafts=True)
+            self._renderer.restart(plan, snapshot, "LATER")
         note("prepare")
         self._renderer.advance(1)
         note("draw calls")

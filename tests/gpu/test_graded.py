@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine.drawing import graded_drawings
+from addon.engine.drawing import graded_drawings, group_levels
 from addon.engine.drawing.scene_buffers import SceneBuffers
 from addon.engine.frame.pipeline import FrameRenderer
 from addon.engine.planning.plan import plan_frame
@@ -55,7 +55,7 @@ def pictures(snapshot, mesh, levels):
 @pytest.fixture
 def plain(monkeypatch):
     """Draw without grading from here on."""
-    return lambda: monkeypatch.setattr(graded_drawings, "LEAST_GRADED_TRIANGLES", np.inf)
+    return lambda: monkeypatch.setattr(group_levels, "LEAST_GRADED_TRIANGLES", np.inf)
 
 
 @pytest.mark.parametrize("reuse_grid", [0, 2])

@@ -42,7 +42,7 @@ def calls_of_a_view_change(count):
     first = field_snapshot(count)
     buffers = SceneBuffers()
     buffers.update(first.content)
-    renderer = FrameRenderer(plan_frame(first), first, buffers, drafts=True)
+    renderer = FrameRenderer(plan_frame(first), first, buffers, "LATER")
     turned = first.camera.view.copy()
     turned[:3, :3] = np.roll(np.eye(3), 1, axis=0) @ turned[:3, :3]
     moved = replace(first, camera=replace(first.camera, view=turned))
@@ -56,7 +56,7 @@ def calls_of_a_view_change(count):
     try:
         plan = plan_frame(moved)
         meshes_with_levels(moved.content, plan)
-        renderer.restart(plan, moved, drafts=True)
+        renderer.restart(plan, moved, "LATER")
     finally:
         sys.setprofile(None)
     renderer.release()

@@ -70,13 +70,14 @@ class ImageReader:
     images : dict of int to ImageSnapshot
         Those read since `begin`.
     report : list of str
+    is_told : bool
     """
 
     def __init__(self, largest=None, is_told=False, in_main_thread=None, still=False):
         self.images = {}
         self.report = []
         self._largest = largest
-        self._is_told = is_told
+        self.is_told = is_told
         self._in_main_thread = in_main_thread
         self._still = still
         self._entries = {}
@@ -157,7 +158,7 @@ class ImageReader:
         signature = (repaints, *_signature(image, image_user, frame))
         entry = self._entries.get(key)
         unchanged = entry and entry.signature == signature
-        if unchanged and (self._is_told or not image.is_dirty):
+        if unchanged and (self.is_told or not image.is_dirty):
             return entry.use
         places = ()
         if image.source == "TILED" and len(image.tiles) > 1:
