@@ -111,6 +111,14 @@ def behind():
     gpu.state.depth_mask_set(False)
 
 
+def marked():
+    """Draw where the depth buffer has the very depth of what is drawn; depth is kept."""
+    import gpu
+
+    behind()
+    gpu.state.depth_test_set("EQUAL")
+
+
 def hidden():
     """Draw behind what is in the depth buffer; depth is kept."""
     import gpu

@@ -92,7 +92,7 @@ def test_what_the_compiler_leaves_out_is_passed_over_and_the_rest_is_set():
 _ENUMERATED_ELSEWHERE = {
     "addon.passes.bokeh.clusters._info",
     "addon.passes.surface.environment_bake._info",
-    "addon.passes.surface.surface.surface_info",
+    "addon.passes.surface.surface_shader.surface_info",
 }
 
 

@@ -6,13 +6,14 @@ that share a drawing of it.
 
 from contextlib import nullcontext
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from ...device import state
 from ...device.textures import texture_2d
 from ...levels.choosing import extents, level_for_sample
-from ...passes.surface import surface
+from ...passes.surface import deferred, surface
 from ...passes.surface.draw import by_level
 from ..sharing.shared_drawings import SharedDrawings
 from . import culling
@@ -233,11 +234,12 @@ class SceneDrawing:
         self.counts.draw_calls += len(listed)
         self.counts.triangles += sum(d.triangles * d.count for d in listed)
 
-    def _draw(self, listed, view, lens_sample, index, optics, lights):
+    def _draw(self, listed, view, index, lights, canvas):
         self._count(listed)
         state.opaque()
-        resources = {"highlights": self._highlights, "optics": optics, "lights": lights}
-        surface.draw_sample(listed, view, self._table, lens_sample, index, **resources)
+        given = (listed, view, self._table, self._plan.lens_sample(index), index)
+        resources = {"highlights": self._highlights, "optics": self._optics(index)}
+        surface.draw_sample(*given, lights=lights, canvas=canvas, **resources)
 
     def confine(self, part):
         """Restrict the following samples to a part of the raster, inside that of `aim`."""
@@ -262,19 +264,19 @@ class SceneDrawing:
         targets : Targets
             With those of `specs`.
         """
-        plan, shared = self._plan, self._shared
+        shared = self._shared
         listed = self._list(self._draws, index) + self._of_single(self._by_level, index)
         # Before anything is bound: light maps have a frame buffer of their own.
         lights = self.lights.of_samples(index, (index,))
         with framebuffer.bind(), self.confined():
-            optics = self._optics(index)
-            self._draw(listed, view, plan.lens_sample(index), index, optics, lights)
+            canvas = deferred.canvas(targets, "sample", self.confined, shared.fullscreen)
+            self._draw(listed, view, index, lights, canvas)
 
         def draw_parent(sprite, lights):
             drawn = self._of_row(self._by_level, sprite.row, sprite.level, index)
-            parent = sprite.parent
-            optics = self._optics(parent)
-            self._draw(drawn, view, plan.lens_sample(parent), parent, optics, lights)
+            within = partial(state.scissored, *sprite.rectangle)
+            canvas = deferred.canvas(targets, "scratch", within, shared.fullscreen)
+            self._draw(drawn, view, sprite.parent, lights, canvas)
 
         def light_parent(sprite):
             return self.lights.of_samples(index, sprite.members)
@@ -343,7 +345,8 @@ class SceneDrawing:
 
     def specs(self):
         """Return the render targets that drawing needs besides the sample's."""
-        return (*self._shared.specs(), *self._glass.specs(self._plan))
+        own = deferred.specs(self._draws, self._plan.subpixels)
+        return (*self._shared.specs(), *self._glass.specs(self._plan), *own)
 
     def surfaces(self):
         """Return group and slot of all surfaces."""

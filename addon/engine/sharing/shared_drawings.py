@@ -37,11 +37,12 @@ class SharedDrawings:
         Rows of the instance table that share drawings.
     drawn, copied : int
         Numbers of sprites since the frame began.
+    fullscreen : GPUBatch
     """
 
     def __init__(self, mattes):
         self._mattes = mattes
-        self._fullscreen = geometry.fullscreen_batch()
+        self.fullscreen = geometry.fullscreen_batch()
         self._pool = {}
         self.forget()
 
@@ -166,7 +167,7 @@ class SharedDrawings:
             across, up = found.members[sample]
             copies.append((kept, (x + across, y + up, width, height)))
         with framebuffer.bind():
-            sprite.copy(self._fullscreen, copies, self._mattes)
+            sprite.copy(self.fullscreen, copies, self._mattes)
         self.copied += len(copies)
         for found in members:
             if sample == found.last:
@@ -188,7 +189,7 @@ class SharedDrawings:
         names = ("color", "mattes", "depth") if self._mattes else ("color", "depth")
         with kept.framebuffer(*names).bind():
             sprite.store(
-                self._fullscreen,
+                self.fullscreen,
                 targets["scratch"],
                 targets["scratch_depth"],
                 targets["scratch_mattes"] if self._mattes else None,

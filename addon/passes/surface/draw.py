@@ -35,6 +35,8 @@ class Draw:
         What of the surface is drawn; see `surface.build_veils`.
     refracts : bool
         It reads `surface.GLASS_TEXTURES` and ``glass_buf``.
+    deferred : deferred.Deferred or None
+        It is shaded once a pixel, by `shader`.
     """
 
     shader: object
@@ -53,6 +55,7 @@ class Draw:
     slack: float = 0.0
     part: str | None = None
     refracts: bool = False
+    deferred: object | None = None
 
 
 def by_level(draws):

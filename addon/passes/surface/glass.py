@@ -26,4 +26,5 @@ def exits_of(target):
         splits=False,
         unsplit=frozenset(),
         refracts=False,
+        deferred=False,
     )

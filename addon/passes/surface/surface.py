@@ -8,154 +8,25 @@ import itertools
 import math
 from dataclasses import replace
 
-from ...device import shader_source, state
-from ...device.geometry import attribute_identifier, attribute_type
-from ...device.shaders import ShaderInfo, compile_shader
-from ...device.uniform_block import UniformStruct
+from ...device import state
+from ...device.shaders import compile_shader
 from ...device.uniforms import bind_resource
 from ..nodes import surface_code
-from . import environment
+from . import deferred
 from .draw import Draw
+from .surface_shader import GLASS_PARAMS, HIGHLIGHT_PARAMS, VIEW_PARAMS, surface_info
 from .surface_target import COLOR, whole
 
-# Samplers of a lit surface: the light table, the world's image and its prefiltered levels, and the
-# reflectance table of GGX lobes.
-LIGHTING_TEXTURES = (
-    "lights_tx",
-    "environment_tx",
-    "environment_levels_tx",
-    "ggx_tx",
+__all__ = (
+    "GLASS_PARAMS",
+    "HIGHLIGHT_PARAMS",
+    "VIEW_PARAMS",
+    "build_draws",
+    "build_veils",
+    "draw_sample",
+    "draw_veils",
+    "surface_info",
 )
-# The same with shadows: the atlas of light maps, and which light samples a drawing is lit by.
-SHADOW_TEXTURES = ("light_maps_tx", "lit_by_tx")
-# How far a coarser level of detail may be from the true surface, in the mesh's units.
-SHADOW_CONSTANTS = (("FLOAT", "slack"),)
-# What glass reads: the picture and depth of what is behind it, its backs, and a probe of the scene.
-GLASS_TEXTURES = ("behind_tx", "behind_depth_tx", "exits_tx", "probe_tx", "probe_depth_tx")
-
-VIEW_PARAMS = UniformStruct("shared/view_params.glsl", "ViewParams")
-HIGHLIGHT_PARAMS = UniformStruct("shared/highlight_params.glsl", "HighlightParams")
-GLASS_PARAMS = UniformStruct("shared/glass_params.glsl", "GlassParams")
-
-GLASS_LIBRARIES = ("lib/lens_lib.glsl", "lib/depth_lib.glsl", "lib/surface/probe_lib.glsl")
-LENS_LIBRARIES = (
-    ("CHROMATIC", "lib/chromatic_lib.glsl"),
-    ("REAL_LENS", "lib/real_lens_lib.glsl"),
-)
-_LIBRARIES = (
-    "lib/hash_lib.glsl",
-    "lib/surface/color_lib.glsl",
-    "lib/surface/texture_lib.glsl",
-    "lib/surface/vector_lib.glsl",
-    "passes/surface/surface_lighting.glsl",
-)
-
-
-def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, part=None):
-    """Return the declarations and sources of the shader of a surface on a mesh.
-
-    Parameters
-    ----------
-    target : SurfaceTarget
-    code : SurfaceCode
-    mesh_attributes : dict of str to ndarray
-    holdout : bool
-    deforms : bool
-        The mesh has positions in the neighbouring frames.
-    part : {None, 'GLOW', 'FILTER'}
-        Only the light that the surface adds, or the colour that it filters light with.
-
-    Returns
-    -------
-    ShaderInfo
-    """
-    if holdout or part == "FILTER":
-        # No light to split.
-        target = whole(target)
-    attributes = [("VEC3", "pos")]
-    varyings = [("VEC3", "world_position"), ("FLAT INT", "instance_row"), *target.varyings]
-    forward = []
-    transparent = code.transparent and not holdout
-    shades = not holdout and (target.shades or transparent)
-    own = tuple(key for key in target.attributes if key in mesh_attributes)
-    defines = [*target.defines, *["HOLDOUT"] * holdout, *["TRANSPARENT"] * transparent]
-    if target.shades and not holdout:
-        defines += [*["SHADES"], *["LIT"] * code.lit, *code.features]
-        if code.glows or part:
-            defines.append(part or "GLOW_APART")
-    if "HAS_VECTOR" in defines and deforms:
-        defines.append("HAS_DEFORMATION")
-        attributes += [("VEC3", "pos_previous"), ("VEC3", "pos_next")]
-    defines = dict.fromkeys(defines, "1") | dict(target.values)
-    for key in dict.fromkeys((code.attributes if shades else ()) + own):
-        name = attribute_identifier(key)
-        kind = attribute_type(mesh_attributes[key].shape[1])
-        attributes.append((kind, name))
-        if key == "normal":
-            varyings.append(("VEC3", "world_normal"))
-            defines |= {"HAS_NORMAL": "1", "ATTRIBUTE_NORMAL": name}
-        varyings.append((kind, f"v_{name}"))
-        forward.append(f"  v_{name} = {name};")
-    if shades and code.reads_place:
-        varyings.append(("VEC3", "v_object_position"))
-        forward.append("  v_object_position = pos;")
-    vertex = "void forward_attributes()\n{\n" + "\n".join(forward) + "\n}\n"
-    vertex = shader_source.join((shader_source.Text(vertex), target.vertex))
-    libraries_of_parts = []
-    if target.splits and target.shades and not holdout:
-        # Lighting asks whether light may be splatted.
-        libraries_of_parts += ["lib/lens_lib.glsl", "lib/bokeh/highlight_lib.glsl"]
-    structs, uniforms = target.structs, [*target.uniforms]
-    samplers = [("FLOAT_2D", "instances_tx"), *target.samplers]
-    push_constants = [("INT", "instance_base"), *target.push_constants]
-    if target.seen:
-        structs = VIEW_PARAMS.source + structs
-        uniforms.insert(0, ("ViewParams", "view_buf"))
-        push_constants += [("VEC4", "lens_sample"), ("INT", "sample_index")]
-        defines["SEEN"] = "1"
-    generated = ""
-    if shades:
-        generated = code.source
-        structs += f"struct MaterialParams {{ vec4 constants[{len(code.constants)}]; }};\n"
-        uniforms.append(("MaterialParams", "material_buf"))
-        samplers += [("FLOAT_2D", f"image_{i}_tx") for i in range(len(code.images))]
-    if target.splits and shades:
-        structs += HIGHLIGHT_PARAMS.source
-        uniforms.append(("HighlightParams", "highlight_buf"))
-        defines |= {"MIRRORING": "1"} if code.mirrors else {}
-        defines |= {"REFLECTING": "1"} if code.reflects else {}
-    if "LIT" in defines:
-        structs += environment.ENVIRONMENT_PARAMS.source
-        uniforms.append(("EnvironmentParams", "environment_buf"))
-        samplers += [("FLOAT_2D", name) for name in LIGHTING_TEXTURES]
-        if "SHADOWS" in defines:
-            samplers += [("FLOAT_2D", name) for name in SHADOW_TEXTURES]
-            push_constants += SHADOW_CONSTANTS
-    if code.refracts and target.refracts and not (holdout or part):
-        defines["REFRACTS"] = "1"
-        libraries_of_parts += GLASS_LIBRARIES
-        libraries_of_parts += [path for name, path in LENS_LIBRARIES if name in defines]
-        structs += GLASS_PARAMS.source
-        uniforms.append(("GlassParams", "glass_buf"))
-        samplers += [("FLOAT_2D", name) for name in GLASS_TEXTURES]
-    if target.names_material and not holdout:
-        push_constants.append(("FLOAT", "material_id"))
-    libraries = (*libraries_of_parts, *_LIBRARIES, *(code.libraries if shades else ()))
-    fragment = shader_source.join((*libraries, shader_source.Text(generated), target.fragment))
-    return ShaderInfo(
-        name="aplanat_surface",
-        vertex=vertex,
-        fragment=fragment,
-        typedefs=structs,
-        attributes=tuple(attributes),
-        varyings=tuple(varyings),
-        outputs=target.outputs,
-        samplers=tuple(samplers),
-        images=target.images,
-        uniforms=tuple(uniforms),
-        push_constants=tuple(push_constants),
-        defines=tuple(defines.items()),
-    )
 
 
 def build_draws(content, buffers, target=COLOR, wanted=None):
@@ -209,12 +80,17 @@ def _list_draws(content, buffers, target, part=None, wanted=None):
             split = material.highlights and (number, slot) not in target.unsplit
             alike = (material.uid, widths, group.holdout, mesh.motion is not None, split)
             if alike not in made:
-                code, shader, kind = _code_and_shader(
-                    material, mesh, group.holdout, target, part, split
-                )
+                whether = target if split else whole(target)
+                code, kind = _code_and_kind(material, mesh, group.holdout, target, part)
+                shader = once = None
+                if kind is not None:
+                    once = _shaded_once(made, code, mesh, group.holdout, whether)
+                    how = (code, mesh.attributes, group.holdout, mesh.motion is not None, part)
+                    shader = compile_shader(once[0] if once else surface_info(whether, *how))
                 # What is split must not change the order either.
-                made[alike] = code, shader, kinds.setdefault(kind, len(kinds))
-            code, shader, order = made[alike]
+                order = kinds.setdefault(kind, len(kinds))
+                made[alike] = code, shader, order, once and once[1]
+            code, shader, order, once = made[alike]
             if shader is None:
                 continue
             constants, textures = None, ()
@@ -245,6 +121,7 @@ def _list_draws(content, buffers, target, part=None, wanted=None):
                 slack=_slack(buffers, mesh, level),
                 part=part,
                 refracts=code.refracts and target.refracts and not (group.holdout or part),
+                deferred=once,
             )
             place = (order, materials[material.uid], meshes[group.mesh], slot, level)
             draws.append((place, draw))
@@ -259,19 +136,29 @@ def _slack(buffers, mesh, level):
     return math.sqrt(buffers.level_meshes(mesh)[level].triangle_area)
 
 
-def _code_and_shader(material, mesh, holdout, target, part, split):
-    """Return a surface's code, its shader or None where it is not drawn, and the kind of shader.
+def _code_and_kind(material, mesh, holdout, target, part):
+    """Return a surface's code, and the kind of its shader, None where it is not drawn.
 
     The kind is that of the target, the same whether and how the surface's own light is split.
     """
     code = surface_code.generate(material.graph, mesh.attributes, target.straight)
     has_part = {None: True, "GLOW": code.glows, "FILTER": code.filters}
     if not has_part[part] or (part and holdout):
-        return code, None, None
+        return code, None
     how = (mesh.attributes, holdout, mesh.motion is not None, part)
-    kind = surface_info(target, replace(code, mirrors=False, reflects=False), *how)
-    shader = compile_shader(surface_info(target if split else whole(target), code, *how))
-    return code, shader, kind
+    return code, surface_info(target, replace(code, mirrors=False, reflects=False), *how)
+
+
+def _shaded_once(made, code, mesh, holdout, target):
+    """Return what shades a surface once a pixel, and its `Deferred`; None if that is not done."""
+    number = 1 + sum(once is not None for *_, once in made.values())
+    if holdout or number > deferred.MOST_MATERIALS:
+        return None
+    found = deferred.infos(target, code, mesh.attributes, mesh.motion is not None)
+    if found is None:
+        return None
+    places, shading, count = found
+    return shading, deferred.Deferred(compile_shader(places), number, count)
 
 
 def _levels_of_groups(content, buffers):
@@ -311,6 +198,7 @@ def draw_sample(
     highlights=None,
     optics=None,
     lights=None,
+    canvas=None,
 ):
     """Draw one lens sample into the bound frame buffer.
 
@@ -332,32 +220,47 @@ def draw_sample(
         Of a target `in_wavelengths`, `through_lens`, or both.
     lights : light_map.Lighting or None
         For a target that shades.
+    canvas : deferred.Canvas, optional
+        What the bound frame buffer is made of, with nothing in it yet; for a deferred target.
     """
+    def bind(shader, draw):
+        shader.bind()
+        shader.uniform_block("view_buf", view_buffer)
+        shader.uniform_sampler("instances_tx", instances)
+        shader.uniform_float("lens_sample", lens_sample)
+        shader.uniform_int("sample_index", sample_index)
+        for name, resource in (*draw.lighting, *bindings):
+            bind_resource(shader, name, resource)
+        if shader.declares("highlight_buf"):
+            shader.uniform_block("highlight_buf", highlights)
+        if optics is not None:
+            optics.bind(shader)
+        if shader.declares("lights_tx"):
+            lights.bind(shader)
+
+    if shaded_once := [draw for draw in draws if draw.deferred]:
+        # First of all: what is drawn after them may hide them.
+        deferred.draw(shaded_once, canvas, bind, _give_material)
+        state.opaque()
     current = None
     for draw in draws:
+        if draw.deferred:
+            continue
         shader = draw.shader
         if shader is not current:
             current = shader
-            shader.bind()
-            shader.uniform_block("view_buf", view_buffer)
-            shader.uniform_sampler("instances_tx", instances)
-            shader.uniform_float("lens_sample", lens_sample)
-            shader.uniform_int("sample_index", sample_index)
-            for name, resource in (*draw.lighting, *bindings):
-                bind_resource(shader, name, resource)
-            if shader.declares("highlight_buf"):
-                shader.uniform_block("highlight_buf", highlights)
-            if optics is not None:
-                optics.bind(shader)
-            if shader.declares("lights_tx"):
-                lights.bind(shader)
-        if draw.material_id is not None:
-            shader.uniform_float("material_id", draw.material_id)
-        if draw.constants is not None:
-            shader.uniform_block("material_buf", draw.constants)
-        for name, texture in draw.textures:
-            shader.uniform_sampler(name, texture)
+            bind(shader, draw)
+        _give_material(shader, draw)
         if shader.declares("slack"):
             shader.uniform_float("slack", draw.slack)
         shader.uniform_int("instance_base", draw.first)
         shader.draw_instanced(draw.batch, draw.count)
+
+
+def _give_material(shader, draw):
+    if draw.material_id is not None:
+        shader.uniform_float("material_id", draw.material_id)
+    if draw.constants is not None:
+        shader.uniform_block("material_buf", draw.constants)
+    for name, texture in draw.textures:
+        shader.uniform_sampler(name, texture)

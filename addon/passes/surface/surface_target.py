@@ -46,6 +46,8 @@ class SurfaceTarget:
         It is drawn through the lens: reads ``view_buf``, `lens_sample` and `sample_index`.
     blurs : bool
         It tells the circle of confusion.
+    deferred : bool
+        Opaque lit surfaces are shaded once a pixel; see `deferred`.
     vertex : str
         Its vertex shader below ``gpu_shaders/``; it must call ``forward_attributes()``.
     """
@@ -69,6 +71,7 @@ class SurfaceTarget:
     straight: bool = False
     seen: bool = True
     blurs: bool = False
+    deferred: bool = False
     vertex: str = "passes/surface/surface_vert.glsl"
 
 
@@ -103,7 +106,8 @@ def without_highlights(target, unsplit=frozenset()):
 
 def of_picture(mattes, shadows):
     """Return the target of the colour picture, with or without mattes and shadows."""
-    return lit(COLOR_AND_MATTES if mattes else COLOR, shadows)
+    target = lit(COLOR_AND_MATTES if mattes else COLOR, shadows)
+    return replace(target, deferred=True)
 
 
 def lit(target, shadows):
@@ -137,6 +141,7 @@ def of_layers(target):
     """
     return replace(
         target,
+        deferred=False,
         defines=(*target.defines, "OF_LAYER"),
         samplers=(*target.samplers, ("FLOAT_2D", "front_tx")),
         push_constants=(*target.push_constants, ("VEC2", "eye")),

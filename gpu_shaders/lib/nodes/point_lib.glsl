@@ -1,6 +1,6 @@
 // The point of a surface at which a tree of nodes is evaluated: place, normals, direction of view.
 // Reads globals of the surface shaders: world_position, world_normal where the mesh has normals,
-// instance_row; SEEN: view_buf and lens_sample (OF_LAYER: eye), else visibility_buf.
+// instance_row; DEFERRED: surface_geometric; SEEN: view_buf and lens_sample (OF_LAYER: eye), else visibility_buf.
 #ifndef POINT_LIB_GLSL
 #define POINT_LIB_GLSL
 #include "lib/surface/instance_lib.glsl"
@@ -42,7 +42,11 @@ vec3 point_view()
 // Of the triangle, on the side that is seen; of any length.
 vec3 point_geometric_normal(vec3 view)
 {
+#ifdef DEFERRED
+  vec3 geometric = surface_geometric;
+#else
   vec3 geometric = cross(dFdx(world_position), dFdy(world_position));
+#endif
   return (dot(geometric, view) < 0.0) ? -geometric : geometric;
 }
 

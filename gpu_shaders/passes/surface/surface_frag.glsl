@@ -3,7 +3,7 @@
 // opacity without its light (GLOW_APART), then its light on top (GLOW), wherever nothing is in front.
 // One that lets colours through unevenly is drawn again, too (FILTER): where it was seen through, what was
 // seen is multiplied by the colour over its mean.
-// Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads. HIGHLIGHTS:
+// Inputs: varyings of surface_vert, or what load_surface() reads instead (DEFERRED); view_buf; what the generated surface_closure() reads. HIGHLIGHTS:
 // highlight_buf; the light that is splatted as bokeh is left out; with CHROMATIC also chromatic_buf and
 // field_tx, so that the splatted share is the same at all wavelengths; with MIRRORING it is searched
 // from several places on the lens, with REFLECTING only where the whole lens sees one side. OF_LAYER:
@@ -45,7 +45,11 @@ vec3 without_highlights(Closure closure)
 #endif
   float share = highlight_share(coc, highlight_buf.split.y);
 #ifdef REFLECTING
+#ifdef DEFERRED
+  vec3 normal = mat3(view_buf.view) * surface_geometric;
+#else
   vec3 normal = cross(dFdx(point), dFdy(point));
+#endif
   if (seen_from_both_sides(point, normal, view_buf.lens, highlight_buf)) {
     return closure.radiance;
   }
@@ -76,6 +80,9 @@ bool seen_through(float through)
 
 void main()
 {
+#ifdef DEFERRED
+  load_surface();
+#endif
 #ifdef OF_LAYER
   if (gl_FragCoord.z <= texelFetch(front_tx, ivec2(gl_FragCoord.xy), 0).x) {
     discard;

@@ -88,7 +88,7 @@ class GlassDrawing:
         """Return surfaces of whose light a part is splatted, with all their light, as `Veils`."""
         if self._split is None:
             unsplit = self._target.unsplit
-            target = surface_target.whole(self._target)
+            target = replace(surface_target.whole(self._target), deferred=False)
             draws = surface.build_draws(self._content, self._buffers, target)
             draws = (draw for draw in draws if (draw.group, draw.slot) not in unsplit)
             self._split = Veils([draw for draw in draws if not draw.refracts])
