@@ -6,6 +6,7 @@ targets that their modules hold. Used by tests in this process and in the real B
 
 import importlib
 import pkgutil
+from dataclasses import replace
 from itertools import combinations, product
 
 import numpy as np
@@ -17,7 +18,14 @@ from addon.device.targets import Targets, TargetSpec
 from addon.device.uniforms import uniform_buffer
 from addon.passes.bokeh import peel
 from addon.passes.nodes import surface_code
-from addon.passes.surface import data, environment_bake, glass, surface, surface_target
+from addon.passes.surface import (
+    data,
+    deferred,
+    environment_bake,
+    glass,
+    surface,
+    surface_target,
+)
 from addon.snapshot.surface_graph import Constant, Link, ShaderNode, SurfaceGraph
 
 _MODULES = [
@@ -156,6 +164,8 @@ _TELLING = {
     ("mirroring", "bare"),
     ("attribute", "bare"),
 }
+# Those of which shaders that shade once a pixel are tried, too.
+_SHADED_ONCE = ("mirroring", "attribute")
 _PLAIN = (surface_target.COLOR, surface_target.COLOR_AND_MATTES)
 _TARGET_OF = {"bare": surface_target.COLOR, "whole": surface_target.COLOR_AND_MATTES}
 # With and without what a mesh may lack.
@@ -173,6 +183,10 @@ def surface_infos():
         if (graph_name, mesh_name) not in _TELLING and target is not _TARGET_OF[mesh_name]:
             continue
         code = surface_code.generate(graph, mesh)
+        if graph_name in _SHADED_ONCE and target.fragment == surface_target.COLOR.fragment:
+            once = replace(target, deferred="OF_LAYER" not in target.defines)
+            for info in (deferred.infos(once, code, mesh, deforms=False) or ())[:2]:
+                yield f"{info.name}, {target_name}, {graph_name}, {mesh_name}", info
         parts = (None, *["GLOW"] * code.glows, *["FILTER"] * code.filters)
         for holdout, deforms, part in product((False, True), (False, True), parts):
             if part and holdout:

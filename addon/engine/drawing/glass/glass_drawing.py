@@ -5,6 +5,8 @@ where that does not have what a ray meets, a probe of the scene. A lens sample i
 point, so what is behind glass is as blurred as it should be, over the samples.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from ....device import geometry, state
@@ -180,7 +182,7 @@ class GlassDrawing:
         }
         for row in sorted({*self._probe_of.values()} - self._probes.keys()):
             if self._scene is None:
-                target = surface_target.of_picture(False, "SHADOWS" in self._target.defines)
+                target = surface_target.of_picture(False, "SHADOWS" in self._target.defines, None)
                 draws = surface.build_draws(self._content, self._buffers, target)
                 self._scene = [d for d in draws if d.level == 0 and not d.refracts]
             away = np.linalg.norm(centers - centers[row], axis=1) + radii
