@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.passes.surface import deferred
+from addon.passes.surface import deferred, surface_target
 from benchmarks.scenes.pictures import render_picture
 from tests.render.lights.shadow_scenes import diffuse, see_through_card, shadow_scene
 
@@ -42,6 +42,12 @@ def _scene(bpy):
     scene.aplanat.use_target_error = False
     scene.aplanat.render_samples = 6
     return scene
+
+
+def test_large_pictures_are_shaded_triangle_by_triangle():
+    """Their places would take more than a gibibyte."""
+    assert surface_target.of_picture(False, False, (3840, 2160)).deferred
+    assert not surface_target.of_picture(False, False, (7680, 4320)).deferred
 
 
 def test_shading_once_a_pixel_changes_no_bit(aplanat_bpy, monkeypatch):

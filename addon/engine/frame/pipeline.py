@@ -77,7 +77,8 @@ class FrameRenderer(ReadableFrame):
         self._earlier_rounds = DrawingCounts()
         self._cryptomattes = cryptomatte_kinds(plan.passes)
         self._mattes = needs_mattes(plan)
-        target = surface_target.of_picture(self._mattes, plan.shadows)
+        raster = (plan.subpixels * plan.width, plan.subpixels * plan.height)
+        target = surface_target.of_picture(self._mattes, plan.shadows, raster)
         self._highlights = None
         if plan.bokeh:
             target = surface_target.without_highlights(target, plan.bokeh.unsplit)

@@ -84,6 +84,9 @@ COLOR_AND_MATTES = SurfaceTarget(
     names_material=True,
     refracts=True,
 )
+# Most pixels of a picture whose surfaces are shaded once a pixel, each of which takes up to 100
+# bytes: a little more than 3840 x 2160.
+_MOST_DEFERRED = 1 << 23
 # The define of a target that splits light at the highlight threshold.
 SPLIT = "HIGHLIGHTS"
 
@@ -104,10 +107,23 @@ def without_highlights(target, unsplit=frozenset()):
     return replace(target, splits=True, unsplit=unsplit, defines=(*target.defines, SPLIT))
 
 
-def of_picture(mattes, shadows):
-    """Return the target of the colour picture, with or without mattes and shadows."""
+def of_picture(mattes, shadows, raster):
+    """Return the target of the colour picture.
+
+    Parameters
+    ----------
+    mattes, shadows : bool
+        With mattes; with shadows.
+    raster : tuple of 2 int
+        Width and height of what is drawn, px. Places of large ones would take more memory than the
+        time is worth.
+
+    Returns
+    -------
+    SurfaceTarget
+    """
     target = lit(COLOR_AND_MATTES if mattes else COLOR, shadows)
-    return replace(target, deferred=True)
+    return replace(target, deferred=raster[0] * raster[1] <= _MOST_DEFERRED)
 
 
 def lit(target, shadows):
