@@ -238,8 +238,8 @@ class SceneDrawing:
         self._count(listed)
         state.opaque()
         given = (listed, view, self._table, self._plan.lens_sample(index), index)
-        resources = {"highlights": self._highlights, "optics": self._optics(index)}
-        surface.draw_sample(*given, lights=lights, canvas=canvas, **resources)
+        resources = {"highlights": self._highlights, "lights": lights, "canvas": canvas}
+        surface.draw_sample(*given, optics=self._optics(index), **resources)
 
     def confine(self, part):
         """Restrict the following samples to a part of the raster, inside that of `aim`."""
@@ -274,18 +274,15 @@ class SceneDrawing:
 
         def draw_parent(sprite, lights):
             drawn = self._of_row(self._by_level, sprite.row, sprite.level, index)
-            within = partial(state.scissored, *sprite.rectangle)
-            canvas = deferred.canvas(targets, "scratch", within, shared.fullscreen)
+            part = partial(state.scissored, *sprite.rectangle)
+            canvas = deferred.canvas(targets, "scratch", part, shared.fullscreen)
             self._draw(drawn, view, sprite.parent, lights, canvas)
 
-        def light_parent(sprite):
-            return self.lights.of_samples(index, sprite.members)
-
+        light = partial(self.lights.of_samples, index)
         before = shared.drawn + shared.copied
-        shared.copy(index, framebuffer, targets, draw_parent, light_parent)
+        shared.copy(index, framebuffer, targets, draw_parent, light)
         self.counts.draw_calls += shared.drawn + shared.copied - before
-        self.counts.sprites_drawn = shared.drawn
-        self.counts.sprites_copied = shared.copied
+        self.counts.sprites_drawn, self.counts.sprites_copied = shared.drawn, shared.copied
 
     def draw_through(self, index, framebuffer, view, targets):
         """Draw glass and veils over a lens sample that `draw` has drawn; parameters as there."""
@@ -345,8 +342,8 @@ class SceneDrawing:
 
     def specs(self):
         """Return the render targets that drawing needs besides the sample's."""
-        own = deferred.specs(self._draws, self._plan.subpixels)
-        return (*self._shared.specs(), *self._glass.specs(self._plan), *own)
+        specs = deferred.specs(self._draws, self._plan.subpixels) + tuple(self._shared.specs())
+        return (*specs, *self._glass.specs(self._plan))
 
     def surfaces(self):
         """Return group and slot of all surfaces."""

@@ -141,7 +141,7 @@ class SharedDrawings:
         names += [("scratch_mattes", "RGBA32F")] * self._mattes
         return tuple(TargetSpec(name, kind) for name, kind in names)
 
-    def copy(self, sample, framebuffer, targets, draw_parent, light_parent):
+    def copy(self, sample, framebuffer, targets, draw_parent, light):
         """Copy the sprites of a lens sample into its frame buffer, drawing those that are new.
 
         Parameters
@@ -151,8 +151,8 @@ class SharedDrawings:
         targets : Targets
         draw_parent : callable
             Draws a `Sprite` for its parent, lit by what follows, into the bound frame buffer.
-        light_parent : callable
-            Returns what a `Sprite` is lit by; called before anything is bound.
+        light : callable
+            Returns what the samples of a drawing are lit by; called before anything is bound.
         """
         members = self._members.get(sample, {}).values()
         if not members:
@@ -161,7 +161,7 @@ class SharedDrawings:
         for found in members:
             kept = self._kept.get(id(found))
             if kept is None:
-                lights = light_parent(found)
+                lights = light(found.members)
                 kept = self._kept[id(found)] = self._make(found, targets, draw_parent, lights)
             x, y, width, height = found.rectangle
             across, up = found.members[sample]

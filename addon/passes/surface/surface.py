@@ -223,6 +223,7 @@ def draw_sample(
     canvas : deferred.Canvas, optional
         What the bound frame buffer is made of, with nothing in it yet; for a deferred target.
     """
+
     def bind(shader, draw):
         shader.bind()
         shader.uniform_block("view_buf", view_buffer)

@@ -114,16 +114,16 @@ def of_picture(mattes, shadows, raster):
     ----------
     mattes, shadows : bool
         With mattes; with shadows.
-    raster : tuple of 2 int
-        Width and height of what is drawn, px. Places of large ones would take more memory than the
-        time is worth.
+    raster : tuple of 2 int or None
+        Width and height of what is drawn, px: places of a large one would take more memory than the
+        time is worth. None for a target whose surfaces are not deferred.
 
     Returns
     -------
     SurfaceTarget
     """
     target = lit(COLOR_AND_MATTES if mattes else COLOR, shadows)
-    return replace(target, deferred=raster[0] * raster[1] <= _MOST_DEFERRED)
+    return replace(target, deferred=bool(raster) and raster[0] * raster[1] <= _MOST_DEFERRED)
 
 
 def lit(target, shadows):
