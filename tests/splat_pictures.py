@@ -33,8 +33,7 @@ def plan_of(
         lens_views=((0.0, 0.0),),
         colors=None,
         draft=False,
-        artist=None,
-        cylinders=None,
+        rays=None,
     )
     return SimpleNamespace(
         bokeh=bokeh,

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...lens_bokeh.samples.artist_rays import ArtistRays
 from ...lens_bokeh.samples.cylinder_rays import CylinderRays
+from ...lens_bokeh.samples.lens_rays import LensRays
 from ...levels.choosing import coc_radius, extents
 from ...sampling.highlights import highlight_share, least_coc
 from ...sampling.iris import Iris
@@ -31,7 +32,6 @@ from .bokeh_search import (
     subpixels_of_lamps,
     subpixels_of_triangles,
 )
-from .lens_plan import artist_rays
 from .seen_from_edge import seen_from_edge
 
 # Depth that represents infinity, in focus distances: the circle of confusion differs by 1e-6.
@@ -95,10 +95,8 @@ class BokehPlan:
         None: one disc for all wavelengths.
     draft : bool
         A draft with bounded work, for a moving view; see `drafted`.
-    artist : ArtistRays or None
-        The artist's lens that shapes the discs.
-    cylinders : CylinderRays or None
-        The rays of a lens with cylinders, which shapes them.
+    rays : LensRays, CylinderRays, ArtistRays or None
+        Of the samples, which shape the discs, too; see `shaping_rays`.
     """
 
     settings: BokehSettings
@@ -123,9 +121,8 @@ class BokehPlan:
     search_projections: tuple[np.ndarray, np.ndarray] | None = None
     colors: BokehColors | None = None
     draft: bool = False
-    artist: ArtistRays | None = None
+    rays: LensRays | CylinderRays | ArtistRays | None = None
     reflecting: frozenset[int] = frozenset()
-    cylinders: CylinderRays | None = None
 
     @property
     def lens_views(self):
@@ -215,7 +212,7 @@ def plan_bokeh(snapshot, plan):
     if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
         return None
     camera = snapshot.camera
-    shaping = shaping_lens(camera) or shaping_artist(camera) or shaping_cylinders(plan)
+    shaping = shaping_lens(camera) or shaping_rays(plan)
     if plan.real_lens and not shaping:
         # No discs are traced for it, and those of a thin lens would not be where the samples are.
         return None
@@ -284,8 +281,7 @@ def plan_bokeh(snapshot, plan):
         real_lens=shaping_lens(snapshot.camera),
         filter_width=filter_width(film.filter_kind, film.filter_size_px),
         colors=colors,
-        artist=shaping_artist(snapshot.camera),
-        cylinders=shaping_cylinders(plan),
+        rays=shaping_rays(plan),
     )
 
 
@@ -300,18 +296,14 @@ def shaping_lens(camera):
     return lens if lens and lens.shapes_bokeh and not camera.orthographic else None
 
 
-def shaping_cylinders(plan):
-    """Return the rays of a lens with cylinders that shapes a frame's discs, or None."""
+def shaping_rays(plan):
+    """Return the rays of the lens that shapes a frame's discs, as `sample_tables` takes them.
+
+    None where the samples are those of a thin lens.
+    """
     if plan.real_lens is None or plan.orthographic:
         return None
-    return plan.real_lens.cylinders
-
-
-def shaping_artist(camera):
-    """Return the artist's lens that shapes a camera's discs, as `ArtistRays`, or None."""
-    if camera.real_lens is not None or camera.artist is None or camera.orthographic:
-        return None
-    return artist_rays(camera)
+    return plan.real_lens.rays
 
 
 def _views_across(settings):

@@ -14,8 +14,9 @@
 #define TILE_FIELDS 25
 #define TILE_DEPTHS 9
 #else
-#define TILE_FIELDS 9
-#define TILE_DEPTHS 25
+#define TILE_FIELDS 10
+#define TILE_DEPTHS 32
+#define TILE_FIELD_ROOT 0.7
 #endif
 #define STOP_OFFSET 1.5
 #define STOP_SCALE 3.0
@@ -89,21 +90,29 @@ mat2 tile_axes(vec2 chief)
 // all divided by |c| + c0. `at`: field and depth, counted in tiles.
 vec3 tile_place(sampler2D tx, vec2 at)
 {
-  return texture(tx, (at.yx + 0.5) / vec2(TILE_DEPTHS, TILE_FIELDS)).xyz;
+  return texture(tx, (at.yx + 0.5) / vec2(TILE_DEPTHS, 2 * TILE_FIELDS)).xyz;
+}
+
+// How much finer texels are in the middle of the tile, across and along the azimuth.
+vec2 tile_finer(sampler2D tx, vec2 at)
+{
+  at.x += float(TILE_FIELDS);
+  return texture(tx, (at.yx + 0.5) / vec2(TILE_DEPTHS, 2 * TILE_FIELDS)).xy;
 }
 
 #ifdef CYLINDERS
 // Shift of the middle of a pattern, and half its width, each along x and y, all divided by |c| + c0.
-// `at`: field along x, and depth; `up`: field along y.
-vec4 tile_place_of(sampler2D tx, vec2 at, float up)
+// `at`: field along x, and depth; `up`: field along y; `first`: 0, or TILE_FIELDS for how much finer
+// texels are in the middle.
+vec4 tile_place_of(sampler2D tx, vec2 at, float up, int first)
 {
-  vec2 size = vec2(TILE_DEPTHS, TILE_FIELDS);
+  vec2 size = vec2(TILE_DEPTHS, 2 * TILE_FIELDS);
   vec2 low = clamp(floor(vec2(at.x, up)), vec2(0.0), vec2(TILE_ACROSS - 2));
   vec2 part = vec2(at.x, up) - low;
   float row = low.y * float(TILE_ACROSS) + low.x;
   vec4 places[4];
   for (int i = 0; i < 4; i++) {
-    float field = row + float(i % 2) + float(i / 2) * float(TILE_ACROSS);
+    float field = float(first) + row + float(i % 2) + float(i / 2) * float(TILE_ACROSS);
     places[i] = texture(tx, vec2(at.y + 0.5, field + 0.5) / size);
   }
   return mix(mix(places[0], places[1], part.x), mix(places[2], places[3], part.x), part.y);
@@ -116,9 +125,12 @@ vec3 tile_corner(sampler2DArray tx, vec2 uv, float first, ivec2 at)
 }
 
 // Tiles blurred to one degree: light, and light times the place in the stop.
-vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at)
+vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at, vec2 finer)
 {
-  vec2 uv = place / (1.0 + blur) * 0.5 + 0.5;
+  vec2 uv = place / (1.0 + blur);
+  // Texels are finer in the middle: tile_drawing.py.
+  uv *= (1.0 + finer) / (1.0 + finer * abs(uv));
+  uv = uv * 0.5 + 0.5;
   if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) {
     return vec3(0.0);
   }
@@ -152,7 +164,8 @@ vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at)
 }
 
 // Light and place in the stop at a place of a tile, in the meridional frame.
-vec3 tile_light(sampler2DArray sharp_tx, sampler2DArray soft_tx, vec2 place, float blur, vec2 at)
+vec3 tile_light(
+    sampler2DArray sharp_tx, sampler2DArray soft_tx, vec2 place, float blur, vec2 at, vec2 finer)
 {
   float count = float(TILE_FIELDS * TILE_DEPTHS);
   float wide = clamp(blur, TILE_BLUR_SHARP, TILE_BLUR_SOFT.w);
@@ -164,9 +177,9 @@ vec3 tile_light(sampler2DArray sharp_tx, sampler2DArray soft_tx, vec2 place, flo
   float high = TILE_BLUR_SOFT[layer];
   // Variances add up: the mixture of two layers has the variance of the blur.
   float share = (wide * wide - low * low) / (high * high - low * low);
-  vec3 softer = tile_layer(soft_tx, place, high, float(layer) * count, at);
-  vec3 sharper = (layer == 0) ? tile_layer(sharp_tx, place, low, 0.0, at) :
-                                tile_layer(soft_tx, place, low, float(layer - 1) * count, at);
+  vec3 softer = tile_layer(soft_tx, place, high, float(layer) * count, at, finer);
+  vec3 sharper = (layer == 0) ? tile_layer(sharp_tx, place, low, 0.0, at, finer) :
+                                tile_layer(soft_tx, place, low, float(layer - 1) * count, at, finer);
   vec3 light = mix(sharper, softer, share);
   vec2 stop = light.yz / max(light.x, 1e-12) * STOP_SCALE - STOP_OFFSET;
   return vec3(light.x, stop);

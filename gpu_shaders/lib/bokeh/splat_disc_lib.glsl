@@ -134,11 +134,14 @@ SplatDisc splat_disc(vec4 a, vec4 b)
   v_tile_up = node.y;
   v_tile_at = vec2(node.x, v_row * float(TILE_DEPTHS - 1));
   // The middle of the pattern, and half its width.
-  vec4 pattern = tile_place_of(places_tx, v_tile_at, v_tile_up);
+  vec4 pattern = tile_place_of(places_tx, v_tile_at, v_tile_up, 0);
+  v_tile_finer = tile_place_of(places_tx, v_tile_at, v_tile_up, TILE_FIELDS).xy;
 #else
-  v_tile_at = vec2(clamp(length(v_chief) * splat_buf.field.x, 0.0, 1.0) * float(TILE_FIELDS - 1),
+  float tangent = clamp(length(v_chief) * splat_buf.field.x, 0.0, 1.0);
+  v_tile_at = vec2(pow(tangent, 1.0 / TILE_FIELD_ROOT) * float(TILE_FIELDS - 1),
                    v_row * float(TILE_DEPTHS - 1));
   vec4 pattern = vec4(0.0, tile_place(places_tx, v_tile_at));
+  v_tile_finer = tile_finer(places_tx, v_tile_at);
 #endif
   pattern *= radius + splat_buf.rows.z;
   pattern = mix(vec4(0.0, 0.0, radius, radius), pattern, splat_buf.rows.w);

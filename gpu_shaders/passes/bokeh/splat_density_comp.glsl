@@ -1,7 +1,7 @@
 // Energy density of each highlight's disc, before its splat: a thread for each, where the corners of
 // its square would each find the same.
 // Inputs: as of splat_vert but pos and density_tx; discs (how many); besides, REAL_LENS: light_tx (light of the
-// picture over that of an even one), area_tx (how much larger surfaces are seen).
+// picture over that of an even one), area_tx (how much more light surfaces have than a pinhole sees).
 // Outputs: density_img: for each source what the shape of its disc is multiplied by.
 // Source: methods 13.
 
@@ -15,6 +15,7 @@ float v_upright;
 float v_dot;
 vec2 v_chief;
 vec2 v_tile_at;
+vec2 v_tile_finer;
 vec3 v_area;
 vec3 v_left_lower;
 vec3 v_left_upper;
