@@ -26,15 +26,15 @@ from .tile_drawing import (
     WholeGrid,
     blur_matrix,
     blurred,
+    core_share,
     draw_tile,
-    texel_places,
 )
 
 DEPTHS = 32
 # Of a lens with cylinders, which has more fields.
 DEPTHS_ACROSS = 9
-# Blur of the tiles in units of half their width, as the side of a box of the same variance; the
-# first one is what texels of the sharp tiles do. Must agree with lib/bokeh/bokeh_look_lib.glsl.
+# Blur of the tiles in units of half the width of their cores (`core_share`), as the side of a box of
+# the same variance; the first one is what texels of the sharp tiles do. Must agree with lib/bokeh/bokeh_look_lib.glsl.
 BLURS = (1.0 / 48.0, 1.0 / 20.0, 1.0 / 9.0, 1.0 / 4.0, 1.0 / 2.0)
 SHARP, SOFT = 128, 64
 AZIMUTHS = 48
@@ -51,8 +51,9 @@ class PupilTiles:
     Parameters
     ----------
     sharp : ndarray of float32, shape (FIELDS * DEPTHS, SHARP, SHARP, 4)
-        Density of light in a square from -e to e, e = 1 + the blur; integral 1 over the tile's
-        own units. Then density times the place in the stop, x and y.
+        Light of the texels of a square from -e to e, e = 1 + the blur, over the area of even ones:
+        the integral is 1 over the tile's own units. Then light times the place in the stop, x and
+        y.
     soft : ndarray of float32, shape ((len(BLURS) - 1) * FIELDS * DEPTHS, SOFT, SOFT, 4)
         The same with more blur, blur by blur.
     places : ndarray of float32, shape (2 FIELDS, DEPTHS, 4)
@@ -140,30 +141,23 @@ def _store_blurred(sharp, soft, tile, finer, mirrored):
     mirrored : bool
         Whether the tile is its own mirror image.
     """
-    _store(sharp, tile / areas_of_texels(SHARP, finer), 0, finer)
+    _store(sharp, tile, 0)
     pairs = []
     for blur in BLURS[1:]:
         spans = SHARP, reach(BLURS[0]), SOFT, reach(blur)
-        pairs.append([blur_matrix(blur, *spans, each) for each in finer])
+        pairs.append([blur_matrix(blur * core_share(each), *spans, each) for each in finer])
     if mirrored:
         every = blurred(tile, pairs)
     else:
         every = (along @ tile @ across.T for across, along in pairs)
     for layer, (place, soft_tile) in enumerate(zip(soft, every, strict=True), 1):
-        _store(place, soft_tile, layer, finer)
+        _store(place, soft_tile, layer)
 
 
-def areas_of_texels(size, finer):
-    """Return the areas of a tile's texels over those of even ones, shape (size, size)."""
-    across, along = (texel_places(size, each)[1].astype(np.float32) for each in finer)
-    return along[:, None] * across
-
-
-def _store(place, tile, layer, finer):
-    """Store a tile's densities, (3, size, size), with the light 1 over its own units."""
+def _store(place, tile, layer):
+    """Store the light of a tile's texels, (3, size, size), with the light 1 over its own units."""
     texel = 2.0 * reach(BLURS[layer]) / len(place)
-    energy = tile[0] * areas_of_texels(len(place), finer) if any(finer) else tile[0]
-    light = float(energy.sum(dtype=np.float64)) * texel**2
+    light = float(tile[0].sum(dtype=np.float64)) * texel**2
     np.multiply(np.moveaxis(tile, 0, -1), np.float32(1.0 / max(light, 1e-30)), out=place[..., :3])
 
 
@@ -203,12 +197,10 @@ def light_left(tiles, opening):
 
 def _light_in_stop(tiles):
     """Light of the tiles over places in the stop, shape (blurs * FIELDS * DEPTHS, places)."""
-    finer = tiles.places[FIELDS:, :, :2].reshape(-1, 2)
     every = [tiles.sharp, *tiles.soft.reshape(len(BLURS) - 1, -1, SOFT, SOFT, 4)]
     result = np.zeros((len(BLURS), FIELDS * DEPTHS, _PLACES**2), np.float32)
     for lit_tiles, rows in zip(every, result, strict=True):
-        for tile, row, fine in zip(lit_tiles, rows, finer, strict=True):
-            tile = tile * areas_of_texels(len(tile), fine)[..., None] if fine.any() else tile
+        for tile, row in zip(lit_tiles, rows, strict=True):
             if len(tile) == SHARP:
                 parts = tile.reshape(SHARP // _STEP, _STEP, SHARP // _STEP, _STEP, 4)
                 tile = parts.sum(axis=(1, 3))

@@ -182,6 +182,11 @@ def texel_places(size, finer):
     return at / scale, (1.0 + finer) / scale**2
 
 
+def core_share(finer):
+    """Return the half width of a pattern's core, as an even disc's, over that of the pattern."""
+    return _FAR / (_FAR + finer)
+
+
 def _focused_on_core(places, energy, middle, half, core):
     """Return middle and half width of a pattern along an axis, and how much finer its core is.
 
@@ -229,7 +234,9 @@ def _drawn(grid, light, bounds, size, span, finer):
 # Memo of its arguments alone, which are constants but for the rare patterns with finer cores.
 @lru_cache(maxsize=16)
 def blur_matrix(width, size, span, to_size, to_span, finer=0.0):
-    """Return the matrix that blurs the light of texels along an axis to a density at others.
+    """Return the matrix that blurs the light of texels along an axis to that of others.
+
+    But for a factor.
 
     Parameters
     ----------
@@ -254,7 +261,7 @@ def blur_matrix(width, size, span, to_size, to_span, finer=0.0):
     tents = 2.0 * np.square(to_wide * (2.0 * to_span / to_size))[:, None]
     # At least so much that no texel falls between others.
     left = np.maximum(width**2 - boxes - tents, np.maximum(0.5 * tents, 3.0 * boxes))
-    blur = np.exp(-6.0 * np.square(at[:, None] - source) / left) / np.sqrt(left)
+    blur = np.exp(-6.0 * np.square(at[:, None] - source) / left) / np.sqrt(left) * to_wide[:, None]
     return blur.astype(np.float32)
 
 

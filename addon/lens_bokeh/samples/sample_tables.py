@@ -20,6 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from .disc_terms import disc_terms
+from .enlarged import enlarged
 from .field_grid import FieldGrid
 from .landing import landed, spread_places
 from .seen_fields import SeenFields, fields_on_circles, seen_fields
@@ -29,8 +30,6 @@ _GRADIENT_PLACES, _NUDGE = 96, 1e-3
 _SOFT = 0.5
 # Places of the iris that a blur is fitted to.
 _BLUR_PLACES = 64
-# Places whose mean is the light of a small surface; what every one has more, over that of all.
-_AREA_PLACES, _LEAST_LIGHT = 64, 0.01
 # Clearance of rims that never cut, at the places that the slope is found for.
 _CLEAR = 0.1
 
@@ -129,41 +128,8 @@ class SampleTables:
 
     @cached_property
     def area(self):
-        """How much more light small surfaces have in the picture than a pinhole shows of them.
-
-        With an even exposure: a sample counts as much as it has of the light where it lands, and
-        shows surfaces larger or smaller.
-
-        Returns
-        -------
-        ndarray of float32, shape (rows, columns, 4)
-            Mean over the iris: coefficients of the powers of V over the largest vergence.
-        """
-        grid = self.moves_grid
-        places = spread_places(_AREA_PLACES) / (self.ratio, 1.0)
-        moves = self.moves(places * self.aperture_radius)
-        step = (grid.high - grid.low) / (grid.columns - 1, grid.rows - 1)
-        at = 0.5 - 0.5 * np.cos((np.arange(4) + 0.5) / 4.0 * np.pi)
-        powers = at[:, None] ** np.arange(4)
-        # Of all samples at the nodes of the light, over their mean there.
-        light = self.light(places * self.aperture_radius, np.sqrt(np.pi / _AREA_PLACES))
-        light = light.reshape(_AREA_PLACES, -1)
-        light = light + _LEAST_LIGHT * light.mean()
-        light /= light.mean(axis=0)
-        found = np.zeros((4, grid.rows * grid.columns))
-        for place, moved, own in zip(places, moves, light, strict=True):
-            seen = np.einsum("vk,yxkc->vyxc", powers, moved.astype(float))
-            up, right = (
-                np.gradient(seen, size, axis=axis) for size, axis in ((step[1], 1), (step[0], 2))
-            )
-            larger = (1.0 + right[..., 0]) * (1.0 + up[..., 1]) - right[..., 1] * up[..., 0]
-            thin = self.focus_vergence - at * self.largest_vergence
-            seen = seen.reshape(4, -1, 2) + grid.nodes
-            seen += (place * self.aperture_radius) * thin[:, None, None]
-            index, weights = self.light_grid.taps(seen)
-            found += (own[index] * weights).sum(axis=-1) * np.abs(larger).reshape(4, -1)
-        found = np.linalg.inv(powers) @ (found / _AREA_PLACES)
-        return found.T.reshape(grid.rows, grid.columns, 4).astype(np.float32)
+        """How much more light small surfaces have than a pinhole shows; see `enlarged`."""
+        return enlarged(self)
 
     def turns(self, lens_positions, colors=None):
         """Tables of how displacements change with the place on the lens.

@@ -5,7 +5,7 @@
 #define BOKEH_LOOK_LIB_GLSL
 #include "lib/bokeh/opening_lib.glsl"
 
-// Blur of the tiles in units of half their width, and how they are counted: splat_pupil.py.
+// Blur of the tiles in units of half the width of their cores, and how they are counted: splat_pupil.py.
 #define TILE_BLUR_SHARP (1.0 / 48.0)
 #define TILE_BLUR_SOFT vec4(1.0 / 20.0, 1.0 / 9.0, 1.0 / 4.0, 1.0 / 2.0)
 #ifdef CYLINDERS
@@ -18,6 +18,8 @@
 #define TILE_DEPTHS 32
 #define TILE_FIELD_ROOT 0.7
 #endif
+// Half width of an even disc over that of half of its light: tile_drawing.py.
+#define TILE_FAR 2.5
 #define STOP_OFFSET 1.5
 #define STOP_SCALE 3.0
 
@@ -124,12 +126,16 @@ vec3 tile_corner(sampler2DArray tx, vec2 uv, float first, ivec2 at)
   return texture(tx, vec3(uv, first + float(at.x * TILE_DEPTHS + at.y))).rgb;
 }
 
-// Tiles blurred to one degree: light, and light times the place in the stop.
+// Tiles blurred to one degree: light, and light times the place in the stop. Tiles hold the light of
+// their texels, so that mixtures of some whose texels are finer and coarser keep it.
 vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at, vec2 finer)
 {
   vec2 uv = place / (1.0 + blur);
   // Texels are finer in the middle: tile_drawing.py.
-  uv *= (1.0 + finer) / (1.0 + finer * abs(uv));
+  vec2 nearer = 1.0 / (1.0 + finer * abs(uv));
+  vec2 texels = (1.0 + finer) * nearer * nearer;
+  float dense = texels.x * texels.y;
+  uv *= (1.0 + finer) * nearer;
   uv = uv * 0.5 + 0.5;
   if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) {
     return vec3(0.0);
@@ -149,7 +155,7 @@ vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at,
                      part.y);
     rows[i] = mix(left, right, part.x);
   }
-  return mix(rows[0], rows[1], v_tile_up - float(above));
+  return dense * mix(rows[0], rows[1], v_tile_up - float(above));
 #else
   ivec2 low = ivec2(clamp(floor(at), vec2(0.0), vec2(TILE_FIELDS - 2, TILE_DEPTHS - 2)));
   vec2 part = at - vec2(low);
@@ -159,7 +165,7 @@ vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at,
   vec3 far = mix(tile_corner(tx, uv, first, low + ivec2(1, 0)),
                  tile_corner(tx, uv, first, low + ivec2(1, 1)),
                  part.y);
-  return mix(near, far, part.x);
+  return dense * mix(near, far, part.x);
 #endif
 }
 
