@@ -33,8 +33,9 @@ from .tile_drawing import (
 DEPTHS = 32
 # Of a lens with cylinders, which has more fields.
 DEPTHS_ACROSS = 9
-# Blur of the tiles in units of half the width of their cores (`core_share`), as the side of a box of
-# the same variance; the first one is what texels of the sharp tiles do. Must agree with lib/bokeh/bokeh_look_lib.glsl.
+# Blur of the tiles in units of half the width of their cores (`core_share`), as the side of a box
+# of the same variance; the first one is what texels of the sharp tiles do. Must agree with
+# lib/bokeh/bokeh_look_lib.glsl.
 BLURS = (1.0 / 48.0, 1.0 / 20.0, 1.0 / 9.0, 1.0 / 4.0, 1.0 / 2.0)
 SHARP, SOFT = 128, 64
 AZIMUTHS = 48

@@ -5,8 +5,8 @@ import numpy as np
 from .field_grid import FieldGrid
 from .landing import spread_places
 
-# Places of the iris whose mean is the light: rims cut the picture anew at each depth. What every one
-# has more, over that of all.
+# Places of the iris whose mean is the light: rims cut the picture anew at each depth. What every
+# one has more, over that of all.
 _PLACES, _LEAST_LIGHT = 256, 0.01
 # Powers of the vergence; nodes of the movements over those of the light along an axis.
 POWERS, _COARSER = 8, 2
