@@ -11,12 +11,12 @@ from ...sampling.sequence import LATTICE_PLACES, lattice_sets, subsample_places
 from ...sampling.spectral_samples import GROUP
 from .bokeh_plan import plan_bokeh
 from .chromatic import plan_chromatic
+from .depth_planes import with_fitted_planes
 from .distortion import plan_distortion
 from .frame_plan import AutomaticSampling, FramePlan
 from .frame_samples import SampleSource
 from .layered_plan import plan_layered
 from .lens_plan import plan_real_lens
-from .near_plane import with_near_plane
 from .quality import LEAST_ERROR, largest_coc, settle
 from .stack_bokeh import plan_stack_bokeh
 
@@ -189,7 +189,7 @@ def plan_first_picture(snapshot):
 
 def _plan_raster(snapshot):
     snapshot = replace(
-        snapshot, camera=replace(snapshot.camera, projection=with_near_plane(snapshot))
+        snapshot, camera=replace(snapshot.camera, projection=with_fitted_planes(snapshot))
     )
     sampling = snapshot.sampling
     automatic = None

@@ -1,11 +1,11 @@
-"""The near plane of the depth buffer: as far away as what is in view allows."""
+"""The planes of the depth buffer: as close round what is in view as that allows."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from addon.engine.planning.near_plane import nearest_in_view, with_near_plane
+from addon.engine.planning.depth_planes import farthest_in_view, nearest_in_view, with_fitted_planes
 from addon.engine.planning.plan import plan_frame
 from addon.sampling.iris import Iris
 from addon.sampling.thin_lens import ThinLens
@@ -78,7 +78,7 @@ def test_no_lens_sample_sees_anything_nearer(radius):
 
 def test_the_far_plane_and_the_picture_stay_where_they_are():
     snapshot = close_up([wall(5.0)], [(1.0, 1.0, 1.0)])
-    own, fitted = snapshot.camera.projection, with_near_plane(snapshot)
+    own, fitted = snapshot.camera.projection, with_fitted_planes(snapshot)
     assert (fitted[[0, 1, 3]] == own[[0, 1, 3]]).all()
     for projection, near in ((own, NEAR), (fitted, 2.5)):
         for depth, expected in ((near, -1.0), (100.0, 1.0)):
@@ -87,11 +87,37 @@ def test_the_far_plane_and_the_picture_stay_where_they_are():
     assert plan_frame(snapshot).projection == pytest.approx(fitted)
 
 
-def test_planes_stay_where_nothing_is_in_view_or_the_projection_is_parallel():
-    empty = close_up([wall(-5.0)], [(1.0, 1.0, 1.0)])
-    assert with_near_plane(empty) is empty.camera.projection
-    parallel = triangles_snapshot([wall(5.0)], [(1.0, 1.0, 1.0)], WIDTH, HEIGHT, parallel=True)
-    parallel = replace(
-        parallel, camera=replace(parallel.camera, projection=orthographic(WIDTH, HEIGHT))
+def parallel_view(corners, clip_end, lens=None):
+    snapshot = triangles_snapshot(
+        corners, [(1.0, 1.0, 1.0)] * len(corners), WIDTH, HEIGHT, lens, 64, parallel=True
     )
-    assert with_near_plane(parallel) is parallel.camera.projection
+    projection = orthographic(WIDTH, HEIGHT)
+    near = (projection[2, 3] + 1.0) / projection[2, 2]
+    projection[2, 2:] = -2.0 / (clip_end - near), -(clip_end + near) / (clip_end - near)
+    return replace(snapshot, camera=replace(snapshot.camera, projection=projection))
+
+
+def test_planes_stay_where_nothing_is_in_view():
+    empty = close_up([wall(-5.0)], [(1.0, 1.0, 1.0)])
+    assert with_fitted_planes(empty) is empty.camera.projection
+    empty = parallel_view([wall(-5.0)], 100.0)
+    assert with_fitted_planes(empty) is empty.camera.projection
+
+
+def test_the_far_plane_of_a_parallel_view_lies_behind_all_that_it_shows():
+    snapshot = parallel_view([wall(5.0), wall(7.0) + (900.0, 0.0, -60.0)], 100.0)
+    near = (snapshot.camera.projection[2, 3] + 1.0) / snapshot.camera.projection[2, 2]
+    # The second wall is beside the picture.
+    assert farthest_in_view(snapshot, near) == pytest.approx(5.0)
+    clip = with_fitted_planes(snapshot) @ (0.0, 0.0, -(5.0 + 0.1 * (5.0 - near)), 1.0)
+    assert clip[2] / clip[3] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_what_is_empty_in_a_parallel_view_is_blurred_by_no_clip_end():
+    lens = ThinLens(0.5, 2.0, Iris())
+    blurs = [
+        plan_frame(parallel_view([wall(5.0)], clip_end, lens)).empty_coc
+        for clip_end in (10.0, 10000.0)
+    ]
+    # Depths are single precision; it was a thousand times as wide.
+    assert blurs[1] == pytest.approx(blurs[0], rel=1e-3)
