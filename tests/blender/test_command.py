@@ -75,5 +75,4 @@ def test_tables_are_baked_in_colour(blender, tmp_path):
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["channels"] == 3
     assert (tmp_path / "lut.exr").stat().st_size > 100_000
-    # Nothing of colour-science's word about scipy.
     assert all(line.startswith("aplanat: ") for line in done.stderr.splitlines()), done.stderr

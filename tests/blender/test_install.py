@@ -58,13 +58,9 @@ def test_enabled_extension_registers_engine(blender):
 def test_wheels_are_importable(blender):
     done = blender.run_code(
         """
-        import warnings
         import OpenEXR
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            import colour
         from matplotlib.backends.backend_agg import FigureCanvasAgg
-        result = [OpenEXR.__version__, colour.__version__]
+        result = [OpenEXR.__version__, FigureCanvasAgg.__name__]
         """
     )
     assert all(done.result)

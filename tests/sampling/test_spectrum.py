@@ -34,6 +34,15 @@ def test_color_matching_is_the_published_observer():
     np.testing.assert_allclose(color_matching([450.0, 550.0, 600.0]), published, atol=1e-4)
 
 
+def test_table_is_the_librarys():
+    import colour
+
+    observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
+    # The table's own wavelengths: nothing is interpolated, so that only its written digits differ.
+    wavelengths = np.arange(380.0, 781.0)
+    np.testing.assert_allclose(color_matching(wavelengths), observer[wavelengths], atol=1e-12)
+
+
 def test_flat_spectrum_is_white():
     for count in (7, 25, 100):
         weights = rgb_weights(spectrum_wavelengths(count))
