@@ -65,7 +65,7 @@ REASONS = {
     "OBJECT_PT_shadow_terminator": "shadows begin where triangles turn away",
     "MATERIAL_PT_preview": "no previews of materials",
     "EEVEE_MATERIAL_PT_settings": "Aplanat's *Settings*, of what it follows",
-    "EEVEE_MATERIAL_PT_thickness": "glass is seen straight through",
+    "EEVEE_MATERIAL_PT_thickness": "glass is as thick as its mesh",
     "NODE_EEVEE_MATERIAL_PT_settings": "Aplanat's *Settings*, of what it follows",
     "VIEW3D_PT_shading_render_pass": "the viewport shows the picture; passes are in the render",
 }
