@@ -105,6 +105,8 @@ class SharedDrawings:
         if lens:
             small = rectangles[:, 2:].max(axis=1) <= _LARGEST * max(plan.width, plan.height)
             chosen = np.flatnonzero(kept & small)
+            if not chosen.size:
+                return []
             rows, triangles, eye = rows[chosen], triangles[chosen], eye[chosen]
             places, moved = lens.of_boxes(eye)
             rectangles, kept = lens.rectangles(places, moved)
