@@ -33,7 +33,8 @@ def plan_of(
         lens_views=((0.0, 0.0),),
         colors=None,
         draft=False,
-        rays=None,
+        artist=None,
+        cylinders=None,
     )
     return SimpleNamespace(
         bokeh=bokeh,

@@ -43,19 +43,13 @@ float real_lens_blur(sampler2D blur_tx, vec3 eye, RealLensParams params)
   return added * max((1.0 / depth - params.vergence.y) * params.vergence.z, 1.0);
 }
 
-// How much more light the whole iris shows of a small surface than a pinhole does: from its own nodes,
-// with the powers 0 to 3 of the vergence in the left half of the table, 4 to 7 in the right half.
+// How much larger the whole iris shows a small surface than a pinhole does.
 float real_lens_area(sampler2D area_tx, vec3 eye, RealLensParams params)
 {
   float depth = max(-eye.z, 1e-6);
-  vec2 size = vec2(textureSize(area_tx, 0)) * vec2(0.5, 1.0);
-  vec2 node = clamp((eye.xy / depth - params.grid.xy) * params.grid.zw, 0.0, 1.0) * (size - 1.0);
-  vec2 at = (node + 0.5) / size * vec2(0.5, 1.0);
-  vec4 low = textureLod(area_tx, at, 0.0);
-  vec4 high = textureLod(area_tx, at + vec2(0.5, 0.0), 0.0);
+  vec4 area = textureLod(area_tx, real_lens_place(eye.xy / depth, params), 0.0);
   float v = min(params.vergence.x / depth, 1.0);
-  vec4 powers = vec4(1.0, v, v * v, v * v * v);
-  return dot(low, powers) + powers.w * v * dot(high, powers);
+  return area.x + v * (area.y + v * (area.z + v * area.w));
 }
 
 // What a point of camera space is moved by, m. At the camera's plane and behind it: as just before it.

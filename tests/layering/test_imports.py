@@ -29,7 +29,7 @@ ROOMS = {
     "lens_bokeh.samples": ("optics", "optics.rays", "lens_bokeh.tables"),
     # The shape of the opening, of lens samples and discs alike.
     "lens_bokeh.openings": ("sampling",),
-    "lens_bokeh.look": ("lens_bokeh.openings", "lens_bokeh.tables", "lens_bokeh.samples"),
+    "lens_bokeh.look": ("lens_bokeh.openings", "lens_bokeh.tables"),
     "lens_io.glasses": ("optics", "sampling"),
     "lens_io.toml": ("optics", "optics.rays", "lens_io.glasses"),
     "lens_io.importers.draft": ("optics", "lens_io.glasses", "lens_io.toml"),

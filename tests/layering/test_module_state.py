@@ -17,7 +17,8 @@ MEMOS = {
     "files.version": ("version",),
     "device.shader_source": ("_join", "_places", "_read", "load"),
     "engine.planning.lens_plan": ("_plan", "_rays"),
-    "engine.bokeh.ray_tiles": ("ray_tiles",),
+    "engine.bokeh.artist_tiles": ("artist_tiles",),
+    "engine.bokeh.cylinder_tiles": ("cylinder_tiles",),
     "engine.bokeh.real_tiles": ("_beams", "tiles_work"),
     "engine.bokeh.look": (
         *("_lens_rows", "_light_on_radii", "_opening"),

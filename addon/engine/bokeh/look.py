@@ -28,8 +28,9 @@ from ...lens_bokeh.openings.blades import BladedIris
 from ...lens_bokeh.openings.masks import texel_centres
 from ...lens_bokeh.openings.shapes import opening_of
 from ...passes.bokeh.splat import MOST_RIMS, SPLAT_PARAMS
+from .artist_tiles import artist_tiles
+from .cylinder_tiles import cylinder_tiles
 from .look_keys import ArraysKey, LensKey
-from .ray_tiles import ray_tiles
 from .real_tiles import tiles_work
 
 # Texels along a side of the opening's layers, and of the iris masks that they are made from.
@@ -109,9 +110,12 @@ def describe_look(plan):
         "field": (1.0 / tangent, 0.0, 1.0, 0.0),
         "rims": np.zeros((MOST_RIMS, 4)),
     }
-    if _has_tiles(plan):
-        opened = _add_tiles(plan, bare, fresnel, arrays, params)
-        return ("TILES", *("CYLINDERS",) * _has_cylinders(bokeh.rays), *opened), arrays, params
+    if _has_lens_tiles(plan) or (bokeh.artist and not bokeh.draft):
+        opened = _add_tiles(plan, bare, fresnel, tangent, arrays, params)
+        return ("TILES", *opened), arrays, params
+    if bokeh.cylinders and not bokeh.draft:
+        opened = _add_tiles(plan, bare, fresnel, _largest_tangents(plan), arrays, params)
+        return ("TILES", "CYLINDERS", *opened), arrays, params
     arrays["opening_tx"] = _opening(bare, fresnel)
     variants = ()
     rows, strength = None, settings.profile_strength
@@ -137,28 +141,15 @@ def describe_look(plan):
     return variants, arrays, params
 
 
-def _has_tiles(plan):
+def _has_lens_tiles(plan):
     bokeh = plan.bokeh
     # A draft uses the on-axis pattern of the lens everywhere: its table is ready at once.
-    if plan.orthographic or bokeh.draft:
-        return False
-    if bokeh.real_lens is None:
-        # An artist's lens, or one with cylinders.
-        return bokeh.rays is not None
-    return bokeh.settings.vignetting == "LENS"
-
-
-def _has_cylinders(rays):
-    return rays is not None and not rays.of_revolution
-
-
-def _tiles_work(plan):
-    """Return the `TilesWork` of a lens."""
-    bokeh = plan.bokeh
-    if bokeh.rays is None:
-        return tiles_work(LensKey(bokeh.real_lens), plan.focus_distance, _largest_tangent(plan))
-    reach = _largest_tangents if _has_cylinders(bokeh.rays) else _largest_tangent
-    return ray_tiles(bokeh.rays, plan.real_lens.tables.aperture_radius, reach(plan))
+    return bool(
+        bokeh.real_lens
+        and bokeh.settings.vignetting == "LENS"
+        and not plan.orthographic
+        and not bokeh.draft
+    )
 
 
 def look_in_steps(plan):
@@ -174,9 +165,10 @@ def look_in_steps(plan):
     None
         After each step.
     """
-    if not _has_tiles(plan):
+    if not _has_lens_tiles(plan):
         return
-    work = _tiles_work(plan)
+    key = LensKey(plan.bokeh.real_lens)
+    work = tiles_work(key, plan.focus_distance, _largest_tangent(plan))
     # `make_look` tells what fails.
     with suppress(AplanatError):
         while work.step():
@@ -217,7 +209,7 @@ def make_look(plan, textures, field=None, lens=None):
             raise
         report = (f"lens '{real.prescription.name}' shapes no bokeh, a thin lens does: {error}",)
         variants, arrays, params = describe_look(
-            replace(plan, bokeh=replace(plan.bokeh, real_lens=None, rays=None))
+            replace(plan, bokeh=replace(plan.bokeh, real_lens=None))
         )
     uploaded = tuple((name, textures.texture(array, _texture)) for name, array in arrays.items())
     blocks = tuple(uniform_buffer(SPLAT_PARAMS.pack(**params | band)) for band in _bands(plan))
@@ -354,12 +346,19 @@ def _rims(rims, opening_and_profile, tangent):
     return splat_rims.light_left(rims, *opening_and_profile.parts, tangent)
 
 
-def _add_tiles(plan, appearance, fresnel, arrays, params):
+def _add_tiles(plan, appearance, fresnel, tangent, arrays, params):
     """Add the tiles of a lens, and an opening that is not even; return the variant for that."""
-    bokeh = plan.bokeh
-    cylinders = _has_cylinders(bokeh.rays)
-    strength = bokeh.settings.profile_strength if bokeh.real_lens or cylinders else 1.0
-    tiles, (first, last), soft = _tiles_work(plan).whole()
+    bokeh, strength = plan.bokeh, 1.0
+    if bokeh.artist:
+        found = artist_tiles(bokeh.artist, tangent)
+    elif bokeh.cylinders:
+        tables = plan.real_lens.tables
+        strength = bokeh.settings.profile_strength
+        found = cylinder_tiles(bokeh.cylinders, tables.aperture_radius, tables.light_grid, tangent)
+    else:
+        strength = bokeh.settings.profile_strength
+        found = tiles_work(LensKey(bokeh.real_lens), plan.focus_distance, tangent).whole()
+    tiles, (first, last), soft = found
     arrays["sharp_tx"], arrays["soft_tx"] = tiles.sharp, tiles.soft
     arrays["places_tx"] = tiles.places
     far = tiles.largest_tangent
@@ -370,7 +369,7 @@ def _add_tiles(plan, appearance, fresnel, arrays, params):
     if appearance == type(appearance)():
         return ()
     opening = arrays["opening_tx"] = _opening(appearance, fresnel)
-    arrays["left_tx"] = _tiles_left(ArraysKey(tiles, opening), cylinders)
+    arrays["left_tx"] = _tiles_left(ArraysKey(tiles, opening), bool(bokeh.cylinders))
     return ("OPENED",)
 
 

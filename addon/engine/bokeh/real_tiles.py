@@ -1,10 +1,6 @@
-"""Tiles of a real lens, for the discs of a frame: traced and drawn in steps, and kept.
+"""Tiles of a real lens, for the discs of a frame: traced and drawn in steps, and kept."""
 
-Of a lens whose samples are a thin lens' because sums of terms do not follow its rays; those of
-others are made of the samples' own (`ray_tiles`).
-"""
-
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 
@@ -14,7 +10,6 @@ from ...lens_bokeh.look.splat_profile import distance_from_h
 from ...lens_bokeh.tables.pupil_tracing import build_pupil_tables
 from ...optics.focus import focused
 from .lens_profiles import lens_pupil
-from .tiles_work import TilesWork
 
 # Focus distance over the depth of the nearest tile: nearer patterns only grow.
 _NEAREST = 4.0
@@ -23,10 +18,8 @@ _SHARED = 4
 _MM = 1000.0
 
 
-# Memo of its arguments alone: how far it has got does not change what it returns in the end.
-@lru_cache(maxsize=2)
-def tiles_work(lens, focus_distance, tangent):
-    """Return the `TilesWork` of a lens.
+class TilesWork:
+    """Making a lens' tiles at a focus, a step at a time.
 
     Parameters
     ----------
@@ -36,7 +29,48 @@ def tiles_work(lens, focus_distance, tangent):
     tangent : float
         Of the field at the last tiles.
     """
-    return TilesWork(partial(_made, lens, focus_distance, tangent))
+
+    def __init__(self, lens, focus_distance, tangent):
+        self._given = lens, focus_distance, tangent
+        self._steps = self._result = None
+
+    def step(self):
+        """Take a step; return whether there are more."""
+        if self._result is not None:
+            return False
+        # After an error it begins anew.
+        self._steps = self._steps or _made(*self._given)
+        try:
+            next(self._steps)
+        except StopIteration as end:
+            self._result, self._steps = end.value, None
+            return False
+        except Exception:
+            self._steps = None
+            raise
+        return True
+
+    def whole(self):
+        """Take all steps that are left.
+
+        Returns
+        -------
+        tiles : PupilTiles
+        w_range : tuple of 2 float
+            Of the first and last depth.
+        soft : float
+            c0 over the circle of confusion of infinity.
+        """
+        while self.step():
+            pass
+        return self._result
+
+
+# Memo of its arguments alone: how far it has got does not change what it returns in the end.
+@lru_cache(maxsize=2)
+def tiles_work(lens, focus_distance, tangent):
+    """Return the `TilesWork` of a lens."""
+    return TilesWork(lens, focus_distance, tangent)
 
 
 def _made(lens, focus_distance, tangent):
@@ -65,12 +99,7 @@ def _made(lens, focus_distance, tangent):
     ends = [k0 + k1 * vergence for vergence in (0.0, nearest)]
     w_range = tuple(sorted(c / (abs(c) + soft) for c in ends))
     shift = plane - beams.sensor
-    distorted = beams.distorted(shift, -k0 / k1)
-
-    def grids(field, vergences):
-        return beams.grids(field, vergences, shift, distorted)
-
-    tiles = yield from splat_pupil.tiles_in_steps(grids, beams.tangents, (k0, k1), soft, w_range)
+    tiles = yield from splat_pupil.tiles_in_steps(beams, shift, (k0, k1), soft, w_range)
     return tiles, w_range, soft / abs(k0)
 
 

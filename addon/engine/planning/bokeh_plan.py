@@ -11,7 +11,6 @@ import numpy as np
 
 from ...lens_bokeh.samples.artist_rays import ArtistRays
 from ...lens_bokeh.samples.cylinder_rays import CylinderRays
-from ...lens_bokeh.samples.lens_rays import LensRays
 from ...levels.choosing import coc_radius, extents
 from ...sampling.highlights import highlight_share, least_coc
 from ...sampling.iris import Iris
@@ -32,6 +31,7 @@ from .bokeh_search import (
     subpixels_of_lamps,
     subpixels_of_triangles,
 )
+from .lens_plan import artist_rays
 from .seen_from_edge import seen_from_edge
 
 # Depth that represents infinity, in focus distances: the circle of confusion differs by 1e-6.
@@ -95,8 +95,10 @@ class BokehPlan:
         None: one disc for all wavelengths.
     draft : bool
         A draft with bounded work, for a moving view; see `drafted`.
-    rays : LensRays, CylinderRays, ArtistRays or None
-        Of the samples, which shape the discs, too; see `shaping_rays`.
+    artist : ArtistRays or None
+        The artist's lens that shapes the discs.
+    cylinders : CylinderRays or None
+        The rays of a lens with cylinders, which shapes them.
     """
 
     settings: BokehSettings
@@ -121,8 +123,9 @@ class BokehPlan:
     search_projections: tuple[np.ndarray, np.ndarray] | None = None
     colors: BokehColors | None = None
     draft: bool = False
-    rays: LensRays | CylinderRays | ArtistRays | None = None
+    artist: ArtistRays | None = None
     reflecting: frozenset[int] = frozenset()
+    cylinders: CylinderRays | None = None
 
     @property
     def lens_views(self):
@@ -212,7 +215,7 @@ def plan_bokeh(snapshot, plan):
     if settings is None or lens is None or plan.coc_scale == 0.0 or not wanted:
         return None
     camera = snapshot.camera
-    shaping = shaping_lens(camera) or shaping_rays(plan)
+    shaping = shaping_lens(camera) or shaping_artist(camera) or shaping_cylinders(plan)
     if plan.real_lens and not shaping:
         # No discs are traced for it, and those of a thin lens would not be where the samples are.
         return None
@@ -281,7 +284,8 @@ def plan_bokeh(snapshot, plan):
         real_lens=shaping_lens(snapshot.camera),
         filter_width=filter_width(film.filter_kind, film.filter_size_px),
         colors=colors,
-        rays=shaping_rays(plan),
+        artist=shaping_artist(snapshot.camera),
+        cylinders=shaping_cylinders(plan),
     )
 
 
@@ -296,14 +300,18 @@ def shaping_lens(camera):
     return lens if lens and lens.shapes_bokeh and not camera.orthographic else None
 
 
-def shaping_rays(plan):
-    """Return the rays of the lens that shapes a frame's discs, as `sample_tables` takes them.
-
-    None where the samples are those of a thin lens.
-    """
+def shaping_cylinders(plan):
+    """Return the rays of a lens with cylinders that shapes a frame's discs, or None."""
     if plan.real_lens is None or plan.orthographic:
         return None
-    return plan.real_lens.rays
+    return plan.real_lens.cylinders
+
+
+def shaping_artist(camera):
+    """Return the artist's lens that shapes a camera's discs, as `ArtistRays`, or None."""
+    if camera.real_lens is not None or camera.artist is None or camera.orthographic:
+        return None
+    return artist_rays(camera)
 
 
 def _views_across(settings):

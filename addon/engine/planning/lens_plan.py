@@ -17,7 +17,7 @@ from ...lens_bokeh.samples.artist_rays import ArtistRays
 from ...lens_bokeh.samples.cylinder_rays import CylinderRays
 from ...lens_bokeh.samples.field_grid import field_grid
 from ...lens_bokeh.samples.lens_colors import LensColors
-from ...lens_bokeh.samples.lens_rays import LensRays, lens_rays
+from ...lens_bokeh.samples.lens_rays import lens_rays
 from ...lens_bokeh.samples.sample_tables import SampleTables, sample_tables
 from ...lens_bokeh.tables.artist_lens import opening_at
 from ...optics.distortion import divisor
@@ -67,8 +67,8 @@ class RealLensPlan:
         The colours of the picture are those; else those of a thin lens are drawn.
     is_dark : bool
         Next to no light comes through somewhere in the picture.
-    rays : LensRays, CylinderRays, ArtistRays or None
-        What the tables are made of.
+    cylinders : CylinderRays or None
+        The rays of a lens that has some.
     """
 
     tables: SampleTables
@@ -82,7 +82,7 @@ class RealLensPlan:
     strengths: tuple[float, float] = (1.0, 1.0)
     parts_colors: bool = False
     is_dark: bool = False
-    rays: LensRays | CylinderRays | ArtistRays | None = None
+    cylinders: CylinderRays | None = None
 
     def with_samples(self, count):
         """Return the plan for a number of samples."""
@@ -242,8 +242,9 @@ def _plan(key, thin, corners, outermost, colors):
         0.0,
         parts_colors=own,
         is_dark=bool(lacking.any()),
-        rays=rays,
     )
+    if not rays.of_revolution:
+        plan = replace(plan, cylinders=rays)
     if rays.colors is not None:
         plan = replace(plan, colors=rays.colors, strengths=colors[:2])
     moved, apart = _bounds(plan, np.append(places[:_TYPICAL], [[0.0, 0.0]], axis=0), colors)

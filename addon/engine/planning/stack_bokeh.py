@@ -10,8 +10,9 @@ from .bokeh_plan import (
     BokehPlan,
     filter_width,
     least_splatted,
+    shaping_artist,
+    shaping_cylinders,
     shaping_lens,
-    shaping_rays,
 )
 
 
@@ -65,9 +66,10 @@ def plan_stack_bokeh(snapshot, plan):
         world_depth=INFINITY * max(plan.focus_distance, 1.0),
         iris=camera.lens.iris,
         real_lens=shaping_lens(camera),
+        cylinders=shaping_cylinders(plan),
         filter_width=filter_width(film.filter_kind, film.filter_size_px),
         colors=colors,
-        rays=shaping_rays(plan),
+        artist=shaping_artist(camera),
     )
 
 

@@ -15,17 +15,10 @@ from ..tables.spline import spline_matrix
 from ..tables.undistorted import undistorted
 from .tile_drawing import RAYS, HalfGrid
 
-# Fields of tiles; denser outwards, where rims cut: tangents go with this power of their number.
-# Must agree with lib/bokeh/bokeh_look_lib.glsl.
-FIELDS, FIELD_ROOT = 10, 0.7
+FIELDS = 9
 _VERGENCES = 7
 # Terms that the scale of the picture changes by over the field; fields that tell distortion.
 _SCALE_TERMS, _LEAST_FIELDS = 3, 4
-
-
-def field_tangents(largest):
-    """Return the tangents of the fields of tiles, up to a largest one."""
-    return largest * np.linspace(0.0, 1.0, FIELDS) ** FIELD_ROOT
 
 
 class PupilBeams:
@@ -54,7 +47,7 @@ class PupilBeams:
 
     def __init__(self, tables, pupil, f_number, largest_tangent, largest_vergence):
         limit = np.tan(min(np.radians(tables.half_field_deg), 1.5))
-        self.tangents = field_tangents(min(largest_tangent, limit))
+        self.tangents = np.linspace(0.0, min(largest_tangent, limit), FIELDS)
         turn = np.linspace(0.0, np.pi, _VERGENCES)
         self.sensor = tables.sensor
         self._nodes = largest_vergence * 0.5 * (1.0 - np.cos(turn))
@@ -135,9 +128,11 @@ class PupilBeams:
 
         Returns
         -------
-        list of HalfGrid
-            y is from where the ray through the middle of the stop lands: the point's pinhole
-            picture.
+        grids : list of HalfGrid
+            y is relative to `centers`.
+        centers : ndarray of shape (V,)
+            Where the rays through the middle of the stop land: the points' pinhole pictures, mm
+            from an origin that is the same for all.
         """
         mix, count = self._mixed(vergences)
         image = self._image[field]
@@ -168,20 +163,17 @@ class PupilBeams:
         channels, shape = fine.shape[1], fine.shape[2:]
         mixed = mix @ fine.reshape(count, -1)
         grids = []
-        centers = (centers - centers.mean()).astype(np.float32)
-        for part, center in zip(mixed.reshape(-1, channels, *shape), centers, strict=True):
+        for part in mixed.reshape(-1, channels, *shape):
             x, y, stop_x, stop_y, weight, *rims = part
-            grids.append(
-                HalfGrid(x, y - center, stop_x, stop_y, tuple(rims), np.maximum(weight, 0.0))
-            )
-        return grids
+            grids.append(HalfGrid(x, y, stop_x, stop_y, tuple(rims), np.maximum(weight, 0.0)))
+        return grids, centers - centers.mean()
 
     def width_in_focus(self, shift, vergence):
         """Return the largest half width of a focused point's patterns over the fields, mm."""
         distorted, widths = self.distorted(shift, vergence), []
         for field in range(FIELDS):
-            (grid,) = self.grids(field, np.array([vergence]), shift, distorted)
-            widths.append(grid.half_width())
+            grids, _ = self.grids(field, np.array([vergence]), shift, distorted)
+            widths += grids[0].bounds()[1:]
         return float(max(widths))
 
 

@@ -5,12 +5,11 @@ in the meridional frame: the picture's azimuth of the point is +y. It holds the 
 of its texels the place in the stop that the light has come through, so that an iris of any shape
 can be laid over it at any azimuth. A tile spans its pattern, wherever that lies: tiles of
 neighbouring fields and depths can be mixed texel by texel while places and sizes are mixed as
-numbers. So that their cores can be mixed, too, texels are finer in the middle where half of the
-light lands close together (`tile_drawing.texel_places`).
+numbers.
 
-Fields are denser outwards (`pupil_beams.field_tangents`), depths even in w
-(`lens_bokeh.tables.mapping`). Tiles carry unit light: how much reaches the picture is told by
-`SampleTables.area`.
+Fields are even in the tangent of the angle, depths even in w (`lens_bokeh.tables.mapping`). Tiles
+carry unit light: what vignetting takes from the energy is left out, as it is for the rest of the
+picture. Beams are traced for a few vergences and interpolated.
 """
 
 from dataclasses import dataclass
@@ -19,23 +18,11 @@ import numpy as np
 
 from .opening import LEAST_BLUR, extent
 from .pupil_beams import FIELDS
-from .sample_beams import ACROSS
-from .tile_drawing import (
-    STOP_OFFSET,
-    STOP_SCALE,
-    WholeGrid,
-    blur_matrix,
-    blurred,
-    core_share,
-    draw_tile,
-)
+from .tile_drawing import STOP_OFFSET, STOP_SCALE, blur_matrix, blurred, draw_tile
 
-DEPTHS = 32
-# Of a lens with cylinders, which has more fields.
-DEPTHS_ACROSS = 9
-# Blur of the tiles in units of half the width of their cores (`core_share`), as the side of a box
-# of the same variance; the first one is what texels of the sharp tiles do. Must agree with
-# lib/bokeh/bokeh_look_lib.glsl.
+DEPTHS = 25
+# Blur of the tiles in units of half their width, as the side of a box of the same variance; the
+# first one is what texels of the sharp tiles do. Must agree with lib/bokeh/bokeh_look_lib.glsl.
 BLURS = (1.0 / 48.0, 1.0 / 20.0, 1.0 / 9.0, 1.0 / 4.0, 1.0 / 2.0)
 SHARP, SOFT = 128, 64
 AZIMUTHS = 48
@@ -52,18 +39,15 @@ class PupilTiles:
     Parameters
     ----------
     sharp : ndarray of float32, shape (FIELDS * DEPTHS, SHARP, SHARP, 4)
-        Light of the texels of a square from -e to e, e = 1 + the blur, over the area of even ones:
-        the integral is 1 over the tile's own units. Then light times the place in the stop, x and
-        y.
+        Density of light in a square from -e to e, e = 1 + the blur; integral 1 over the tile's
+        own units. Then density times the place in the stop, x and y.
     soft : ndarray of float32, shape ((len(BLURS) - 1) * FIELDS * DEPTHS, SOFT, SOFT, 4)
         The same with more blur, blur by blur.
-    places : ndarray of float32, shape (2 FIELDS, DEPTHS, 4)
+    places : ndarray of float32, shape (FIELDS, DEPTHS, 4)
         Outward shift of the pattern's middle and half its width across and along the azimuth,
-        all over ``|c| + c0``. Then, for all fields again, how much finer texels are in the middle
-        of the tile, across and along.
-        Of a lens with cylinders: shift and half width, both along x and y.
-    largest_tangent : float or tuple of 2 float
-        Of the last field; along x and y.
+        all over ``|c| + c0``.
+    largest_tangent : float
+        Of the last field.
     """
 
     sharp: np.ndarray
@@ -77,20 +61,18 @@ def reach(blur):
     return 1.0 + blur
 
 
-def tiles_in_steps(grids, tangents, blur, soft, w_range):
+def tiles_in_steps(beams, shift, blur, soft, w_range):
     """Draw the tiles of a lens at one focus distance, field by field.
 
     Parameters
     ----------
-    grids : callable
-        Returns the `HalfGrid` or `WholeGrid` of each vergence, of the number of a field and an
-        array of vergences; places are from where the ray through the middle of the iris lands.
-    tangents : ndarray of shape (FIELDS,), or tuple of 2 ndarray of shape (ACROSS,)
-        Of the fields.
+    beams : PupilBeams
+    shift : float
+        Sensor's distance behind the sensor plane of the beams' tables, mm.
     blur : tuple of 2 float
-        k0 and k1: ``c = k0 + k1 V``, in the grids' unit of length.
+        k0 in mm, k1 in mm^2: ``c = k0 + k1 V``.
     soft : float
-        c0.
+        c0, mm.
     w_range : tuple of 2 float
         Rising.
 
@@ -103,60 +85,52 @@ def tiles_in_steps(grids, tangents, blur, soft, w_range):
     -------
     PupilTiles
     """
-    cylinders = isinstance(tangents, tuple)
-    fields, count = (ACROSS**2, DEPTHS_ACROSS) if cylinders else (FIELDS, DEPTHS)
-    places = np.zeros((2 * fields, count, 4), np.float32)
-    soft_tiles = np.zeros((len(BLURS) - 1, fields, count, SOFT, SOFT, 4), np.float32)
-    sharp_tiles = np.zeros((fields, count, SHARP, SHARP, 4), np.float32)
-    depths = np.linspace(*w_range, count)
+    places = np.zeros((FIELDS, DEPTHS, 4), np.float32)
+    soft_tiles = np.zeros((len(BLURS) - 1, FIELDS, DEPTHS, SOFT, SOFT, 4), np.float32)
+    sharp_tiles = np.zeros((FIELDS, DEPTHS, SHARP, SHARP, 4), np.float32)
+    depths = np.linspace(*w_range, DEPTHS)
     signed = soft * depths / (1.0 - np.abs(depths))
     vergences = np.maximum((signed - blur[0]) / blur[1], 0.0)
     sizes = np.abs(signed) + soft
-    for i in range(fields):
-        for j, grid in enumerate(grids(i, vergences)):
-            tile, bounds, finer = draw_tile(grid, SHARP, reach(BLURS[0]))
-            places[i, j, : len(bounds)] = np.array(bounds) / sizes[j]
-            places[fields + i, j, :2] = finer
-            mirrored = not isinstance(grid, WholeGrid)
-            _store_blurred(sharp_tiles[i, j], soft_tiles[:, i, j], tile, finer, mirrored)
+    spans = [reach(width) for width in BLURS]
+    distorted = beams.distorted(shift, -blur[0] / blur[1])
+    matrices = [
+        blur_matrix(width, SHARP, spans[0], SOFT, span)
+        for width, span in zip(BLURS[1:], spans[1:], strict=True)
+    ]
+    for i in range(FIELDS):
+        grids, centers = beams.grids(i, vergences, shift, distorted)
+        for j, grid in enumerate(grids):
+            tile, (middle, half_x, half_y) = draw_tile(grid, SHARP, spans[0])
+            places[i, j, :3] = np.array([middle - centers[j], half_x, half_y]) / sizes[j]
+            store(sharp_tiles[i, j], tile, 0)
+            for layer, soft_tile in enumerate(blurred(tile, matrices), 1):
+                store(soft_tiles[layer - 1, i, j], soft_tile, layer)
         yield
     return PupilTiles(
         sharp_tiles.reshape(-1, SHARP, SHARP, 4),
         soft_tiles.reshape(-1, SOFT, SOFT, 4),
         places,
-        tuple(float(each[-1]) for each in tangents) if cylinders else float(tangents[-1]),
+        float(beams.tangents[-1]),
     )
 
 
-def _store_blurred(sharp, soft, tile, finer, mirrored):
-    """Store a tile in a texture's place, and with more blur in others.
-
-    Parameters
-    ----------
-    sharp : ndarray of shape (SHARP, SHARP, 4)
-    soft : ndarray of shape (len(BLURS) - 1, SOFT, SOFT, 4)
-    tile : ndarray of shape (3, SHARP, SHARP)
-        Light of the texels, and so on.
-    finer : tuple of 2 float
-        Along x and y, as of `texel_places`.
-    mirrored : bool
-        Whether the tile is its own mirror image.
-    """
-    _store(sharp, tile, 0)
-    pairs = []
-    for blur in BLURS[1:]:
-        spans = SHARP, reach(BLURS[0]), SOFT, reach(blur)
-        pairs.append([blur_matrix(blur * core_share(each), *spans, each) for each in finer])
-    if mirrored:
-        every = blurred(tile, pairs)
-    else:
-        every = (along @ tile @ across.T for across, along in pairs)
-    for layer, (place, soft_tile) in enumerate(zip(soft, every, strict=True), 1):
-        _store(place, soft_tile, layer)
+def pupil_tiles(*given):
+    """Draw the tiles of a lens at one focus distance at once; as `tiles_in_steps`."""
+    return result_of(tiles_in_steps(*given))
 
 
-def _store(place, tile, layer):
-    """Store the light of a tile's texels, (3, size, size), with the light 1 over its own units."""
+def result_of(steps):
+    """Take all steps of a generator and return its result."""
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
+
+
+def store(place, tile, layer):
+    """Store a tile, (3, size, size), in a texture's place with its light 1 over its own units."""
     texel = 2.0 * reach(BLURS[layer]) / len(place)
     light = float(tile[0].sum(dtype=np.float64)) * texel**2
     np.multiply(np.moveaxis(tile, 0, -1), np.float32(1.0 / max(light, 1e-30)), out=place[..., :3])
@@ -198,14 +172,11 @@ def light_left(tiles, opening):
 
 def _light_in_stop(tiles):
     """Light of the tiles over places in the stop, shape (blurs * FIELDS * DEPTHS, places)."""
-    every = [tiles.sharp, *tiles.soft.reshape(len(BLURS) - 1, -1, SOFT, SOFT, 4)]
+    sharp = tiles.sharp.reshape(-1, SHARP // _STEP, _STEP, SHARP // _STEP, _STEP, 4)
+    every = [sharp.sum(axis=(2, 4)), *tiles.soft.reshape(len(BLURS) - 1, -1, SOFT, SOFT, 4)]
     result = np.zeros((len(BLURS), FIELDS * DEPTHS, _PLACES**2), np.float32)
     for lit_tiles, rows in zip(every, result, strict=True):
-        for tile, row in zip(lit_tiles, rows, strict=True):
-            if len(tile) == SHARP:
-                parts = tile.reshape(SHARP // _STEP, _STEP, SHARP // _STEP, _STEP, 4)
-                tile = parts.sum(axis=(1, 3))
-            tile = tile.reshape(-1, 4)
+        for tile, row in zip(lit_tiles.reshape(FIELDS * DEPTHS, -1, 4), rows, strict=True):
             lit = tile[:, 0] > 1e-6 * tile[:, 0].max()
             light = tile[lit, 0]
             stop = tile[lit, 1:3] / light[:, None] * STOP_SCALE - STOP_OFFSET

@@ -6,7 +6,7 @@ light times the place in the stop that it has come through.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 
@@ -18,9 +18,6 @@ _LEVELS = 6
 _CLEAR = 0.1
 # Least half width of a pattern.
 _NARROWEST = 1e-6
-# Share of the light that is the core of a pattern. That of an even disc is so many times as narrow
-# as the disc; texels of narrower ones are finer, of wider ones (bright rims) coarser, down to this.
-_CORE, _FAR, _LEAST_FINER = 0.5, 2.5, 0.0
 # Places in the stop are stored as (s + 1.5) / 3, to be positive.
 STOP_OFFSET, STOP_SCALE = 1.5, 3.0
 
@@ -60,10 +57,6 @@ class HalfGrid:
         bottom, top = float(y.min()), float(y.max())
         half_x = max(float(np.abs(x).max()), _NARROWEST)
         return 0.5 * (bottom + top), half_x, max(0.5 * (top - bottom), _NARROWEST)
-
-    def half_width(self):
-        """Return half the width of the pattern inside all rims, along its wider axis."""
-        return max(self.bounds()[1:])
 
     def _outermost(self):
         """Return where rays inside all rims land, and those at the rims."""
@@ -113,17 +106,13 @@ class WholeGrid(HalfGrid):
         middles = (0.5 * (low + high) for low, high in ends)
         return *middles, *(max(0.5 * (high - low), _NARROWEST) for low, high in ends)
 
-    def half_width(self):
-        """Return half the width of the pattern inside all rims, along its wider axis."""
-        return max(self.bounds()[2:])
-
 
 def draw_tile(grid, size, span):
     """Draw the pattern of a beam.
 
     Parameters
     ----------
-    grid : HalfGrid or WholeGrid
+    grid : HalfGrid
     size : int
         Texels along a side.
     span : float
@@ -133,94 +122,28 @@ def draw_tile(grid, size, span):
     -------
     tile : ndarray of float32, shape (3, size, size)
         Light; light times `stored` place in the stop as the camera sees it, x and y.
-    bounds : tuple of float
-        As `bounds` of the grid, but that the middle is nearer to the core of a pattern whose other
-        light lands far away.
-    finer : tuple of 2 float
-        How much finer texels are in the core along x and y; see `texel_places`.
+    bounds : tuple of 3 float
+        As `HalfGrid.bounds`.
     """
-    light = grid.light()
-    lit = light > 0.0
-    energy = light[lit]
-    whole, bounds = isinstance(grid, WholeGrid), grid.bounds()
-    if not whole:
-        bounds = (0.0, *bounds)
-    ends = []
-    for part, middle, half in zip((grid.x, grid.y), bounds[:2], bounds[2:], strict=True):
-        # The other half is its mirror image.
-        core = _quantile(part[lit], energy, 0.5) if whole or part is grid.y else 0.0
-        ends.append(_focused_on_core(part[lit], energy, middle, half, core))
-    middles, halves, finer = zip(*ends, strict=True)
-    tile = _drawn(grid, light, (*middles, *halves), size, span, finer)
-    if whole:
-        return tile, (*middles, *halves), finer
-    # Its places in the stop are mirrored, too.
+    middle, half_x, half_y = bounds = grid.bounds()
+    tile = _drawn(grid, (0.0, middle, half_x, half_y), size, span)
+    # The other half: its places in the stop are mirrored, too.
     mirrored = tile[:, :, ::-1].copy()
     mirrored[1] = mirrored[0] - mirrored[1]
-    return tile + mirrored, (middles[1], *halves), finer
+    return tile + mirrored, bounds
 
 
-def texel_places(size, finer):
-    """Return where the texels of a tile lie along an axis, -1 to 1, and how wide they are.
-
-    In a tile texel t, -1 to 1, shows the place ``t / (1 + f (1 - |t|))`` of the tile's width: those
-    of the middle are 1 + f times as fine as even ones.
-
-    Parameters
-    ----------
-    size : int
-    finer : float
-        f.
-
-    Returns
-    -------
-    places, widths : ndarray of shape (size,)
-        Widths over those of even texels.
-    """
-    at = (np.arange(size) + 0.5) * (2.0 / size) - 1.0
-    scale = 1.0 + finer * (1.0 - np.abs(at))
-    return at / scale, (1.0 + finer) / scale**2
+def draw_whole_tile(grid, size, span):
+    """Draw the pattern of a beam; as `draw_tile`, of a `WholeGrid`."""
+    bounds = grid.bounds()
+    return _drawn(grid, bounds, size, span), bounds
 
 
-def core_share(finer):
-    """Return the half width of a pattern's core, as an even disc's, over that of the pattern."""
-    return _FAR / (_FAR + finer)
-
-
-def _focused_on_core(places, energy, middle, half, core):
-    """Return middle and half width of a pattern along an axis, and how much finer its core is.
-
-    The middle moves to `core` where much of the width has little of the energy.
-    """
-    if not energy.sum() > 0.0:
-        return middle, half, 0.0
-    far = half / max(_quantile(np.abs(places - core), energy, _CORE), 1e-3 * half)
-    moved = float(np.clip(far - _FAR, 0.0, 1.0)) * (core - middle)
-    middle, half = middle + moved, half + abs(moved)
-    far = half / max(_quantile(np.abs(places - middle), energy, _CORE), 1e-2 * half)
-    # Cores of all patterns then have nearly the same texels, so that tiles can be mixed.
-    return middle, half, max(far - _FAR, _LEAST_FINER)
-
-
-def _quantile(values, weights, share):
-    if not len(values):
-        return 0.0
-    order = np.argsort(values)
-    sums = np.cumsum(weights[order])
-    return float(values[order[np.searchsorted(sums, share * sums[-1])]])
-
-
-def _in_texels(places, size, finer):
-    """Return texels of places that are -1 to 1 over the width of a tile."""
-    if finer:
-        places = places * ((1.0 + finer) / (1.0 + finer * np.abs(places)))
-    return (places + 1.0) * (0.5 * size)
-
-
-def _drawn(grid, light, bounds, size, span, finer):
+def _drawn(grid, bounds, size, span):
     middle_x, middle, half_x, half_y = bounds
-    x = _in_texels((grid.x - middle_x) * (1.0 / (half_x * span)), size, finer[0])
-    y = _in_texels((grid.y - middle) * (1.0 / (half_y * span)), size, finer[1])
+    light = grid.light()
+    x = ((grid.x - middle_x) * (1.0 / (half_x * span)) + 1.0) * (0.5 * size)
+    y = ((grid.y - middle) * (1.0 / (half_y * span)) + 1.0) * (0.5 * size)
     lit = light > 0.0
     # The camera sees the stop turned by half a turn against the sensor's picture.
     stored = [light] + [
@@ -231,67 +154,57 @@ def _drawn(grid, light, bounds, size, span, finer):
     return _deposited(x[lit], y[lit], wide_x, wide_y, [layer[lit] for layer in stored], size)
 
 
-# Memo of its arguments alone, which are constants but for the rare patterns with finer cores.
-@lru_cache(maxsize=16)
-def blur_matrix(width, size, span, to_size, to_span, finer=0.0):
-    """Return the matrix that blurs the light of texels along an axis to that of others.
-
-    But for a factor.
+# Memo of its arguments alone, which are constants: one for each layer.
+@cache
+def blur_matrix(width, size, span, to_size, to_span):
+    """Return the matrix that blurs the texels of a tile along an axis and samples them at others.
 
     Parameters
     ----------
     width : float
-        Side of the box whose variance the blur has, in units of half the pattern's width, with
-        what texels blur by themselves.
+        Side of the box whose variance the blur has, in units of half the pattern's width.
     size, to_size : int
         Texels of the tile, and of the blurred one.
     span, to_span : float
         Half their widths.
-    finer : float
-        Of both, as of `texel_places`.
 
     Returns
     -------
     ndarray of float32, shape (to_size, size)
     """
-    (source, wide), (at, to_wide) = (texel_places(count, finer) for count in (size, to_size))
-    source, at = source * span, at * to_span
-    # Texels blur by themselves: those of the tile as boxes, the others as they are interpolated.
-    boxes = np.square(wide * (2.0 * span / size))
-    tents = 2.0 * np.square(to_wide * (2.0 * to_span / to_size))[:, None]
-    # At least so much that no texel falls between others.
-    left = np.maximum(width**2 - boxes - tents, np.maximum(0.5 * tents, 3.0 * boxes))
-    blur = np.exp(-6.0 * np.square(at[:, None] - source) / left) / np.sqrt(left) * to_wide[:, None]
+    source = (np.arange(size) + 0.5) * (2.0 * span / size) - span
+    at = (np.arange(to_size) + 0.5) * (2.0 * to_span / to_size) - to_span
+    blur = np.exp(-0.5 * ((at[:, None] - source) * np.sqrt(12.0) / width) ** 2)
     return blur.astype(np.float32)
 
 
-def blurred(tile, pairs):
+def blurred(tile, matrices):
     """Blur a tile that is its own mirror image, as `draw_tile` returns it.
 
     Half of it is blurred, as is half of what its places in the stop are off the mirror line; that
-    is a third of the work of ``along @ tile @ across.T``.
+    is a third of the work of ``matrix @ tile @ matrix.T``.
 
     Parameters
     ----------
     tile : ndarray of float32, shape (3, size, size)
-    pairs : sequence of 2 ndarray
-        Of `blur_matrix`, across and along the mirror line.
+    matrices : sequence of ndarray
+        Of `blur_matrix`.
 
     Yields
     ------
     ndarray of float32, shape (3, to_size, to_size)
-        With each of the pairs.
+        With each of the matrices.
     """
     middle = tile.shape[-1] // 2
     half = tile[..., :middle].copy()
     half[1] -= 0.5 * half[0]
-    for matrix, along in pairs:
+    for matrix in matrices:
         across = len(matrix) // 2
         left, right = matrix[:across, :middle], matrix[:across, : -middle - 1 : -1]
         even, odd = (left + right).T, (left - right).T
         part = np.stack([half[0] @ even, half[1] @ odd, half[2] @ even])
-        part = along @ part
-        whole = np.empty((3, len(along), 2 * across), np.float32)
+        part = matrix @ part
+        whole = np.empty((3, len(matrix), 2 * across), np.float32)
         whole[..., :across] = part
         whole[..., across:] = part[..., ::-1]
         whole[1, :, across:] *= -1.0

@@ -20,7 +20,6 @@ from functools import cached_property
 import numpy as np
 
 from .disc_terms import disc_terms
-from .enlarged import enlarged
 from .field_grid import FieldGrid
 from .landing import landed, spread_places
 from .seen_fields import SeenFields, fields_on_circles, seen_fields
@@ -128,8 +127,25 @@ class SampleTables:
 
     @cached_property
     def area(self):
-        """How much more light small surfaces have than a pinhole shows; see `enlarged`."""
-        return enlarged(self)
+        """How much larger the whole iris shows small surfaces than a pinhole does.
+
+        Returns
+        -------
+        ndarray of float32, shape (rows, columns, 4)
+            Mean over the iris: coefficients of the powers of V over the largest vergence.
+        """
+        grid = self.moves_grid
+        moves = self.moves(spread_places(_BLUR_PLACES) / (self.ratio, 1.0) * self.aperture_radius)
+        step = (grid.high - grid.low) / (grid.columns - 1, grid.rows - 1)
+        at = 0.5 - 0.5 * np.cos((np.arange(4) + 0.5) / 4.0 * np.pi)
+        powers = at[:, None] ** np.arange(4)
+        seen = np.einsum("vk,nyxkc->vnyxc", powers, moves)
+        up, right = (
+            np.gradient(seen, size, axis=axis) for size, axis in ((step[1], 2), (step[0], 3))
+        )
+        larger = (1.0 + right[..., 0]) * (1.0 + up[..., 1]) - right[..., 1] * up[..., 0]
+        found = np.einsum("kv,vyx->yxk", np.linalg.inv(powers), np.abs(larger).mean(axis=1))
+        return found.astype(np.float32)
 
     def turns(self, lens_positions, colors=None):
         """Tables of how displacements change with the place on the lens.

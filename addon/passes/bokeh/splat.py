@@ -45,7 +45,6 @@ _LOOK_VARYINGS = {
     "TILES": (
         ("FLAT FLOAT", "v_row"),
         ("FLAT VEC2", "v_tile_at"),
-        ("FLAT VEC2", "v_tile_finer"),
         ("FLAT FLOAT", "v_upright"),
     ),
     "OPENED": (("FLAT VEC3", "v_left_lower"), ("FLAT VEC3", "v_left_upper")),

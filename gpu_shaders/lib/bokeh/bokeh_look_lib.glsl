@@ -5,7 +5,7 @@
 #define BOKEH_LOOK_LIB_GLSL
 #include "lib/bokeh/opening_lib.glsl"
 
-// Blur of the tiles in units of half the width of their cores, and how they are counted: splat_pupil.py.
+// Blur of the tiles in units of half their width, and how they are counted: splat_pupil.py.
 #define TILE_BLUR_SHARP (1.0 / 48.0)
 #define TILE_BLUR_SOFT vec4(1.0 / 20.0, 1.0 / 9.0, 1.0 / 4.0, 1.0 / 2.0)
 #ifdef CYLINDERS
@@ -14,12 +14,9 @@
 #define TILE_FIELDS 25
 #define TILE_DEPTHS 9
 #else
-#define TILE_FIELDS 10
-#define TILE_DEPTHS 32
-#define TILE_FIELD_ROOT 0.7
+#define TILE_FIELDS 9
+#define TILE_DEPTHS 25
 #endif
-// Half width of an even disc over that of half of its light: tile_drawing.py.
-#define TILE_FAR 2.5
 #define STOP_OFFSET 1.5
 #define STOP_SCALE 3.0
 
@@ -92,29 +89,21 @@ mat2 tile_axes(vec2 chief)
 // all divided by |c| + c0. `at`: field and depth, counted in tiles.
 vec3 tile_place(sampler2D tx, vec2 at)
 {
-  return texture(tx, (at.yx + 0.5) / vec2(TILE_DEPTHS, 2 * TILE_FIELDS)).xyz;
-}
-
-// How much finer texels are in the middle of the tile, across and along the azimuth.
-vec2 tile_finer(sampler2D tx, vec2 at)
-{
-  at.x += float(TILE_FIELDS);
-  return texture(tx, (at.yx + 0.5) / vec2(TILE_DEPTHS, 2 * TILE_FIELDS)).xy;
+  return texture(tx, (at.yx + 0.5) / vec2(TILE_DEPTHS, TILE_FIELDS)).xyz;
 }
 
 #ifdef CYLINDERS
 // Shift of the middle of a pattern, and half its width, each along x and y, all divided by |c| + c0.
-// `at`: field along x, and depth; `up`: field along y; `first`: 0, or TILE_FIELDS for how much finer
-// texels are in the middle.
-vec4 tile_place_of(sampler2D tx, vec2 at, float up, int first)
+// `at`: field along x, and depth; `up`: field along y.
+vec4 tile_place_of(sampler2D tx, vec2 at, float up)
 {
-  vec2 size = vec2(TILE_DEPTHS, 2 * TILE_FIELDS);
+  vec2 size = vec2(TILE_DEPTHS, TILE_FIELDS);
   vec2 low = clamp(floor(vec2(at.x, up)), vec2(0.0), vec2(TILE_ACROSS - 2));
   vec2 part = vec2(at.x, up) - low;
   float row = low.y * float(TILE_ACROSS) + low.x;
   vec4 places[4];
   for (int i = 0; i < 4; i++) {
-    float field = float(first) + row + float(i % 2) + float(i / 2) * float(TILE_ACROSS);
+    float field = row + float(i % 2) + float(i / 2) * float(TILE_ACROSS);
     places[i] = texture(tx, vec2(at.y + 0.5, field + 0.5) / size);
   }
   return mix(mix(places[0], places[1], part.x), mix(places[2], places[3], part.x), part.y);
@@ -126,17 +115,10 @@ vec3 tile_corner(sampler2DArray tx, vec2 uv, float first, ivec2 at)
   return texture(tx, vec3(uv, first + float(at.x * TILE_DEPTHS + at.y))).rgb;
 }
 
-// Tiles blurred to one degree: light, and light times the place in the stop. Tiles hold the light of
-// their texels, so that mixtures of some whose texels are finer and coarser keep it.
-vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at, vec2 finer)
+// Tiles blurred to one degree: light, and light times the place in the stop.
+vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at)
 {
-  vec2 uv = place / (1.0 + blur);
-  // Texels are finer in the middle: tile_drawing.py.
-  vec2 nearer = 1.0 / (1.0 + finer * abs(uv));
-  vec2 texels = (1.0 + finer) * nearer * nearer;
-  float dense = texels.x * texels.y;
-  uv *= (1.0 + finer) * nearer;
-  uv = uv * 0.5 + 0.5;
+  vec2 uv = place / (1.0 + blur) * 0.5 + 0.5;
   if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) {
     return vec3(0.0);
   }
@@ -155,7 +137,7 @@ vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at,
                      part.y);
     rows[i] = mix(left, right, part.x);
   }
-  return dense * mix(rows[0], rows[1], v_tile_up - float(above));
+  return mix(rows[0], rows[1], v_tile_up - float(above));
 #else
   ivec2 low = ivec2(clamp(floor(at), vec2(0.0), vec2(TILE_FIELDS - 2, TILE_DEPTHS - 2)));
   vec2 part = at - vec2(low);
@@ -165,13 +147,12 @@ vec3 tile_layer(sampler2DArray tx, vec2 place, float blur, float first, vec2 at,
   vec3 far = mix(tile_corner(tx, uv, first, low + ivec2(1, 0)),
                  tile_corner(tx, uv, first, low + ivec2(1, 1)),
                  part.y);
-  return dense * mix(near, far, part.x);
+  return mix(near, far, part.x);
 #endif
 }
 
 // Light and place in the stop at a place of a tile, in the meridional frame.
-vec3 tile_light(
-    sampler2DArray sharp_tx, sampler2DArray soft_tx, vec2 place, float blur, vec2 at, vec2 finer)
+vec3 tile_light(sampler2DArray sharp_tx, sampler2DArray soft_tx, vec2 place, float blur, vec2 at)
 {
   float count = float(TILE_FIELDS * TILE_DEPTHS);
   float wide = clamp(blur, TILE_BLUR_SHARP, TILE_BLUR_SOFT.w);
@@ -183,9 +164,9 @@ vec3 tile_light(
   float high = TILE_BLUR_SOFT[layer];
   // Variances add up: the mixture of two layers has the variance of the blur.
   float share = (wide * wide - low * low) / (high * high - low * low);
-  vec3 softer = tile_layer(soft_tx, place, high, float(layer) * count, at, finer);
-  vec3 sharper = (layer == 0) ? tile_layer(sharp_tx, place, low, 0.0, at, finer) :
-                                tile_layer(soft_tx, place, low, float(layer - 1) * count, at, finer);
+  vec3 softer = tile_layer(soft_tx, place, high, float(layer) * count, at);
+  vec3 sharper = (layer == 0) ? tile_layer(sharp_tx, place, low, 0.0, at) :
+                                tile_layer(soft_tx, place, low, float(layer - 1) * count, at);
   vec3 light = mix(sharper, softer, share);
   vec2 stop = light.yz / max(light.x, 1e-12) * STOP_SCALE - STOP_OFFSET;
   return vec3(light.x, stop);

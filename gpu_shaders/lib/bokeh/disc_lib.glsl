@@ -37,7 +37,7 @@ vec3 disc_density(vec2 place, out vec2 lens)
   }
 #endif
 #ifdef TILES
-  vec3 light = tile_light(sharp_tx, soft_tx, place, v_blur, v_tile_at, v_tile_finer);
+  vec3 light = tile_light(sharp_tx, soft_tx, place, v_blur, v_tile_at);
   // The even disc that the lens' pattern is blended with (Lens Profile below 1).
   float edge = clamp(0.5 + (1.0 - length(place)) / max(v_blur, 1e-6), 0.0, 1.0);
   light.x = mix(edge / 3.14159265, light.x, splat_buf.rows.w);

@@ -18,13 +18,12 @@ struct SplatDisc {
   bool drawn;     // the light of the source has a disc in this band
   vec2 center;    // px
   float share;    // of the opening's unit square that a pixel covers
-  float widest;   // radius with its blur, px; TILES: of the core
+  float widest;   // radius with its blur, px
   vec2 reach;     // half the square that holds it: TILES: on the opening, else px
   vec4 pattern;   // TILES: middle and half width of the lens' pattern, px
   vec2 origin;    // place on the opening of the centre,
   mat2 axes;      // and how it changes by px
-  float farthest; // light from the centre, px,
-  float core;     // and most of it
+  float farthest; // light from the centre, px
   bool is_dot;    // about a pixel wide: no layer of the opening has such a blur
   vec2 tent;      // half width of a dot, px
 };
@@ -135,29 +134,18 @@ SplatDisc splat_disc(vec4 a, vec4 b)
   v_tile_up = node.y;
   v_tile_at = vec2(node.x, v_row * float(TILE_DEPTHS - 1));
   // The middle of the pattern, and half its width.
-  vec4 pattern = tile_place_of(places_tx, v_tile_at, v_tile_up, 0);
-  v_tile_finer = tile_place_of(places_tx, v_tile_at, v_tile_up, TILE_FIELDS).xy;
+  vec4 pattern = tile_place_of(places_tx, v_tile_at, v_tile_up);
 #else
-  float tangent = clamp(length(v_chief) * splat_buf.field.x, 0.0, 1.0);
-  v_tile_at = vec2(pow(tangent, 1.0 / TILE_FIELD_ROOT) * float(TILE_FIELDS - 1),
+  v_tile_at = vec2(clamp(length(v_chief) * splat_buf.field.x, 0.0, 1.0) * float(TILE_FIELDS - 1),
                    v_row * float(TILE_DEPTHS - 1));
   vec4 pattern = vec4(0.0, tile_place(places_tx, v_tile_at));
-  v_tile_finer = tile_finer(places_tx, v_tile_at);
 #endif
   pattern *= radius + splat_buf.rows.z;
   pattern = mix(vec4(0.0, 0.0, radius, radius), pattern, splat_buf.rows.w);
-  // Half width of the pattern's core, which is what the blur of tiles is counted in.
-  vec2 core = pattern.zw * (TILE_FAR / (TILE_FAR + v_tile_finer * splat_buf.rows.w));
-  radius = sqrt(core.x * core.y);
+  radius = sqrt(pattern.z * pattern.w);
   float wide = widened(radius, blur, TILE_BLUR_SOFT.w);
+  pattern.zw *= wide / radius;
   v_blur = min(blur / wide, TILE_BLUR_SOFT.w);
-  // The blur of tiles goes with the width of the core along each axis; that of pixels does not: the
-  // variance along each is what it has to be. Light around the core stays where it is.
-  core = sqrt((3.0 * core * core + blur * blur) / (3.0 + v_blur * v_blur));
-  pattern.zw = max(pattern.zw, core);
-  v_tile_finer = TILE_FAR * (pattern.zw / core - 1.0);
-  wide = sqrt(core.x * core.y);
-  disc.core = length(pattern.xy) + TILE_FAR * max(core.x, core.y);
   v_upright = (coc < 0.0) ? -1.0 : 1.0;
   disc.share = ratio / (pattern.z * pattern.w);
 #ifdef OPENED
@@ -186,7 +174,6 @@ SplatDisc splat_disc(vec4 a, vec4 b)
                    vec2(frame[0].y, frame[1].y) / pattern.zw);
   disc.farthest = length(pattern.xy) +
                   max(pattern.z, pattern.w) * max(disc.reach.x, disc.reach.y);
-  disc.core = min(disc.core, disc.farthest);
 #else
   float most = OPENING_LEAST_BLUR * exp2(float(textureSize(opening_tx, 0).z) - 1.0);
   float wide = widened(radius, blur, most);
@@ -197,7 +184,7 @@ SplatDisc splat_disc(vec4 a, vec4 b)
   disc.origin = vec2(0.0);
   disc.axes = mat2(ratio, 0.0, 0.0, 1.0) / ((coc < 0.0) ? -wide : wide);
   disc.share = ratio / (wide * wide);
-  disc.farthest = disc.core = max(disc.reach.x, disc.reach.y);
+  disc.farthest = max(disc.reach.x, disc.reach.y);
 #endif
   disc.widest = wide;
 #ifdef RIMS

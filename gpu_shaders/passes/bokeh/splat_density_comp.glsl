@@ -1,7 +1,7 @@
 // Energy density of each highlight's disc, before its splat: a thread for each, where the corners of
 // its square would each find the same.
 // Inputs: as of splat_vert but pos and density_tx; discs (how many); besides, REAL_LENS: light_tx (light of the
-// picture over that of an even one), area_tx (how much more light surfaces have than a pinhole sees).
+// picture over that of an even one), area_tx (how much larger surfaces are seen).
 // Outputs: density_img: for each source what the shape of its disc is multiplied by.
 // Source: methods 13.
 
@@ -15,7 +15,6 @@ float v_upright;
 float v_dot;
 vec2 v_chief;
 vec2 v_tile_at;
-vec2 v_tile_finer;
 vec3 v_area;
 vec3 v_left_lower;
 vec3 v_left_upper;
@@ -54,28 +53,24 @@ vec2 tent_sum(vec2 center, vec2 tent)
 #define GRID_RADIUS_REGION 3.5
 // Places along the width of a disc from which the share of a region is found.
 #define REGION_PLACES 16
-// Farthest places from a disc's centre that are summed up, px; places along the side of a pixel that tell
-// what the sum is where pixels are small.
-#define GRID_MOST 12.0
-#define FINE_PARTS 2
 // Least part of a disc's energy that a grid may show: a disc that is thinner than a pixel may lie
 // between its pixels.
 #define GRID_LEAST 0.25
 
-// Sum of the light of the source's region over pixels, `parts` places along their sides, whose places on
-// the opening are `origin + axes * offset`, with the offset from the disc's centre, px; `reach` in px.
-vec3 grid_sum(vec2 center, vec2 origin, mat2 axes, float reach, int parts)
+// Sum of the light of the source's region over pixel centres, whose places on the opening are
+// `origin + axes * offset`, with the offset from the disc's centre, px; `reach` in px.
+vec3 grid_sum(vec2 center, vec2 origin, mat2 axes, float reach)
 {
   vec3 sum = vec3(0.0);
   vec2 lens;
-  vec2 low = ceil(center - reach - 0.5);
-  int count = (int(2.0 * reach) + 1) * parts;
+  vec2 low = ceil(center - reach - 0.5) + 0.5;
+  int count = int(2.0 * reach) + 1;
   for (int i = 0; i < count * count; i++) {
-    vec2 offset = low + (vec2(i % count, i / count) + 0.5) / float(parts) - center;
+    vec2 offset = low + vec2(i % count, i / count) - center;
     vec3 density = disc_density(origin + axes * offset, lens);
     sum += density * region_weight(lens);
   }
-  return sum / float(parts * parts);
+  return sum;
 }
 
 // Share of the disc's light that belongs to the source's region; as grid_sum.
@@ -124,17 +119,8 @@ void main()
   if (disc.widest < max(from_grid, GRID_RADIUS) && !disc.is_dot) {
     // What the sum is where pixels are small.
     vec3 whole = abs(1.0 / determinant(disc.axes)) *
-                 region_share(disc.origin, disc.axes, disc.core);
-    vec3 sum;
-    if (disc.farthest <= GRID_MOST) {
-      sum = grid_sum(disc.center, disc.origin, disc.axes, disc.farthest, 1);
-    }
-    else {
-      // Of the core alone: what lands far away is even enough.
-      float reach = min(disc.core, GRID_MOST);
-      sum = whole + grid_sum(disc.center, disc.origin, disc.axes, reach, 1) -
-            grid_sum(disc.center, disc.origin, disc.axes, reach, FINE_PARTS);
-    }
+                 region_share(disc.origin, disc.axes, disc.farthest);
+    vec3 sum = grid_sum(disc.center, disc.origin, disc.axes, disc.farthest);
     density *= whole / max(sum, GRID_LEAST * whole + 1e-30);
   }
 #ifdef REAL_LENS

@@ -274,7 +274,7 @@ def light_of_discs(real_lens):
     A real lens does not show lamps as large as a pinhole does.
     """
     corners, _ = SCENES["behind"]
-    snapshot = triangles_snapshot(corners, [WHITE], WIDTH, HEIGHT, LENS, 2048)
+    snapshot = triangles_snapshot(corners, [WHITE], WIDTH, HEIGHT, LENS, 512)
     snapshot = replace(with_chromatic(snapshot, aberration()), passes=("Combined",))
     through = replace(snapshot, camera=replace(snapshot.camera, real_lens=real_lens))
     thin, seen = (energy(render_snapshot(part)["Combined"]) for part in (snapshot, through))
@@ -287,7 +287,7 @@ def test_any_look_has_all_the_light_in_colors(look, real_lens, light_of_discs):
     snapshot = triangles_snapshot(corners, [WHITE], WIDTH, HEIGHT, LENS, 12)
     snapshot = with_chromatic(snapshot, aberration())
     drawn = render_snapshot(with_lens(snapshot, real_lens, **LOOKS[look]))["Bokeh"]
-    # Discs of 4 to 10 pixels by texels of tables, and the noise of 2048 samples.
+    # Discs of 4 to 10 pixels by texels of tables, and the noise of 512 samples.
     assert energy(drawn) == pytest.approx(light_of_discs, rel=0.02)
     assert parting(drawn) > 0.1
 

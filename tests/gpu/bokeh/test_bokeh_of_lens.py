@@ -5,19 +5,16 @@ the picture, as a pinhole camera in the entrance pupil has it.
 """
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from addon.lens_bokeh.samples.disc_terms import disc_terms
-from addon.lens_bokeh.samples.field_grid import FieldGrid, field_grid
-from addon.lens_bokeh.samples.landing import landed, spread_places
+from addon.lens_bokeh.samples.field_grid import field_grid
+from addon.lens_bokeh.samples.landing import spread_places
 from addon.lens_bokeh.samples.lens_rays import lens_rays
 from addon.lens_bokeh.samples.sample_tables import sample_tables
 from addon.lens_bokeh.tables.undistorted import undistorted
 from addon.optics.focus import focused
-from benchmarks.bokeh.lens_chart import CROP, RESOLUTION, lens_chart
 from benchmarks.referees.osl_lens import osl_lens
 from benchmarks.reference.traced_beam import counted_picture, traced_beam
 from benchmarks.reference.traced_bokeh import psnr
@@ -141,62 +138,3 @@ def test_a_disc_behind_the_focus_is_what_lens_samples_draw():
     wanted = sampled(plan, lens, depth, tangent)
     peak = wanted.max()
     assert psnr(drawn / peak, wanted / peak) >= 35.0
-
-
-def sampled_of_chart(chart, rays, radius, depth, field, focal_px, count=1 << 16):
-    """As `sampled`, of a point at a field, through the sums of terms of that very field."""
-    places = spread_places(count)
-    powers = (1.0 / depth / rays.largest_vergence) ** np.arange(4)
-    moves = np.einsum("tkc,k->tc", rays.moves(field[None])[0][:, 0] * radius, powers)
-    terms = disc_terms(rays.orders, places).reshape(count, -1)
-    off = (terms - disc_terms(rays.orders, np.zeros((1, 2))).reshape(1, -1)) @ moves
-    off += places * radius * (1.0 / chart.focus - 1.0 / depth)
-    # The light of a place of the picture: on nodes around the disc.
-    side = 0.5 * CROP / focal_px
-    around = FieldGrid(field - side, field + side, 9, 9)
-    light, *rims = landed(rays, radius, around, around.nodes)
-    light = (terms @ light).clip(0.0)
-    for rim in rims:
-        light *= terms @ rim >= 0.0
-    index, weights = around.taps(field + off)
-    lit = (np.take_along_axis(light, index, axis=1) * weights).sum(axis=1)
-    x, y = (off * (focal_px * FINE)).T + 0.5 * CROP * FINE
-    edges = np.arange(CROP * FINE + 1)
-    fine = np.histogram2d(y, x, bins=(edges, edges), weights=lit)[0]
-    for width in (FINE, LAMP):
-        for axis in (0, 1):
-            fine = np.apply_along_axis(np.convolve, axis, fine, np.ones(width) / width, "same")
-    return fine[FINE // 2 :: FINE, FINE // 2 :: FINE]
-
-
-# Texels of a tile over flare that lands far away were coarser than the disc of the Sonnar's (26 dB
-# before); tiles of neighbouring depths, whose outlines alone were laid over one another, smeared
-# the retrofocus lens' (23 dB).
-@pytest.mark.parametrize(
-    ("name", "nearer", "share", "wanted"),
-    [("sonnar-50mm-f1.5", 0.5, 0.0, 34.0), ("retrofocus-35mm-f2.5", 10.0, 0.9, 30.0)],
-)
-def test_discs_of_strong_aberrations_are_what_lens_samples_draw(name, nearer, share, wanted):
-    chart = lens_chart(name)
-    focal_px = 1.0 / chart.pixel
-    radius = chart.focal_length / (2000.0 * chart.f_number)
-    half = np.array(RESOLUTION) * (0.5 * chart.pixel)
-    angle = np.arctan2(*half[::-1])
-    field = share * np.hypot(*half) * np.array([np.cos(angle), np.sin(angle)])
-    plan = plan_of(
-        size=CROP, focal_px=focal_px, radius=radius, lens=library_lens(name), focus=chart.focus,
-        filter_width=1.0, vignetting="LENS",
-    )  # fmt: skip
-    plan.bokeh.projection[[0, 1], [0, 1]] = 1.0 / half
-    reach = 1.3 * np.hypot(*half)
-    rays = lens_rays(chart.prescription, None, chart.focus, chart.f_number, reach)
-    plan.bokeh.rays = rays
-    plan.real_lens = SimpleNamespace(tables=SimpleNamespace(aperture_radius=radius))
-    depth = nearer * chart.focus
-    drawn = splatted(plan, depth, chief=tuple(field))[..., 1].astype(float)
-    for axis in (0, 1):
-        wide = np.ones(LAMP // FINE) / (LAMP // FINE)
-        drawn = np.apply_along_axis(np.convolve, axis, drawn, wide, "same")
-    expected = sampled_of_chart(chart, rays, radius, depth, field, focal_px)
-    peak = expected.max() / expected.sum()
-    assert psnr(drawn / drawn.sum() / peak, expected / expected.max()) >= wanted

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from addon.lens_bokeh.look.sample_beams import meridional_beams
+from addon.lens_bokeh.look.artist_beams import ArtistBeams
 from addon.lens_bokeh.look.splat_pupil import FIELDS
 from addon.lens_bokeh.samples.artist_rays import ArtistRays
 from addon.lens_bokeh.samples.field_grid import field_grid
@@ -81,16 +81,15 @@ def test_an_even_world_stays_even():
 
 def test_beams_of_discs_land_where_samples_do():
     lens = ArtistLens(2.0, -1.0, 0.5, 1.0, 0.4)
-    rays = ArtistRays(lens, opening_at(2.8), CORNER, RADIUS, FOCUS)
-    beams, tangents = meridional_beams(rays, RADIUS, 0.9 * HALF[1])
-    list(beams.followed())
+    beams = ArtistBeams(lens, opening_at(2.8), CORNER, RADIUS, FOCUS, 0.9 * HALF[1])
     field = FIELDS - 2
-    seen = np.array([0.0, tangents[field]])
-    (grid,) = beams.grids(field, [0.2])
+    seen = np.array([0.0, beams.tangents[field]])
+    grids, centers = beams.grids(field, [0.2], 0.0)
+    (grid,) = grids
     for row, column in ((30, 10), (150, 60), (100, 90)):
         place = -np.array([grid.stop_x[row, column], grid.stop_y[row, column]])
         wanted = moved(lens, seen, 0.2, place, 2.8) * CORNER + place * RADIUS * (FOCUS - 0.2)
-        found = np.array([grid.x[row, column], grid.y[row, column]])
+        found = np.array([grid.x[row, column], grid.y[row, column]]) + (0.0, centers[0])
         np.testing.assert_allclose(found, wanted, atol=2e-5)
 
 
