@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ..errors import InputError
 from ..files.version import version
+from ..settings.bokeh_settings import LIGHT
 from ..settings.scene_part_settings import LENS
 from ..settings.setting import settings_of
 from .capture.capture_arguments import add_capture, check_capture
@@ -29,6 +30,7 @@ from .words.option_values import (
     joined_negatives,
     positive_number,
     whole_number,
+    word_or_number,
 )
 from .words.parser import RESOLUTION, Parser, add_farm_options, add_output_options
 
@@ -154,6 +156,12 @@ def _add_render(commands):
     add("--resolution", metavar="WxH", type=RESOLUTION, help="in pixels, at 100 %%")
     add_sampling(parser)
     add("--no-bokeh", action="store_true", help="without separate highlights")
+    add(
+        "--highlights",
+        metavar="auto|X",
+        type=word_or_number(("auto",), *settings_of(LIGHT)["threshold"].limits),
+        help="light brighter than X is a highlight; auto: what lens samples cannot draw",
+    )
     add("--no-chromatic", action="store_true", help="without chromatic aberration")
     add(
         "--lens",

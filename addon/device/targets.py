@@ -131,3 +131,36 @@ class Targets:
         self.textures.clear()
         self.bytes = 0
         keeping.let_go()
+
+
+def level_count(width, height):
+    """Return how many levels a pyramid has, the last of which is one square."""
+    return max(1, (max(width, height) - 1).bit_length())
+
+
+def level_sizes(width, height):
+    """Return the size of each level of a pyramid, from level 1 on."""
+    return [
+        tuple(-(-side // 2**level) for side in (width, height))
+        for level in range(1, level_count(width, height) + 1)
+    ]
+
+
+def atlas_size(width, height):
+    """Return the size of the texture that holds all levels; see ``lib/pyramid_atlas_lib.glsl``.
+
+    Returns
+    -------
+    tuple of 2 int
+    """
+    sizes = level_sizes(width, height)
+    right = max((w for w, _ in sizes[1:]), default=0)
+    above = max((second_row(height, level) + h for level, (_, h) in enumerate(sizes, 1)))
+    return sizes[0][0] + right, max(sizes[0][1], above)
+
+
+def second_row(height, level):
+    """Return the lowest row of a level in the second column; see ``level_origin``."""
+    last = max(height - 1, 1).bit_length()
+    whole = 1 << last
+    return 0 if level < 2 else (whole >> 1) - (whole >> (level - 1)) + max(level - last - 1, 0)

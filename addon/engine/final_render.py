@@ -92,6 +92,7 @@ def _render_view(engine, depsgraph, session, extractor, view):
             if renderer.highlights:
                 for name, number in vars(renderer.highlights).items():
                     statistics.highlights[name] += number
+            statistics.note_thresholds(renderer.thresholds)
             statistics.shaders_compiled += compiled_count() - compiled_before
             statistics.texture_bytes = max(statistics.texture_bytes, renderer.texture_bytes())
             statistics.geometry_bytes = max(statistics.geometry_bytes, renderer.geometry_bytes())

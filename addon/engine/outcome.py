@@ -37,6 +37,8 @@ class RenderStatistics:
     highlights : dict of str to int
         ``found``, ``clustered``, ``culled_size``, ``culled_occlusion``, ``culled_cone``,
         ``masked``, ``splatted``.
+    thresholds : tuple of 2 float or None
+        The least and the largest automatic threshold of highlights; None where there was none.
     uploads : dict of str to int
         Meshes, images, materials and instance tables sent to the device.
     shaders_compiled : int
@@ -73,12 +75,19 @@ class RenderStatistics:
             0,
         )
     )
+    thresholds: tuple[float, float] | None = None
     uploads: dict[str, int] = field(default_factory=dict)
     shaders_compiled: int = 0
     texture_bytes: int = 0
     geometry_bytes: int = 0
     device: str = ""
     noise: object = None
+
+    def note_thresholds(self, thresholds):
+        """Widen `thresholds` to those of one more view layer or view, a pair or None."""
+        known = [pair for pair in (self.thresholds, thresholds) if pair]
+        if known:
+            self.thresholds = (min(p[0] for p in known), max(p[1] for p in known))
 
     def note_noise(self, report):
         """Add the sampling report of a view layer."""

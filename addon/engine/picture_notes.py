@@ -34,6 +34,8 @@ class PictureNote:
     ----------
     counts : dict of str to int or None
         As `HighlightCounts` has them; None where no highlights were searched.
+    thresholds : tuple of 2 float or None
+        The least and the largest automatic threshold of highlights; None where there was none.
     problems : tuple of str
         Warnings, as in `FrameRenderer.report`.
     fates : dict of str to int
@@ -45,6 +47,7 @@ class PictureNote:
     """
 
     counts: dict | None = None
+    thresholds: tuple | None = None
     problems: tuple = ()
     fates: dict = field(default_factory=dict)
     sampling: object = None
@@ -72,6 +75,7 @@ class PictureNotes:
         self.change(
             scene,
             counts=counts,
+            thresholds=renderer.thresholds,
             problems=renderer.report,
             fates=dict(renderer.fates),
             sampling=renderer.sampling,

@@ -32,7 +32,11 @@ def _info(define, in_wavelengths=False, through_lens=False):
         typedefs=structs + HIGHLIGHT_PARAMS.source * split,
         attributes=(("VEC2", "pos"),),
         outputs=(("VEC4", "out_color"),) * (not lists),
-        samplers=(("FLOAT_2D", "environment_tx"), *(("FLOAT_2D", "through_tx"),) * lists),
+        samplers=(
+            ("FLOAT_2D", "environment_tx"),
+            *(("FLOAT_2D", "surroundings_tx"),) * split,
+            *(("FLOAT_2D", "through_tx"),) * lists,
+        ),
         images=APPEND_IMAGES * lists,
         uniforms=tuple(uniforms),
         push_constants=(("VEC4", "lens_sample"), *APPEND_CONSTANTS * lists),
@@ -63,8 +67,8 @@ def draw(
         Equirectangular, scene linear.
     lens_sample : sequence of 4 float
         Place on the lens in m, jitter in clip units.
-    highlights : GPUUniformBuf or None
-        `HighlightParams`: the light that is splatted as bokeh is left out.
+    highlights : bokeh.split_light.SplitLight or None
+        The light that is splatted as bokeh is left out.
     wavelength : passes.surface.chromatic.ChromaticSample, optional
     lens : passes.surface.real_lens.LensSample, optional
     """
@@ -81,8 +85,7 @@ def list_highlights(fullscreen, view_buffer, environment_buffer, image, split, l
     ----------
     fullscreen, view_buffer, environment_buffer, image
         As for `draw`; seen from the lens' centre.
-    split : GPUUniformBuf
-        `HighlightParams`.
+    split : bokeh.split_light.SplitLight
     lists : passes.bokeh.highlights.FragmentLists
         Cleared.
     through : GPUTexture
@@ -112,7 +115,7 @@ def _draw(
     shader.uniform_block("view_buf", view_buffer)
     shader.uniform_block("environment_buf", environment_buffer)
     if highlights is not None:
-        shader.uniform_block("highlight_buf", highlights)
+        highlights.bind(shader)
     shader.uniform_sampler("environment_tx", image)
     shader.uniform_float("lens_sample", lens_sample)
     if wavelength is not None:

@@ -13,6 +13,13 @@ confusion `C` (px) is divided into
 samples kept would be a bright dot in each of them, and most of the noise. A gain multiplies
 only the light above the threshold.
 
+An automatic threshold is `contrast` times the mean brightness within the point's own circle of
+confusion, as the lens' middle sees the picture, and at least `WHITE`. Of light that fills the share
+f of a circle, n samples hit f n times: they draw it unless f is small, and where f is small the
+mean is f times the light. So wide bright surfaces stay in the samples, their edges (f = 1/2) and
+corners (f = 1/4) too, and lamps and glints do not. Light above the threshold counts in the mean
+only as the threshold: what is splatted is no noise, and hides none.
+
 The same functions for the graphics device are in ``lib/bokeh/highlight_lib.glsl``.
 """
 
@@ -25,6 +32,13 @@ _LEAST_COC = 1.0
 # then has an error of a quarter, its splat one of 2 %. Subsamples do not count: they only see what
 # their lens sample shows, which may miss a light that is smaller than a pixel.
 _SAMPLES_A_PIXEL = 16.0
+# Least threshold, where it is automatic: no light is a highlight that is not brighter than white.
+WHITE = 1.0
+# Least contrast: the corner of a wide surface fills a quarter of the circle around it, and must
+# stay below the threshold.
+_LEAST_CONTRAST = 5.0
+# Lens samples for which light that fills half of a circle has an error of a sixteenth.
+_SAMPLES_OF_HALF = 256.0
 # The share grows from 0 to 1 while the circle grows by this factor, so that nothing pops.
 _TRANSITION = 1.5
 
@@ -43,6 +57,23 @@ def least_coc(samples):
         In pixels.
     """
     return max(_LEAST_COC, float(np.sqrt(samples / (_SAMPLES_A_PIXEL * np.pi))))
+
+
+def contrast(samples):
+    """Return how many times brighter than its surroundings light is that samples cannot draw.
+
+    Parameters
+    ----------
+    samples : float
+        Number of lens samples, n.
+
+    Returns
+    -------
+    float
+        1 / f for light that fills the share f of a circle of confusion of which n samples, chosen
+        by chance, make sqrt((1 - f) / (f n)) = 1 / 16 of noise; at least 5.
+    """
+    return max(_LEAST_CONTRAST, 1.0 + samples / _SAMPLES_OF_HALF)
 
 
 def highlight_share(coc_px, least):

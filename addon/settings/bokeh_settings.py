@@ -10,6 +10,15 @@ LIGHT = Section("Which light", "Camera Properties > Bokeh", (
     Setting("threshold", 1.0, "Threshold", "Brightness above which light is a highlight; 1 is"
             " white. What lies below it stays in the rest of the picture", limits=(0.001, 1e6),
             soft=(None, 10.0), step=10, field="threshold", told="bokeh.threshold"),
+    # Behind the threshold: who sets that chooses it, and a record of both is applied in this order.
+    Setting("highlights", "AUTO", "Highlights", "Which light is a highlight", field="highlights",
+            told="bokeh.highlights", items=(
+            Item(0, "AUTO", "Automatic", "What the lens samples cannot draw: light brighter than"
+                 " white that is several times brighter than its surroundings, as far as it is"
+                 " blurred"),
+            Item(1, "THRESHOLD", "Threshold", "Light above a brightness that is the same"
+                 " everywhere"),
+    )),
     Setting("gain", 1.0, "Gain", "Factor of the highlights' light; 1 is what the scene has",
             limits=(0.0, 1000.0), soft=(None, 4.0), step=10, field="gain", told="bokeh.gain"),
     Setting("model", "AUTO", "Sources", "What a disc is drawn for", field="model",

@@ -8,6 +8,7 @@ from ..lens_bokeh.look.appearance import Appearance
 from ..lens_bokeh.tables.artist_lens import ArtistLens
 from ..optics.prescription import Prescription
 from ..sampling.chromatic import ChromaticAberration
+from ..sampling.highlights import WHITE
 from ..sampling.thin_lens import ThinLens
 
 # Relative difference of f-numbers below which they count as the same.
@@ -60,6 +61,8 @@ class BokehSettings:
     ----------
     threshold : float
         Radiance above which light counts as a highlight, of the largest channel.
+    highlights : {'AUTO', 'THRESHOLD'}
+        AUTO: thresholds are found from the picture instead: see `sampling.highlights`.
     gain : float
         Multiplies the highlights; 1 keeps the picture's energy.
     model : {'AUTO', 'POINT', 'CLUSTERED'}
@@ -96,6 +99,7 @@ class BokehSettings:
     """
 
     threshold: float = 1.0
+    highlights: str = "THRESHOLD"
     gain: float = 1.0
     model: str = "AUTO"
     cluster_levels: int = 4
@@ -110,6 +114,16 @@ class BokehSettings:
     vignetting: str = "NONE"
     profile_strength: float = 1.0
     debug_view: str = "NONE"
+
+    @property
+    def automatic(self):
+        """Whether thresholds are found from the picture."""
+        return self.highlights == "AUTO"
+
+    @property
+    def least_threshold(self):
+        """Radiance up to which no light is a highlight."""
+        return WHITE if self.automatic else self.threshold
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,7 @@
 // The world background at infinity, seen from one place on the lens, where no surface is.
 // Inputs: view_buf; lens_sample (xy: place on the lens, m; zw: sub-pixel jitter in clip units);
-// environment_buf; environment_tx (equirectangular, scene linear). HIGHLIGHTS: highlight_buf; the light
-// that is splatted as bokeh is left out. EXCESS: highlight_buf, through_tx (share of the light that
+// environment_buf; environment_tx (equirectangular, scene linear). HIGHLIGHTS: highlight_buf, surroundings_tx; the light
+// that is splatted as bokeh is left out. EXCESS: highlight_buf, surroundings_tx, through_tx (share of the light that
 // passes what covers the world from the whole lens) and the inputs of highlights_append; light above the
 // threshold is listed.
 // CHROMATIC, REAL_LENS: as in surface_vert.
@@ -9,11 +9,12 @@
 // Source: methods 1: the ray from the lens' place through the pixel's point of the focus plane.
 #include "lib/surface/environment_lib.glsl"
 #include "lib/surface/texture_lib.glsl"
-#if defined(HIGHLIGHTS) || defined(CHROMATIC)
+#if defined(HIGHLIGHTS) || defined(EXCESS) || defined(CHROMATIC)
 #include "lib/lens_lib.glsl"
 #endif
 #if defined(HIGHLIGHTS) || defined(EXCESS)
 #include "lib/bokeh/highlight_lib.glsl"
+#include "lib/split/threshold_lib.glsl"
 #endif
 #ifdef HIGHLIGHTS
 #include "lib/bokeh/searched_lib.glsl"
@@ -78,6 +79,11 @@ void main()
 #ifdef HIGHLIGHTS
   float in_raster = searched(vec4(direction, 0.0), highlight_buf);
 #endif
+#if defined(HIGHLIGHTS) || defined(EXCESS)
+  float threshold = highlight_threshold(place_in_search(vec4(direction, 0.0), highlight_buf),
+                                        coc_radius_px(highlight_buf.world.x, view_buf.lens),
+                                        highlight_buf, surroundings_tx);
+#endif
   direction = mat3(view_buf.view_inverse) * direction;
   vec3 local = vec3(dot(environment_buf.rotation_x.xyz, direction),
                     dot(environment_buf.rotation_y.xyz, direction),
@@ -91,13 +97,13 @@ void main()
 #else
   float share = highlight_buf.world.z;
 #endif
-  radiance = highlight_base(radiance, share * in_raster, highlight_buf.split.x);
+  radiance = highlight_base(radiance, share * in_raster, threshold);
 #endif
 #ifdef EXCESS
-  vec3 light = highlight_light(radiance, highlight_buf.split.x, highlight_buf.split.z);
+  vec3 light = highlight_light(radiance, threshold, highlight_buf.split.z);
   light *= texelFetch(through_tx, ivec2(gl_FragCoord.xy), 0).x;
   if (max(light.r, max(light.g, light.b)) > 0.0) {
-    append_fragment(ivec2(gl_FragCoord.xy), light, 1.0, true, 0.0, 0u);
+    append_fragment(ivec2(gl_FragCoord.xy), light, 1.0, true, 0.0, 0u, threshold);
   }
 #else
   out_color = vec4(radiance, 1.0);

@@ -109,6 +109,8 @@ def apply_frame(scene, frame, arguments, lens_id=None):
         scene.camera.data.aplanat.use_breathing = True
     if arguments.distortion is not None:
         use_distortion(scene.camera.data, arguments.distortion)
+    if arguments.highlights is not None:
+        _use_highlights(scene.camera.data, arguments.highlights)
     if arguments.no_bokeh:
         _leave_out_bokeh(scene.camera.data)
     if arguments.no_chromatic:
@@ -272,6 +274,16 @@ def use_distortion(data, wanted):
         data.aplanat.distortion, data.aplanat.distortion_k = "DIVISION", wanted
     else:
         data.aplanat.distortion = wanted.upper()
+
+
+def _use_highlights(data, wanted):
+    for name in ("highlights", "threshold"):
+        _stop_animation(data, f"aplanat.bokeh.{name}")
+    if wanted == "auto":
+        data.aplanat.bokeh.highlights = "AUTO"
+    else:
+        # Setting it chooses it.
+        data.aplanat.bokeh.threshold = wanted
 
 
 def _leave_out_bokeh(data):

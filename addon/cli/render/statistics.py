@@ -234,6 +234,7 @@ def work(statistics):
         "sprites_drawn": statistics.sprites_drawn,
         "sprites_copied": statistics.sprites_copied,
         "highlights_found": found["found"],
+        "highlight_thresholds": statistics.thresholds,
         "highlights_clustered": found["clustered"],
         "highlights_culled": {
             "size": found["culled_size"],

@@ -62,8 +62,8 @@ class HighlightSearch:
     drawing : SceneDrawing
         Aimed at the frame.
     buffers : SceneBuffers
-    split : GPUUniformBuf
-        `HighlightParams`.
+    split : FrameSplit
+        Whose thresholds are found.
     found : passes.bokeh.highlight_list.HighlightList
         Gets the highlights.
     field : tuple of (str, GPUUniformBuf or GPUTexture) or None
@@ -73,6 +73,8 @@ class HighlightSearch:
     ----------
     sharp : int
         Pixels with light above the threshold whose circle of confusion is too small to be splatted.
+    thresholds : tuple of 2 float or None
+        The least and the largest threshold of light that was found; None where there was none.
     bytes : int
         Peak memory on the device.
     """
@@ -85,6 +87,7 @@ class HighlightSearch:
         self._highlights = found
         self._field = field
         self.sharp = 0
+        self.thresholds = None
         self.bytes = 0
 
     def run(self, fullscreen):
@@ -139,18 +142,22 @@ class HighlightSearch:
         places = [tuple(place) for place in (bokeh.lens_views * self._plan.lens_extent).tolist()]
         views = list(zip(places, range(1, len(places) + 1), strict=True))
         alone = [((0.0, 0.0), 0)]
-        steady = bokeh.shining - bokeh.mirroring
+        steady, part = bokeh.shining - bokeh.mirroring, self._split.searched
+        if not part[2]:
+            steady -= bokeh.reflecting
         areas = NO_AREAS
         if not bokeh.draft:
             content, size = self._drawing.content, bokeh.whole[2:]
             areas = lamp_areas(content, steady, self._plan, bokeh.projection, size)
-            areas = areas.without_growth(content.groups[n] for n in sorted(bokeh.reflecting))
+            areas = areas.without_growth(
+                content.groups[n] for n in sorted({n for n, _ in bokeh.reflecting})
+            )
         deep, deep_mirrors = bokeh.search_projections
         searches = [_Search(steady, False, bokeh.part, bokeh.subpixels, alone, deep, areas)]
-        if bokeh.mirroring:
+        if bokeh.mirroring and part[2]:
             several = views if len(views) > 1 else alone
             fine, mirrors = bokeh.mirroring_subpixels, bokeh.mirroring
-            searches.append(_Search(mirrors, False, bokeh.whole, fine, several, deep_mirrors))
+            searches.append(_Search(mirrors, False, part, fine, several, deep_mirrors))
         if bokeh.world:
             fine = bokeh.world_subpixels
             around = bokeh.projection
@@ -200,10 +207,10 @@ class HighlightSearch:
         lens, region = view
         lists.clear()
         params = self._draw(search, tile, view, draws, raster, held, fullscreen)
-        number, shining = lists.read()
+        number, shining, thresholds = lists.read()
         if draws[2] and 0 < number <= lists.capacity:
             self._draw_before(search, tile, params, draws[2:], lens, lists, raster)
-            number, _ = lists.read()
+            number, shining, thresholds = lists.read()
         if number > lists.capacity:
             # Drawn again into larger lists: texels are not counted twice.
             if number <= _MOST_ROOM:
@@ -229,6 +236,7 @@ class HighlightSearch:
         scene = None if search.world else raster["scene"]
         highlights.order(seen, lists, min(number, lists.capacity), scene, counts)
         self.sharp += self._highlights.append(seen, lists, shining)
+        self.thresholds = extremes(self.thresholds, thresholds)
         return lists
 
     def _append(self, search, draws, params, lens, held, fullscreen, raster):
@@ -298,6 +306,12 @@ class HighlightSearch:
             lens=(plan.focus_distance, float(plan.orthographic), plan.coc_scale, plan.sharp_radius),
             film=(width * search.subpixels, height * search.subpixels, 0.0, 0.0),
         )
+
+
+def extremes(before, thresholds):
+    """Return the least and the largest threshold of `before`, a pair or None, and of an array."""
+    least, largest = before or (np.inf, 0.0)
+    return min(least, float(thresholds.min())), max(largest, float(thresholds.max()))
 
 
 def _halves(tile):

@@ -7,6 +7,7 @@ brighter than the threshold is a fragment, whatever is in front of it.
 from ...device.uniforms import uniform_buffer
 from ...passes.bokeh import highlights, layer_highlights
 from ..layered.stack_layers import stack_view
+from .listing import extremes
 
 
 class StackHighlightSearch:
@@ -18,8 +19,8 @@ class StackHighlightSearch:
         With a `bokeh`, of a captured picture.
     buffers : SceneBuffers
         With the picture, as `captured`.
-    split : GPUUniformBuf
-        `HighlightParams`.
+    split : FrameSplit
+        Whose thresholds are found.
     found : passes.bokeh.highlight_list.HighlightList
         Gets the highlights.
     field : tuple of (str, GPUUniformBuf or GPUTexture) or None
@@ -27,7 +28,7 @@ class StackHighlightSearch:
 
     Attributes
     ----------
-    sharp, bytes : int
+    sharp, thresholds, bytes
         As of `HighlightSearch`.
     """
 
@@ -40,6 +41,7 @@ class StackHighlightSearch:
         layers = max(plan.bokeh.layers, plan.layered.count)
         self._seen = highlights.SearchedRaster(view, split, 1, layers, field=field)
         self.sharp = self.bytes = 0
+        self.thresholds = None
 
     def run(self, _fullscreen):
         """List the highlights of surfaces, and of the world."""
@@ -55,12 +57,13 @@ class StackHighlightSearch:
         try:
             lists.clear()
             layer_highlights.append(entries, first, number, self._split, self._seen.view, lists)
-            listed, tiles = lists.read()
+            listed, tiles, thresholds = lists.read()
             self.bytes = max(self.bytes, lists.targets.bytes)
             if listed == 0:
                 # All are hidden by what is right in front of them.
                 return
             highlights.order(self._seen, lists, listed, scene)
             self.sharp += self._highlights.append(self._seen, lists, tiles)
+            self.thresholds = extremes(self.thresholds, thresholds)
         finally:
             lists.release()

@@ -7,14 +7,11 @@ was splatted here. A moving view gets a draft, and the whole bokeh in steps when
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ...device import geometry, readback
 from ...device.targets import Targets, TargetSpec
 from ...device.uniforms import uniform_buffer
 from ...passes.bokeh import clusters, splat
 from ...passes.bokeh.highlight_list import HighlightList
-from ...passes.surface import surface
 from ..visibility.stage import BokehVisibility
 from .clusters import similarity_of
 from .listing import HighlightSearch
@@ -56,31 +53,6 @@ class HighlightCounts:
     splatted: int = 0
 
 
-def highlight_buffer(plan):
-    """Upload the highlight threshold and what else splits light between samples and splats.
-
-    Parameters
-    ----------
-    plan : FramePlan
-        With a `bokeh`.
-
-    Returns
-    -------
-    GPUUniformBuf
-        `HighlightParams`.
-    """
-    bokeh = plan.bokeh
-    settings = bokeh.settings
-    return uniform_buffer(
-        surface.HIGHLIGHT_PARAMS.pack(
-            split=(settings.threshold, bokeh.least_coc, settings.gain, 0.0),
-            world=(bokeh.world_depth, float(bokeh.world), bokeh.world_share, 0.0),
-            raster=bokeh.projection,
-            views=(*plan.lens_extent, np.sqrt(len(bokeh.lens_views)), 0.0),
-        )
-    )
-
-
 class BokehStage:
     """Makes a frame's bokeh.
 
@@ -93,8 +65,7 @@ class BokehStage:
     buffers : SceneBuffers
     occluders : SceneOccluders
         Of the drawing's content.
-    highlights_buffer : GPUUniformBuf
-        See `highlight_buffer`.
+    split : FrameSplit
     field : tuple of (str, GPUUniformBuf or GPUTexture) or None
         `passes.surface.chromatic.resources`, with chromatic aberration.
     lens : passes.surface.real_lens.LensSample or None
@@ -107,18 +78,21 @@ class BokehStage:
         Warnings: settings of the camera that cannot be met; known when discs have been drawn.
     fates : dict of str to int
         Numbers of sources by fate, by the names of `passes.bokeh.marks.FATES`.
+    thresholds : tuple of 2 float or None
+        The least and the largest threshold of light that was found; None where there was none.
     """
 
-    def __init__(self, plan, drawing, buffers, occluders, highlights_buffer, field=None, lens=None):
+    def __init__(self, plan, drawing, buffers, occluders, split, field=None, lens=None):
         self._plan = plan
         self._drawing = drawing
         self._buffers = buffers
         self._occluders = occluders
-        self._highlights = highlights_buffer
+        self._split = split
         self._field = field
         self._lens = lens
         self.counts = HighlightCounts()
         self.fates = {}
+        self.thresholds = None
         self.report = ()
         self.bytes = 0
         self._unpaired = 0
@@ -142,6 +116,10 @@ class BokehStage:
                 next(steps, None)
                 while name == "splat" and next(steps, self) is not self:
                     pass
+
+    def divide(self, fullscreen):
+        """Find, once a frame, which light is splatted and which the lens samples draw."""
+        self._split.find(self._drawing, self._buffers, fullscreen)
 
     def steps(self, fullscreen, targets, frame_view):
         """Do what `run` does in steps; the picture changes with the last step.
@@ -186,6 +164,7 @@ class BokehStage:
 
     def _find(self, fullscreen, held):
         """Return the list of highlights, two textures, and their number."""
+        self.divide(fullscreen)
         found = HighlightList()
         held.append(found)
         search = self._search(found)
@@ -193,10 +172,11 @@ class BokehStage:
         self.bytes = max(self.bytes, search.bytes)
         self.counts.found = found.count + search.sharp
         self.counts.culled_size = search.sharp
+        self.thresholds = search.thresholds
         return found.textures, found.count
 
     def _search(self, found):
-        split, field = self._highlights, self._field
+        split, field = self._split, self._field
         if self._plan.layered and self._plan.layered.stack:
             return StackHighlightSearch(self._plan, self._buffers, split, found, field)
         return HighlightSearch(self._plan, self._drawing, self._buffers, split, found, field)
@@ -206,7 +186,7 @@ class BokehStage:
         bokeh = with_sharp(self._plan.bokeh)
         plan = replace(self._plan, bokeh=bokeh)
         parts = (self._drawing, self._buffers, self._occluders)
-        return BokehStage(plan, *parts, highlight_buffer(plan), self._field, self._lens)
+        return BokehStage(plan, *parts, self._split.sharp(bokeh), self._field, self._lens)
 
     def _merge(self, sources, count, held):
         """Merge similar highlights as the settings ask for; return the list and its length."""

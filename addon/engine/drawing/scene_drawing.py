@@ -91,8 +91,8 @@ class SceneDrawing:
             From a sample, or None for the lens' middle at the reference wavelength, to what is
             bound for it; for a target of `passes.surface.surface_target.in_wavelengths` or
             `through_lens`.
-        highlights : GPUUniformBuf or None
-            `HighlightParams`, for a target that splits light.
+        highlights : passes.bokeh.split_light.SplitLight or None
+            For a target that splits light.
         part : tuple of 4 int, optional
             x, y, width, height of the part of the raster that is drawn; default: all of it.
         """

@@ -52,6 +52,8 @@ class FrameBokeh:
     def run(self, fullscreen, targets, view, stage=nullcontext):
         """Make what comes before the first sample, if anything does; as `BokehStage.run`."""
         if self.drafted and self._draft is None:
+            # Samples leave out from the first one on what will be splatted.
+            self._whole.divide(fullscreen)
             return
         self.stage = self._draft or self._whole
         start = time.perf_counter()

@@ -13,7 +13,8 @@ from ...device.uniforms import uniform_buffer
 from ...passes import background
 from ...passes.surface import chromatic, real_lens, surface_target
 from ...snapshot.render_passes import cryptomatte_kinds
-from ..bokeh.stage import BokehStage, highlight_buffer
+from ..bokeh.split import FrameSplit
+from ..bokeh.stage import BokehStage
 from ..drawing.scene_drawing import DrawingCounts, SceneDrawing
 from ..drawing.view_resources import chromatic_resources, view_params
 from ..layered.layered_drawing import LayeredDrawing, in_step
@@ -50,10 +51,9 @@ class FrameRenderer(ReadableFrame):
         self._buffers = buffers
         self._fullscreen = geometry.fullscreen_batch()
         self._content = self._levels = self._drawing = self._blur = self._plain = None
-        self._target = self._occluders = self._pictures = self._targets = None
+        self._target = self._occluders = self._pictures = self._targets = self._layers = None
         self._graded = {}
         self._bokeh = FrameBokeh()
-        self._layers = None
         self.restart(plan, snapshot, bokeh, leader)
 
     def restart(self, plan, snapshot, bokeh="AT_ONCE", leader=None):
@@ -81,7 +81,7 @@ class FrameRenderer(ReadableFrame):
         self._highlights = None
         if plan.bokeh:
             target = surface_target.without_highlights(target, plan.bokeh.unsplit)
-            self._highlights = highlight_buffer(plan)
+            self._highlights = FrameSplit(plan, self._optics)
         if plan.chromatic:
             target = surface_target.in_wavelengths(target)
         layers_target = surface_target.blurred_by_lens(target) if plan.real_lens else target
@@ -265,8 +265,8 @@ class FrameRenderer(ReadableFrame):
         """Measure the error of the picture, and choose the tiles that go on."""
         if self._plain:
             self._plain._tiles.note(self._plain.plan, self.samples_done)
-        bokeh = self._targets["bokeh"] if self._measures_bokeh else None
-        if self._tiles.look(self.plan, self.samples_done, self._targets, bokeh):
+        discs = self._targets["bokeh"] if self._measures_bokeh else None
+        if self._tiles.look(self.plan, self.samples_done, self._targets, discs):
             for renderer in filter(None, (self, self._plain)):
                 renderer._drawing.confine(renderer._part())
 

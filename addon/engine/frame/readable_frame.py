@@ -13,7 +13,7 @@ class ReadableFrame:
     """The reading half of `pipeline.FrameRenderer`: pictures and progress.
 
     A subclass has ``plan``, ``samples_done`` and, of itself, ``_pictures``, ``_targets``,
-    ``_tiles``, ``_lens``, ``_plain`` and ``_stopped``.
+    ``_tiles``, ``_lens``, ``_plain``, ``_bokeh`` and ``_stopped``.
     """
 
     @property
@@ -22,6 +22,12 @@ class ReadableFrame:
         if self._tiles:
             return self._tiles.expected(self.samples_done)
         return self.samples_done if self._stopped else self.plan.samples
+
+    @property
+    def thresholds(self):
+        """The least and the largest automatic threshold of highlights; None without any."""
+        bokeh = self.plan.bokeh
+        return self._bokeh.stage.thresholds if bokeh and bokeh.contrast else None
 
     def is_late(self, seconds):
         """Whether the time limit is reached after `seconds` of drawing.

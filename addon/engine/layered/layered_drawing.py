@@ -14,11 +14,11 @@ from dataclasses import replace
 import numpy as np
 
 from ...device import state
-from ...device.targets import TargetSpec
+from ...device.targets import TargetSpec, level_count
 from ...device.textures import texture_2d
 from ...device.uniforms import uniform_buffer
 from ...passes.bokeh import peel
-from ...passes.layered import cast, layers
+from ...passes.layered import cast
 from ...passes.surface import surface, surface_target
 from .scene_layers import draw_scene_layers
 
@@ -112,7 +112,7 @@ class LayeredDrawing:
                 raster=(raster.fine, raster.fine, *margin),
                 sampling=(
                     made.count,
-                    layers.level_count(*size),
+                    level_count(*size),
                     float(made.filtered),
                     plan.layered.cell,
                 ),

@@ -108,6 +108,32 @@ def find_highlights(stack, depths, threshold):
     return StackHighlights(_entries(stack, shown, wanted, fronts), world, nearest)
 
 
+def seen_from_middle(stack, depths):
+    """Lay a captured picture's layers over one another, as the lens' middle sees them.
+
+    Parameters
+    ----------
+    stack : LayerStack
+    depths : ndarray of shape (layers, height, width)
+        Values of the depth buffer; `EMPTY` where nothing is.
+
+    Returns
+    -------
+    color : ndarray of shape (height / 2, width / 2, 4)
+        float32, means of two by two pixels, sides rounded up.
+    depth : ndarray of shape (height / 2, width / 2)
+        float32, of one of the four: the value of what covers it first, 1 where nothing does.
+    """
+    color, depth = np.zeros((*depths.shape[1:], 4), np.float32), np.ones(depths.shape[1:])
+    for layer, values in zip(stack.layers, depths, strict=True):
+        here = (values <= 1.0)[..., None]
+        depth = np.where((color[..., 3] == 0.0) & here[..., 0], values, depth)
+        color += np.where(here, (1.0 - np.clip(color[..., 3:], 0.0, 1.0)) * layer.color, 0.0)
+    color = np.pad(color, [(0, side % 2) for side in depths.shape[1:]] + [(0, 0)], "edge")
+    color = color.reshape(color.shape[0] // 2, 2, color.shape[1] // 2, 2, 4).mean(axis=(1, 3))
+    return color.astype(np.float32), np.ascontiguousarray(depth[::2, ::2], np.float32)
+
+
 def _before_world(stack, depths, at_infinity):
     """Return depth and transmittance in front of the world in each pixel, as `Entries.front`."""
     last = np.zeros(depths.shape[1:], np.float32)

@@ -12,7 +12,7 @@ from ...passes.bokeh import layer_highlights
 from ...passes.layered import layers
 from ...passes.surface import surface
 from .layer_raster import DeviceLayers, LayerRaster
-from .stack_highlights import find_highlights, runs_of
+from .stack_highlights import find_highlights, runs_of, seen_from_middle
 from .stack_occluders import occluding_surfaces
 
 
@@ -66,7 +66,7 @@ class StackLayers:
         self._made = None
         self._occluders = None
         self._threshold = None
-        self._highlights = None
+        self._highlights = self._picture = None
         # Pyramids are those of the layers as they were before.
         self._stale = True
 
@@ -119,12 +119,25 @@ class StackLayers:
         -------
         HighlightTextures
         """
-        threshold = plan.bokeh.settings.threshold
+        threshold = plan.bokeh.settings.least_threshold
         if threshold != self._threshold:
             self._forget_highlights()
             found = find_highlights(self.stack, self._depths_of(plan), threshold)
             self._threshold, self._highlights = threshold, _textures(found)
         return self._highlights
+
+    def picture(self, plan):
+        """Return the picture as the lens' middle sees it, at half its resolution.
+
+        Returns
+        -------
+        tuple of 2 GPUTexture
+            Colour, and value of the depth buffer of the nearest that covers a pixel.
+        """
+        if self._picture is None:
+            color, depth = seen_from_middle(self.stack, self._depths_of(plan))
+            self._picture = texture_2d(color, "RGBA32F"), texture_2d(depth[..., None], "R32F")
+        return self._picture
 
     def occluders(self, plan):
         """Return the foremost surfaces of each pixel; the stack keeps and releases them.
@@ -163,6 +176,7 @@ class StackLayers:
         if self._occluders is not None:
             self._occluders.release()
         self._made = self._occluders = self._highlights = self._threshold = None
+        self._picture = None
 
 
 @dataclass(frozen=True, eq=False)

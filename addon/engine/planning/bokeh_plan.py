@@ -12,25 +12,26 @@ import numpy as np
 from ...lens_bokeh.samples.artist_rays import ArtistRays
 from ...lens_bokeh.samples.cylinder_rays import CylinderRays
 from ...levels.choosing import coc_radius, extents
-from ...sampling.highlights import highlight_share, least_coc
+from ...sampling.highlights import contrast, highlight_share, least_coc
 from ...sampling.iris import Iris
 from ...sampling.pixel_filter import filter_density
-from ...snapshot.brightness import brightest, mirrors, reflects, sharpest_gloss
+from ...snapshot.brightness import brightest, mirrors, reflects
 from ...snapshot.camera import BokehSettings, LensSettings
-from ...snapshot.surface_graph import Constant
 from .bokeh_colors import BokehColors, colors_of_frame
 from .bokeh_search import (
     LEAST_SUBPIXELS,
     corners_of,
     deep_projection,
     emitting,
+    glinting,
     graph_of,
     part_of,
     rectangles_of,
     rows_of,
-    subpixels_of_glints,
     subpixels_of_lamps,
+    subpixels_of_mirrors,
     subpixels_of_triangles,
+    uneven_groups,
 )
 from .lens_plan import artist_rays
 from .seen_from_edge import seen_from_edge
@@ -57,8 +58,9 @@ class BokehPlan:
         Those of them whose reflections depend on the place on the lens.
     uneven : frozenset of int
         Groups with shining surfaces whose light varies over the surface.
-    reflecting : frozenset of int
-        Groups with shining surfaces that have no light of their own.
+    reflecting, glinting : frozenset of (int, int)
+        Shining surfaces that have no light of their own, and those of them whose reflections of
+        lamps may be smaller than a pixel.
     unsplit : frozenset of (int, int)
         Group and slot of bright surfaces whose light the lens samples keep: the lens' middle, from
         where highlights are searched, sees them from the edge.
@@ -100,6 +102,8 @@ class BokehPlan:
         The artist's lens that shapes the discs.
     cylinders : CylinderRays or None
         The rays of a lens with cylinders, which shapes them.
+    contrast : float
+        Of an automatic threshold: see `sampling.highlights.contrast`; 0 where it is not.
     """
 
     settings: BokehSettings
@@ -125,8 +129,10 @@ class BokehPlan:
     colors: BokehColors | None = None
     draft: bool = False
     artist: ArtistRays | None = None
-    reflecting: frozenset[int] = frozenset()
+    reflecting: frozenset[tuple[int, int]] = frozenset()
+    glinting: frozenset[tuple[int, int]] = frozenset()
     cylinders: CylinderRays | None = None
+    contrast: float = 0.0
 
     @property
     def lens_views(self):
@@ -221,7 +227,7 @@ def plan_bokeh(snapshot, plan):
         # No discs are traced for it, and those of a thin lens would not be where the samples are.
         return None
     least = least_splatted(plan)
-    bright = _shining(snapshot.content, settings.threshold)
+    bright = _shining(snapshot.content, settings.least_threshold)
     unsplit = seen_from_edge(snapshot.content, bright, plan)
     shining = bright - unsplit
     rows, _ = rows_of(snapshot.content, shining)
@@ -257,8 +263,9 @@ def plan_bokeh(snapshot, plan):
         settings=settings,
         shining=shining,
         mirroring=mirroring,
-        uneven=_uneven(snapshot.content, shining),
-        reflecting=frozenset(k[0] for k in shining if reflects(graph_of(snapshot.content, k))),
+        uneven=uneven_groups(snapshot.content, shining),
+        reflecting=frozenset(k for k in shining if reflects(graph_of(snapshot.content, k))),
+        glinting=glinting(snapshot.content, mirroring),
         unsplit=unsplit,
         least_coc=least,
         width=width,
@@ -270,7 +277,7 @@ def plan_bokeh(snapshot, plan):
             subpixels_of_triangles(snapshot.content, plan, rows, of_group, size),
             subpixels_of_lamps(steady, part),
         ),
-        small_mirrors=_subpixels_of_mirrors(
+        small_mirrors=subpixels_of_mirrors(
             snapshot.content,
             mirroring,
             seen_in_raster(mirroring),
@@ -287,12 +294,22 @@ def plan_bokeh(snapshot, plan):
         colors=colors,
         artist=shaping_artist(snapshot.camera),
         cylinders=shaping_cylinders(plan),
+        contrast=contrast_of(settings, plan),
     )
 
 
 def least_splatted(plan):
     """Return the radius of the circle of confusion from which on a frame splats light, px."""
-    return least_coc(plan.samples / (plan.chromatic.samples_for_one if plan.chromatic else 1.0))
+    return least_coc(_samples_of_one(plan))
+
+
+def contrast_of(settings, plan):
+    """Return the `BokehPlan.contrast` of a frame."""
+    return contrast(_samples_of_one(plan)) if settings.automatic else 0.0
+
+
+def _samples_of_one(plan):
+    return plan.samples / (plan.chromatic.samples_for_one if plan.chromatic else 1.0)
 
 
 def shaping_lens(camera):
@@ -336,29 +353,6 @@ def _shining(content, threshold):
 def _mirroring(content, shining):
     """Return the surfaces whose reflections depend on the place on the lens."""
     return frozenset(key for key in shining if mirrors(graph_of(content, key)))
-
-
-def _subpixels_of_mirrors(content, mirroring, rectangles, size, views):
-    """Return the sub-pixels that small mirroring objects and small glints need."""
-    part = (0, 0, *size)
-    found = subpixels_of_lamps(rectangles, part, views)
-    if any(light.highlights for light in content.lights):
-        gloss = min((sharpest_gloss(graph_of(content, key)) for key in mirroring), default=1.0)
-        found = max(found, subpixels_of_glints(rectangles, gloss, part, views))
-    return found
-
-
-def _uneven(content, shining):
-    """Return the groups with shining surfaces that are not a single uniform emission."""
-    return frozenset(
-        key[0]
-        for key in shining
-        if not all(
-            node.kind == "emission"
-            and all(isinstance(source, Constant) for _, source in node.inputs)
-            for node in graph_of(content, key).nodes
-        )
-    )
 
 
 def _largest_coc(content, plan, seen, colors):

@@ -7,7 +7,8 @@ highlight threshold is drawn, tile by tile (`engine.bokeh.search_tiles`).
 import numpy as np
 
 from ...levels.choosing import extents, world_corners
-from ...snapshot.brightness import emits
+from ...snapshot.brightness import emits, sharpest_gloss
+from ...snapshot.surface_graph import Constant
 
 # Of the raster that highlights are searched in, in sub-pixels.
 _LARGEST_RASTER = 1 << 26
@@ -30,6 +31,8 @@ _HIDING_PARALLAX = 2.0
 # Most sub-pixels for the sake of single lamps: along a side of a pixel, and in all.
 _FINEST = 64
 _FINE_RASTER = 1 << 21
+# Roughness below which reflections of lamps may be smaller than a pixel.
+_GLINTS_BELOW = 0.3
 
 
 def graph_of(content, key):
@@ -41,6 +44,24 @@ def graph_of(content, key):
 def emitting(content, shining):
     """Return the surfaces that emit light."""
     return frozenset(key for key in shining if emits(graph_of(content, key)))
+
+
+def glinting(content, mirroring):
+    """Return the mirroring surfaces whose reflections of lamps may be smaller than a pixel."""
+    return frozenset(k for k in mirroring if sharpest_gloss(graph_of(content, k)) < _GLINTS_BELOW)
+
+
+def uneven_groups(content, shining):
+    """Return the groups with shining surfaces that are not a single uniform emission."""
+    return frozenset(
+        key[0]
+        for key in shining
+        if not all(
+            node.kind == "emission"
+            and all(isinstance(source, Constant) for _, source in node.inputs)
+            for node in graph_of(content, key).nodes
+        )
+    )
 
 
 def rows_of(content, shining):
@@ -211,6 +232,16 @@ def subpixels_of_glints(rectangles, roughness, part, views=1):
     """
     # A glint is as small beside its surface as its lobe.
     return _subpixels(_HITS_A_GLINT, rectangles, 0.5 * _LOBE * roughness**2, part, views)
+
+
+def subpixels_of_mirrors(content, mirroring, rectangles, size, views):
+    """Return the sub-pixels that small mirroring objects and small glints need."""
+    part = (0, 0, *size)
+    found = subpixels_of_lamps(rectangles, part, views)
+    if any(light.highlights for light in content.lights):
+        gloss = min((sharpest_gloss(graph_of(content, key)) for key in mirroring), default=1.0)
+        found = max(found, subpixels_of_glints(rectangles, gloss, part, views))
+    return found
 
 
 def _subpixels(hits, rectangles, share, part, views):

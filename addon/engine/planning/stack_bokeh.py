@@ -8,6 +8,7 @@ from .bokeh_colors import colors_of_frame
 from .bokeh_plan import (
     INFINITY,
     BokehPlan,
+    contrast_of,
     filter_width,
     least_splatted,
     shaping_artist,
@@ -67,6 +68,7 @@ def plan_stack_bokeh(snapshot, plan):
         iris=camera.lens.iris,
         real_lens=shaping_lens(camera),
         cylinders=shaping_cylinders(plan),
+        contrast=contrast_of(camera.bokeh, plan),
         filter_width=filter_width(film.filter_kind, film.filter_size_px),
         colors=colors,
         artist=shaping_artist(camera),

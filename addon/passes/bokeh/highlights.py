@@ -48,7 +48,7 @@ _NUMBERS = ("R32UI", "UINT_2D")
 APPEND_IMAGES = (
     (*_NUMBERS, "used_img", ("READ", "WRITE")),
     (*_NUMBERS, "heads_img", ("READ", "WRITE")),
-    (*_NUMBERS, "tiles_img", ("WRITE",)),
+    (*_NUMBERS, "tiles_img", ("READ", "WRITE")),
     ("RGBA32F", "FLOAT_2D", "light_img", ("WRITE",)),
     ("RGBA32UI", "UINT_2D", "nodes_img", ("WRITE",)),
 )
@@ -128,8 +128,9 @@ class SearchedRaster:
 
     Parameters
     ----------
-    view, split : GPUUniformBuf
-        `ViewParams` and `HighlightParams` of the raster.
+    view : GPUUniformBuf
+        `ViewParams` of the raster.
+    split : split_light.SplitLight
     subpixels : int
         Texels along a side of a pixel.
     layers : int
@@ -150,6 +151,20 @@ class SearchedRaster:
     lens: tuple[float, float] = (0.0, 0.0)
     region: int = 0
     field: tuple | None = None
+
+
+def finish(written):
+    """Let the device finish what draws write to images, before it reads them.
+
+    Parameters
+    ----------
+    written : GPUTexture
+        R32UI, two texels wide at least; its second texel becomes 0.
+    """
+    shader = compile_shader(_FINISH)
+    shader.bind()
+    shader.image("sharp_img", written)
+    dispatch(shader, 1, 1)
 
 
 class TexelCounts:
@@ -248,15 +263,14 @@ class FragmentLists:
             Of fragments; may be more than there was room for.
         tiles : ndarray of shape (N, 2)
             Column and row of the tiles that have fragments.
+        thresholds : ndarray of shape (N,)
+            The largest threshold of each.
         """
-        shader = compile_shader(_FINISH)
-        shader.bind()
-        shader.image("sharp_img", self.targets["sharp"])
-        dispatch(shader, 1, 1)
+        finish(self.targets["sharp"])
         number = int(np.asarray(self.targets["used"].read()).ravel()[0])
         tiles = self.targets["tiles"]
-        shines = np.asarray(tiles.read()).reshape(tiles.height, tiles.width)
-        return number, np.argwhere(shines)[:, ::-1]
+        shines = np.array(tiles.read(), np.uint32).reshape(tiles.height, tiles.width)
+        return number, np.argwhere(shines)[:, ::-1], shines[shines > 0].view(np.float32)
 
     def release(self):
         """Release the textures."""
@@ -288,7 +302,7 @@ def order(raster, lists, number, scene=None, counts=None):
     for name in ("heads", "order", "light"):
         shader.image(f"{name}_img", lists.targets[name])
     shader.uniform_block("view_buf", raster.view)
-    shader.uniform_block("highlight_buf", raster.split)
+    raster.split.bind(shader)
     shader.uniform_int("number", number)
     if scene is not None:
         shader.uniform_sampler("scene_tx", scene)

@@ -34,7 +34,9 @@ def _info(work, in_wavelengths=False):
         name="aplanat_layer_highlights",
         compute=shader_source.load("passes/bokeh/layer_highlights_comp.glsl"),
         typedefs=structs,
-        samplers=_SAMPLERS + (("FLOAT_2D", "front_tx"),) * lists,
+        samplers=_SAMPLERS
+        + (("FLOAT_2D", "front_tx"),) * lists
+        + (("FLOAT_2D", "surroundings_tx"),) * (work != "WHOLE"),
         images=APPEND_IMAGES if lists else colors,
         uniforms=uniforms * (work != "WHOLE"),
         push_constants=(("INT", "first"), ("INT", "number"), *APPEND_CONSTANTS * lists),
@@ -81,15 +83,16 @@ def append(entries, first, number, split, view, lists):
     entries : tuple of 3 GPUTexture
     first, number : int
         Which of them.
-    split, view : GPUUniformBuf
-        `HighlightParams`, and `ViewParams` of the layers' raster.
+    split : split_light.SplitLight
+    view : GPUUniformBuf
+        `ViewParams` of the layers' raster.
     lists : passes.bokeh.highlights.FragmentLists
         Cleared.
     """
     shader = _bind(_info("LIST"), entries, first, number)
     shader.uniform_sampler("front_tx", entries[2])
     shader.uniform_block("view_buf", view)
-    shader.uniform_block("highlight_buf", split)
+    split.bind(shader)
     for name, resource in lists.bindings():
         bind_resource(shader, name, resource)
     dispatch(shader, -(-number // _THREADS), 1)
@@ -105,15 +108,16 @@ def leave_base(entries, number, colors, split, view, field=None):
         Of pixels.
     colors : GPUTexture
         Of the layers.
-    split, view : GPUUniformBuf
-        `HighlightParams`, and `ViewParams` of the layers' raster.
+    split : split_light.SplitLight
+    view : GPUUniformBuf
+        `ViewParams` of the layers' raster.
     field : tuple of (str, GPUUniformBuf or GPUTexture) or None
         `passes.surface.chromatic.resources`, with chromatic aberration.
     """
     shader = _bind(_info("SPLIT", field is not None), entries, 0, number)
     shader.image("colors_img", colors)
     shader.uniform_block("view_buf", view)
-    shader.uniform_block("highlight_buf", split)
+    split.bind(shader)
     for name, resource in field or ():
         bind_resource(shader, name, resource)
     dispatch(shader, -(-number // _THREADS), 1)

@@ -2,8 +2,10 @@
 
 `OCCLUDERS`: depth-peeled layers of all surfaces, each the nearest behind the layer before.
 `OPAQUE`: depth of the nearest opaque surface. `HIGHLIGHTS`: lists of all fragments brighter than
-the highlight threshold. `VEILS`, `OTHER_VEILS`: see-through fragments in front of and behind these.
-`HIDERS`: opaque surfaces right in front of these. `COVERS`: surfaces right in front of the world.
+the highlight threshold. `CANDIDATES`, `GLINTS`: tiles in which reflecting surfaces are so bright,
+or in which they are. `VEILS`, `OTHER_VEILS`: see-through fragments in front of highlights and
+behind them. `HIDERS`: opaque surfaces right in front of these. `COVERS`: surfaces right in front of
+the world.
 
 References
 ----------
@@ -48,6 +50,16 @@ COVERS = surface_target.SurfaceTarget(
     push_constants=(("FLOAT", "nearest"),),
     shades=False,
 )
+# Reflecting surfaces of `HIGHLIGHTS`, to find where they have any: by their light, or anyway.
+CANDIDATES = replace(
+    HIGHLIGHTS,
+    defines=(surface_target.SPLIT, "CANDIDATES"),
+    samplers=(("FLOAT_2D", "means_tx"),),
+    images=(("R32UI", "UINT_2D", "marks_img", ("READ", "WRITE")),),
+    push_constants=(("INT", "tile_texels"),),
+    values=(),
+)
+GLINTS = replace(CANDIDATES, defines=("CANDIDATES",), samplers=(), shades=False, splits=False)
 # See-through surfaces of `HIGHLIGHTS`, where they are no highlight.
 VEILS = replace(
     HIGHLIGHTS,
@@ -105,8 +117,7 @@ def list_highlights(draws, view_buffer, instances, lens, lists, split, counts, c
         As for `draw_opaque`.
     lists : highlights.FragmentLists
         Cleared.
-    split : GPUUniformBuf
-        `HighlightParams`.
+    split : split_light.SplitLight
     counts : highlights.TexelCounts
     counting : bool
         The texels that are drawn are added to `counts`.
@@ -129,8 +140,7 @@ def list_veils(draws, view_buffer, instances, lens, lists, split, lights):
         As for `draw_opaque`.
     lists : highlights.FragmentLists
         With highlights; read since they were listed, so that the device has finished them.
-    split : GPUUniformBuf
-        `HighlightParams`.
+    split : split_light.SplitLight
     lights : passes.surface.light_map.Lighting
     """
     state.opaque()
@@ -169,3 +179,30 @@ def cover_world(draws, view_buffer, instances, nearest):
     """
     state.multiply()
     surface.draw_sample(draws, view_buffer, instances, (0.0,) * 4, 0, (("nearest", nearest),))
+
+
+def mark_candidates(
+    draws, view_buffer, instances, marks, tile, split=None, means=None, lights=None
+):
+    """Mark the tiles of a raster in which reflecting surfaces may have highlights.
+
+    Parameters
+    ----------
+    draws : list of Draw
+        For `CANDIDATES`, or for `GLINTS`.
+    view_buffer, instances
+        As for `draw_opaque`; a frame buffer of the raster's size is bound.
+    marks : GPUTexture
+        R32UI, a texel a tile: gets the bits of a number above 0.
+    tile : int
+        Texels along a side of a tile.
+    split, means, lights : split_light.SplitLight, GPUTexture, passes.surface.light_map.Lighting
+        For `CANDIDATES`; the means are the pyramid of `surroundings.find`.
+    """
+    state.overwrite()
+    bindings = [("marks_img", marks), ("tile_texels", tile)]
+    if means is not None:
+        bindings.append(("means_tx", means))
+    surface.draw_sample(
+        draws, view_buffer, instances, (0.0,) * 4, 0, bindings, split, lights=lights
+    )

@@ -10,7 +10,7 @@ import numpy as np
 from ...device import readback, shader_source
 from ...device.shader_variants import variants
 from ...device.shaders import ShaderInfo, compile_shader, dispatch
-from ...device.targets import TargetSpec
+from ...device.targets import TargetSpec, atlas_size, level_count, level_sizes, second_row
 
 EMPTY = 2.0
 COLOR_FORMAT, DEPTH_FORMAT = "RGBA16F", "RG32F"
@@ -57,38 +57,6 @@ _PYRAMID = ShaderInfo(
     push_constants=(("INT", "level"), ("INT", "alpha_covers"), ("INT", "eyes")),
     local_size=(_GROUP, _GROUP, 1),
 )
-
-
-def level_count(width, height):
-    """Return how many levels a pyramid has, the last of which is one square."""
-    return max(1, (max(width, height) - 1).bit_length())
-
-
-def _level_sizes(width, height):
-    return [
-        tuple(-(-side // 2**level) for side in (width, height))
-        for level in range(1, level_count(width, height) + 1)
-    ]
-
-
-def atlas_size(width, height):
-    """Return the size of the texture that holds all levels; see ``lib/pyramid_atlas_lib.glsl``.
-
-    Returns
-    -------
-    tuple of 2 int
-    """
-    sizes = _level_sizes(width, height)
-    right = max((w for w, _ in sizes[1:]), default=0)
-    above = max((_second_row(height, level) + h for level, (_, h) in enumerate(sizes, 1)))
-    return sizes[0][0] + right, max(sizes[0][1], above)
-
-
-def _second_row(height, level):
-    """Return the lowest row of a level in the second column; see ``level_origin``."""
-    last = max(height - 1, 1).bit_length()
-    whole = 1 << last
-    return 0 if level < 2 else (whole >> 1) - (whole >> (level - 1)) + max(level - last - 1, 0)
 
 
 def specs(width, height, layers, mattes=False, eyes=1):
@@ -210,7 +178,7 @@ def depth_range(textures, width, height, layer=0):
     least, largest : float
         The least is the greater one where the layer has no surface.
     """
-    sizes = _level_sizes(width, height)
+    sizes = level_sizes(width, height)
     # The last level is one square.
-    place = (sizes[0][0], _second_row(height, len(sizes))) if len(sizes) > 1 else (0, 0)
+    place = (sizes[0][0], second_row(height, len(sizes))) if len(sizes) > 1 else (0, 0)
     return tuple(readback.read_texel(textures["ranges"], layer, *place)[:2].tolist())

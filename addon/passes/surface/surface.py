@@ -122,8 +122,11 @@ def surface_info(target, code, mesh_attributes, holdout=False, deforms=False, pa
     if target.splits and shades:
         structs += HIGHLIGHT_PARAMS.source
         uniforms.append(("HighlightParams", "highlight_buf"))
+        samplers.append(("FLOAT_2D", "surroundings_tx"))
         defines |= {"MIRRORING": "1"} if code.mirrors else {}
-        defines |= {"REFLECTING": "1"} if code.reflects else {}
+        if code.reflects:
+            defines["REFLECTING"] = "1"
+            samplers.append(("UINT_2D", "candidates_tx"))
     if "LIT" in defines:
         structs += environment.ENVIRONMENT_PARAMS.source
         uniforms.append(("EnvironmentParams", "environment_buf"))
@@ -326,8 +329,8 @@ def draw_sample(
     sample_index : int
     bindings : iterable of (str, GPUUniformBuf, GPUTexture, int or tuple of float)
         Of the target's own uniform blocks, samplers, images, whole numbers and vectors.
-    highlights : GPUUniformBuf or None
-        `HighlightParams`, for a target that splits light.
+    highlights : bokeh.split_light.SplitLight or None
+        For a target that splits light.
     optics : chromatic.ChromaticSample, real_lens.LensSample or real_lens.SampleOptics, optional
         Of a target `in_wavelengths`, `through_lens`, or both.
     lights : light_map.Lighting or None
@@ -346,7 +349,7 @@ def draw_sample(
             for name, resource in (*draw.lighting, *bindings):
                 bind_resource(shader, name, resource)
             if shader.declares("highlight_buf"):
-                shader.uniform_block("highlight_buf", highlights)
+                highlights.bind(shader)
             if optics is not None:
                 optics.bind(shader)
             if shader.declares("lights_tx"):

@@ -37,8 +37,10 @@ class APLANAT_CAMERA_PT_bokeh(_BokehPanel, SwitchHeader, bpy.types.Panel):
     def draw(self, context):
         """Draw the settings, the counts of highlights by fate, and warnings."""
         settings, column = self.begin(context)
+        column.row().prop(settings, "highlights", expand=True)
         light = column.column(align=True)
-        light.prop(settings, "threshold")
+        if settings.highlights == "THRESHOLD":
+            light.prop(settings, "threshold")
         light.prop(settings, "gain")
         column.row().prop(settings, "model", expand=True)
         if settings.model == "CLUSTERED":
@@ -56,16 +58,19 @@ def _draw_counts(column, scene, letters):
     counts = resources().notes.of(scene).counts
     if counts is None:
         return
-    for i, line in enumerate(counts_as_lines(counts)):
+    note = resources().notes.of(scene)
+    for i, line in enumerate(counts_as_lines(counts, note.thresholds)):
         draw_sentences(column, line, letters, icon="BLANK1" if i else "OUTLINER_OB_LIGHT")
 
 
-def counts_as_lines(counts):
+def counts_as_lines(counts, thresholds=None):
     """Return the counts of a picture's highlights by fate, as lines of text.
 
     Parameters
     ----------
     counts : dict of str to int
+        Of a `PictureNote`.
+    thresholds : tuple of 2 float, optional
         Of a `PictureNote`.
 
     Returns
@@ -90,6 +95,10 @@ def counts_as_lines(counts):
     ]
     if parts:
         lines.append(", ".join(parts))
+    if thresholds:
+        least, largest = (f"{number:.3g}" for number in thresholds)
+        span = least if least == largest else f"{least} to {largest}"
+        lines.append(f"Threshold found: {span}")
     return lines
 
 

@@ -7,16 +7,29 @@ from ...settings.bokeh_settings import BOKEH
 from ...settings.scene_part_settings import DISTORTION
 from ...settings.setting import kept_names, settings_of
 from .declared import properties
-from .overrides import OVERRIDABLE, SHARED
+from .overrides import OVERRIDABLE, SHARED, setting_changed
 
 _OLD = {"options": {"HIDDEN"}, "override": OVERRIDABLE}
+
+
+def _threshold_changed(settings, context):
+    """Let the threshold count that was set."""
+    settings.highlights = "THRESHOLD"
+    setting_changed(settings, context)
 
 
 class AplanatBokehSettings(bpy.types.PropertyGroup):
     """Bokeh settings of a camera."""
 
     __annotations__ = {
-        **properties(*BOKEH, callbacks={"iris_image": {"type": bpy.types.Image}}, **SHARED),
+        **properties(
+            *BOKEH,
+            callbacks={
+                "iris_image": {"type": bpy.types.Image},
+                "threshold": {"update": _threshold_changed},
+            },
+            **SHARED,
+        ),
         # Of files before version 2, for library overrides: see `migrations`.
         "distortion_source": EnumProperty(
             name="Distortion",

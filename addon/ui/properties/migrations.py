@@ -25,7 +25,7 @@ from bpy.app.handlers import persistent
 from .migration_steps import STEPS
 
 # What this Aplanat stores.
-VERSION = 3
+VERSION = 4
 
 _VERSION_NAME = "settings_version"
 # By the type of a data-block: the name of its collection.

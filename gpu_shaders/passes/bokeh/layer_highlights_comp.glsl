@@ -4,7 +4,7 @@
 // SPLIT: writes into the layers what the lens samples keep of their light, as surface_frag does.
 // WHOLE: writes all their light into the layers again.
 // Inputs: place_tx (column, row, layer, value of the depth buffer), light_tx (radiance, coverage); first,
-// number (of the pixels); LIST and SPLIT: highlight_buf, view_buf (of the layers' raster); LIST: front_tx
+// number (of the pixels); LIST and SPLIT: highlight_buf, surroundings_tx, view_buf (of the layers' raster); LIST: front_tx
 // (value of the depth buffer of the last pixel before it that hides what is behind it, 0: none, and the
 // share that passes), what highlights_append needs; CHROMATIC: chromatic_buf, field_tx.
 // Outputs: lists of fragments, or colors_img (premultiplied).
@@ -13,6 +13,9 @@
 #include "lib/lens_lib.glsl"
 #include "lib/bokeh/fragment_list_lib.glsl"
 #include "lib/bokeh/highlight_lib.glsl"
+#if defined(LIST) || defined(SPLIT)
+#include "lib/split/threshold_lib.glsl"
+#endif
 #ifdef LIST
 #include "passes/bokeh/highlights_append.glsl"
 #endif
@@ -44,6 +47,18 @@ float passed_front(vec2 front, float window_depth)
   float parallax = coc_radius_px(near, view_buf.lens) - coc_radius_px(far, view_buf.lens);
   float same_view = (front.y > 0.0) ? SAME_VIEW_IN_PART : SAME_VIEW;
   return (abs(parallax) < same_view) ? front.y : 1.0;
+}
+#endif
+
+#if defined(LIST) || defined(SPLIT)
+float threshold_of(vec4 place)
+{
+  float depth = (place.w >= 1.0) ?
+                    highlight_buf.world.x :
+                    depth_from_window(place.w, view_buf.projection, view_buf.lens);
+  vec2 clip = (place.xy + 0.5) / view_buf.film.xy * 2.0 - 1.0;
+  return highlight_threshold(
+      clip, coc_radius_px(depth, view_buf.lens), highlight_buf, surroundings_tx);
 }
 #endif
 
@@ -85,11 +100,16 @@ void main()
   if (passed <= 0.0) {
     return;
   }
-  vec3 above = passed * light.a * highlight_light(light.rgb, highlight_buf.split.x, highlight_buf.split.z);
-  append_fragment(ivec2(place.xy), above, place.w, light.a >= OPAQUE_FROM, 1.0 - light.a, 0u);
+  float threshold = threshold_of(place);
+  vec3 above = passed * light.a * highlight_light(light.rgb, threshold, highlight_buf.split.z);
+  bool opaque = light.a >= OPAQUE_FROM;
+  if (opaque && max(above.r, max(above.g, above.b)) <= 0.0) {
+    return;
+  }
+  append_fragment(ivec2(place.xy), above, place.w, opaque, 1.0 - light.a, 0u, threshold);
 #else
 #ifdef SPLIT
-  light.rgb = highlight_base(light.rgb, share_of(place), highlight_buf.split.x);
+  light.rgb = highlight_base(light.rgb, share_of(place), threshold_of(place));
 #endif
   vec4 color = clamp(vec4(light.rgb * light.a, light.a), -BRIGHTEST, BRIGHTEST);
   imageStore(colors_img, ivec3(ivec2(place.xy), int(place.z)), color);

@@ -4,7 +4,7 @@
 // One that lets colours through unevenly is drawn again, too (FILTER): where it was seen through, what was
 // seen is multiplied by the colour over its mean.
 // Inputs: varyings of surface_vert; view_buf; what the generated surface_closure() reads. HIGHLIGHTS:
-// highlight_buf; the light that is splatted as bokeh is left out; with CHROMATIC also chromatic_buf and
+// highlight_buf, surroundings_tx, REFLECTING: candidates_tx; the light that is splatted as bokeh is left out; with CHROMATIC also chromatic_buf and
 // field_tx, so that the splatted share is the same at all wavelengths; with MIRRORING it is searched
 // from several places on the lens, with REFLECTING only where the whole lens sees one side. OF_LAYER:
 // front_tx (depths that it must lie behind) and eye (place on the lens that it is shaded for, m). LENS_BLUR:
@@ -25,27 +25,25 @@
 #ifdef HIGHLIGHTS
 #include "lib/bokeh/highlight_lib.glsl"
 #include "lib/bokeh/searched_lib.glsl"
+#include "lib/split/threshold_lib.glsl"
 #ifdef CHROMATIC
 #include "lib/chromatic_lib.glsl"
 #endif
 
-vec3 without_highlights(Closure closure)
+// What lens samples keep of a point's light. `point`, `normal`: in camera space, its true place, not where
+// the wavelength displaces it to; `at`: as of `place_in_search`.
+vec3 kept_light(Closure closure, vec3 point, vec3 normal, vec2 at)
 {
-  vec3 light = closure.radiance - closure.unsplit;
-  if (max(light.r, max(light.g, light.b)) <= highlight_buf.split.x) {
-    return closure.radiance;
-  }
-  // The point's true place, not where the wavelength displaces it to.
-  vec3 point = (view_buf.view * vec4(world_position, 1.0)).xyz;
+  float middle_coc = coc_radius_px(-point.z, view_buf.lens);
+  float threshold = highlight_threshold(at, middle_coc, highlight_buf, surroundings_tx);
 #ifdef CHROMATIC
   vec2 place = field_place(point, chromatic_buf);
   float coc = chromatic_coc_px(field_tx, place, -point.z, view_buf.lens, chromatic_buf);
 #else
-  float coc = coc_radius_px(-point.z, view_buf.lens);
+  float coc = middle_coc;
 #endif
   float share = highlight_share(coc, highlight_buf.split.y);
 #ifdef REFLECTING
-  vec3 normal = cross(dFdx(point), dFdy(point));
   if (seen_from_both_sides(point, normal, view_buf.lens, highlight_buf)) {
     return closure.radiance;
   }
@@ -57,7 +55,24 @@ vec3 without_highlights(Closure closure)
 #else
   share *= searched_from_views(point, lens_sample.xy, view_buf.lens.x, highlight_buf);
 #endif
-  return highlight_base(closure.radiance, closure.unsplit, share, highlight_buf.split.x);
+  return highlight_base(closure.radiance, closure.unsplit, share, threshold);
+}
+
+vec3 without_highlights(Closure closure)
+{
+  vec3 light = closure.radiance - closure.unsplit;
+  vec3 point = (view_buf.view * vec4(world_position, 1.0)).xyz;
+  vec3 normal = cross(dFdx(point), dFdy(point));
+  if (max(light.r, max(light.g, light.b)) <= highlight_buf.split.x) {
+    return closure.radiance;
+  }
+  vec2 at = place_in_search(vec4(point, 1.0), highlight_buf);
+#ifdef REFLECTING
+  if (!reflections_searched(at, highlight_buf, candidates_tx)) {
+    return closure.radiance;
+  }
+#endif
+  return kept_light(closure, point, normal, at);
 }
 #endif
 

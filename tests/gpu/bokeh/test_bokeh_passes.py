@@ -16,6 +16,7 @@ from addon.lens_bokeh.look.opening import opening_layers
 from addon.lens_bokeh.openings.blades import BladedIris
 from addon.passes.bokeh import highlights, splat
 from addon.passes.bokeh.highlight_list import HighlightList
+from addon.passes.bokeh.split_light import SplitLight
 from addon.passes.surface import surface
 from benchmarks.reference.highlights import Raster
 from benchmarks.reference.highlights import highlights as twin
@@ -38,7 +39,7 @@ void main()
   vec4 color = texelFetch(color_tx, texel, 0);
   if (max(color.r, max(color.g, color.b)) > 0.0) {
     float depth = texelFetch(depth_tx, texel, 0).x;
-    append_fragment(texel, color.rgb, depth, color.a == 0.0, color.a, 0u);
+    append_fragment(texel, color.rgb, depth, color.a == 0.0, color.a, 0u, 1.0);
   }
 }
 """
@@ -86,8 +87,11 @@ def list_on_device(fragments, scene, raster, capacity=4096, room=8192, times=1):
             world=(0.0, 0.0, 0.0, 0.0),
             raster=raster.projection,
             views=(1.0, 1.0, 1.0, 0.0),
+            automatic=(0.0, 0.0, 0.0, 0.0),
+            size=(width, height, 1.0, 1.0),
         )
     )
+    split = SplitLight(split, None, None)
     append = compile_shader(
         ShaderInfo(
             name="append",
@@ -112,7 +116,7 @@ def list_on_device(fragments, scene, raster, capacity=4096, room=8192, times=1):
         for name, resource in lists.bindings():
             bind_resource(append, name, resource)
         dispatch(append, *(-(-side // 8) for side in scene.shape[::-1]))
-    number, tiles = lists.read()
+    number, tiles, _ = lists.read()
     assert number == sum((color.max(axis=2) > 0.0).sum() for color, _, _ in fragments)
     seen = highlights.SearchedRaster(view, split, raster.subpixels, raster.layers)
     found = HighlightList(room)

@@ -42,7 +42,7 @@ def read(bpy):
 
 
 def test_bokeh_starts_as_the_settings_do(camera, aplanat_bpy):
-    assert read(aplanat_bpy).bokeh == BokehSettings()
+    assert read(aplanat_bpy).bokeh == BokehSettings(highlights="AUTO")
 
 
 def test_a_new_camera_has_it_until_it_is_switched_off(bokeh, aplanat_bpy):
