@@ -72,9 +72,14 @@ class RenderSession:
 
     def kept_scenes(self, scene):
         """Return the `KeptScenes` of a scene; empty ones without *Persistent Data*."""
+        uid = scene.original.session_uid
         if not scene.render.use_persistent_data:
+            # What it kept while it was on would stay as long as Blender does.
+            self._kept.pop(uid, None)
             return KeptScenes(self)
-        return self._kept.setdefault(scene.original.session_uid, KeptScenes(self))
+        if uid not in self._kept:
+            self._kept[uid] = KeptScenes(self)
+        return self._kept[uid]
 
     def open_levels(self):
         """Return a new `LevelHandle`; the session closes it if nobody else does."""

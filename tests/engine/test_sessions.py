@@ -185,3 +185,15 @@ def test_who_is_registered_again_begins_anew(aplanat_bpy):
     for of_render in (handlers.render_init, handlers.render_complete, handlers.render_cancel):
         ours = [h for h in of_render if h.__module__ == shared_resources.__name__]
         assert len(ours) == 1
+
+
+def test_what_a_scene_kept_is_dropped_when_its_persistent_data_is_switched_off():
+    render = SimpleNamespace(use_persistent_data=True)
+    scene = SimpleNamespace(render=render, original=SimpleNamespace(session_uid=7))
+    with resources().open_session() as session:
+        kept = session.kept_scenes(scene)
+        assert session.kept_scenes(scene) is kept
+        render.use_persistent_data = False
+        assert session.kept_scenes(scene) is not kept
+        render.use_persistent_data = True
+        assert session.kept_scenes(scene) is not kept
